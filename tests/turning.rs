@@ -257,6 +257,37 @@ fn cycles_are_corrected_as_the_moves_they_are() {
     assert_eq!(bench.corrected(CYCLES, &perfect), CYCLES);
 }
 
+/// One contour, roughed and finished, in Fanuc's form and in LinuxCNC's.
+const CONTOURS: [&str; 2] = [
+    "G21 G18 G40 G99 G54\nG50 S2500\nT0101\nG97 S800 M3\nG0 X60. Z2.\nG71 U2. R0.5\nG71 P10 Q20 U0.4 W0.1 F0.3\nN10 G0 X20.\n\
+     G1 Z0. F0.1\nX30. Z-5.\nZ-20.\nG2 X40. Z-25. R5.\nN20 G1 X60.\nG70 P10 Q20\nG0 X80. Z20.\nM30\n",
+    "G21 G18 G90 G7\no100 sub\nG0 X20\nG1 Z0\nX30 Z-5\nZ-20\nG2 X40 Z-25 R5\nG1 X60\no100 endsub\nT1 M6\nG43 H1\nG97 S800 M3\n\
+     G95 F0.1\nG0 X60 Z2\nG71 Q100 D0.2 I2 R0.5\nG0 X60 Z2\nG70 Q100\nG0 X80 Z20\nM2\n",
+];
+
+#[test]
+fn a_contour_of_linuxcnc_is_the_one_of_fanuc() {
+    let bench = Bench::new();
+    let linuxcnc = bench.profile(&[("\"fanuc-lathe\"", "\"linuxcnc-lathe\"")]);
+    let linuxcnc = bench.file("linuxcnc.toml", &std::fs::read_to_string(linuxcnc).expect("written"));
+    let profiles = [PROFILE, linuxcnc.as_str()];
+    let finished = profiles.iter().zip(CONTOURS).map(|(profile, program)| {
+        let corrected = bench.corrected(program, profile);
+        assert!(!corrected.lines().any(|line| line.starts_with("G7") && line != "G7"), "{corrected}");
+        bench.turned(&corrected, profile)
+    });
+    let finished: Vec<_> = finished.collect();
+    assert!(finished[0].len() > 4, "{finished:?}");
+    assert_eq!(finished[0].len(), finished[1].len(), "{finished:?}");
+    for (one, other) in finished[0].iter().zip(&finished[1]) {
+        // Each is right to 1 um and its rounding.
+        assert!((one[0] - other[0]).abs() < 1e-6 && (one[1] - other[1]).abs() < 3e-3, "{one:?} {other:?}");
+    }
+    assert!(bench.refused(&CONTOURS[1].replace("D0.2 I2", "U0.4 I2"), &linuxcnc).contains("VP0143"));
+    assert!(bench.refused(&CONTOURS[1].replace("G18", "G17"), &linuxcnc).contains("VP0143"));
+    assert!(bench.refused(&CONTOURS[1].replace("G70 Q100", "G73 Q100"), &linuxcnc).contains("VP0208"));
+}
+
 #[test]
 fn a_thread_is_never_split() {
     let bench = Bench::new();

@@ -1,11 +1,12 @@
 //! What the words of a grammar's `does` mean.
 
 use nc_syntax::dialect::{
-    Action, Called, CornerForm, CycleCode, FramePart, GCode, PlaneCode, Side, TipSwitch, TurningCycle,
+    Action, Called, CornerForm, CycleCode, FramePart, GCode, PlaneCode, Pockets, Side, TipSwitch,
+    TurningCycle,
 };
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 101] = [
+pub const ACTION_NAMES: [&str; 108] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -84,6 +85,13 @@ pub const ACTION_NAMES: [&str; 101] = [
     "peck-groove",
     "thread-passes",
     "drill-face",
+    "finish-routine",
+    "rough-turn-routine",
+    "rough-turn-routine-no-pockets",
+    "rough-turn-routine-pockets",
+    "rough-face-routine",
+    "rough-face-routine-no-pockets",
+    "rough-face-routine-pockets",
     "frame-shift",
     "frame-shift-more",
     "frame-rotation",
@@ -191,6 +199,13 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "peck-groove" => Action::Turning(TurningCycle::PeckGroove),
         "thread-passes" => Action::Turning(TurningCycle::ThreadPasses),
         "drill-face" => Action::Turning(TurningCycle::DrillFace),
+        "finish-routine" => Action::Turning(TurningCycle::FinishRoutine),
+        "rough-turn-routine" => Action::Turning(TurningCycle::RoughTurnRoutine(Pockets::All)),
+        "rough-turn-routine-no-pockets" => Action::Turning(TurningCycle::RoughTurnRoutine(Pockets::Leave)),
+        "rough-turn-routine-pockets" => Action::Turning(TurningCycle::RoughTurnRoutine(Pockets::Only)),
+        "rough-face-routine" => Action::Turning(TurningCycle::RoughFaceRoutine(Pockets::All)),
+        "rough-face-routine-no-pockets" => Action::Turning(TurningCycle::RoughFaceRoutine(Pockets::Leave)),
+        "rough-face-routine-pockets" => Action::Turning(TurningCycle::RoughFaceRoutine(Pockets::Only)),
         "frame-shift" => Action::ProgramFrame { part: FramePart::Shift, adds: false },
         "frame-shift-more" => Action::ProgramFrame { part: FramePart::Shift, adds: true },
         "frame-rotation" => Action::ProgramFrame { part: FramePart::Rotation, adds: false },

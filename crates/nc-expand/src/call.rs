@@ -6,6 +6,7 @@ use std::rc::Rc;
 
 use diagnostic::{Text, both, of_system};
 use nc_syntax::dialect::{Macros, PointFree};
+use nc_syntax::{Block, Reader};
 
 use crate::codes;
 use crate::faults::{self, Stop, say, whole};
@@ -320,6 +321,40 @@ impl<'a> Run<'a, '_> {
         ))
     }
 
+    /// True while the contour of a cycle is read.
+    fn in_routine(&self) -> bool {
+        self.frames.iter().any(|frame| matches!(frame.kind, CallKind::Routine(..)))
+    }
+
+    /// Puts the subroutine that Q of a cycle names behind its block, which the output holds from `written` on. What
+    /// is missing the cycle itself refuses.
+    pub(crate) fn routine(
+        &mut self,
+        source: &Source<'a>,
+        statement: &Statement,
+        place: Place,
+        written: usize,
+    ) -> Result<(), Stop> {
+        if self.in_routine() {
+            return Err(within_routine());
+        }
+        let mut reader = Reader::new(&self.out.text[written..], self.dialect);
+        let (mut block, mut number) = (Block::default(), None);
+        while reader.next(&mut block) {
+            number = number.or_else(|| block.word(b'Q')?.number()?.integer());
+        }
+        let Some(number) = number else { return Ok(()) };
+        let name = self.names.id(number.to_string().as_bytes());
+        self.store.learn(&self.names);
+        let Some(start) = source.subroutines.get(&name).filter(|start| **start < place.statement) else {
+            return Ok(());
+        };
+        let start = Place { statement: start + 1, ..place };
+        self.out.fresh_line();
+        let kind = CallKind::Routine(name, self.out.text.len() as u64);
+        self.enter(start, kind, 1, Some(&[]), statement.section, place)
+    }
+
     /// An O-word.
     pub(crate) fn o_word(
         &mut self,
@@ -335,7 +370,15 @@ impl<'a> Run<'a, '_> {
                     Some(value) => Some(self.evaluate(value)?),
                     None => None,
                 };
-                if !matches!(self.frames.last().map(|frame| frame.kind), Some(CallKind::Name(_))) {
+                let running = self.frames.last().map(|frame| frame.kind);
+                if let Some(CallKind::Routine(..)) = running {
+                    if matches!(o.word, OWord::Return(_)) {
+                        return Err(within_routine());
+                    }
+                    self.leave(true);
+                    return Ok(());
+                }
+                if !matches!(running, Some(CallKind::Name(_))) {
                     return Err(faults::no_call(&both!(
                         "`return` outside a subroutine",
                         "`return` вне подпрограммы"
@@ -352,6 +395,7 @@ impl<'a> Run<'a, '_> {
                     self.store.set_named(id, value);
                 }
             }
+            OWord::Call(_) if self.in_routine() => return Err(within_routine()),
             OWord::Call(arguments) => {
                 let mut values = Vec::with_capacity(arguments.len());
                 for (number, argument) in (1..).zip(arguments) {
@@ -457,6 +501,21 @@ impl<'a> Run<'a, '_> {
             )),
         }
     }
+}
+
+fn within_routine() -> Stop {
+    say(
+        codes::CONTOUR,
+        both!(
+            "a call, a return or a cycle within the contour of a cycle",
+            "вызов, возврат или цикл внутри контура цикла"
+        ),
+        both!("the interpreter only reads the contour", "контур интерпретатор только читает"),
+        both!(
+            "write the blocks of the contour themselves between `sub` and `endsub`",
+            "напишите между `sub` и `endsub` сами кадры контура"
+        ),
+    )
 }
 
 fn leaves(name: &str) -> Stop {

@@ -214,7 +214,7 @@ pub(crate) fn no_return(names: &Names, kind: CallKind) -> Stop {
         CallKind::Number(number) => (format!("O{number:04}"), "M99"),
         CallKind::Block(number) => (format!("N{number}"), "M99"),
         CallKind::Program(id) => (names.name(id).to_ascii_uppercase(), "M17"),
-        CallKind::Name(id) => (format!("o<{}>", names.name(id)), "`endsub`"),
+        CallKind::Name(id) | CallKind::Routine(id, _) => (format!("o<{}>", names.name(id)), "`endsub`"),
     };
     say(
         codes::RETURN,

@@ -39,6 +39,8 @@ pub(crate) enum CallKind {
     Block(u64),
     /// `o<name> call`: `endsub` and `return` return.
     Name(NameId),
+    /// A contour of a cycle, which is read and not called; where it starts in the output.
+    Routine(NameId, u64),
 }
 
 impl<'a> Run<'a, '_> {
@@ -109,7 +111,10 @@ impl<'a> Run<'a, '_> {
                 None => Err(faults::endless()),
             };
         }
-        if matches!(self.frames.last().map(|frame| frame.kind), Some(CallKind::Name(_))) {
+        if matches!(
+            self.frames.last().map(|frame| frame.kind),
+            Some(CallKind::Name(_) | CallKind::Routine(..))
+        ) {
             return Err(faults::no_call(&both!(
                 "M99 in a subroutine that an O-word called",
                 "M99 в подпрограмме, которую вызвало слово O"
@@ -141,6 +146,11 @@ impl<'a> Run<'a, '_> {
             self.announce(frame.kind, frame.passes - frame.left, Some(frame.passes), frame.back);
             self.frames.push(frame);
             return false;
+        }
+        if let CallKind::Routine(_, from) = frame.kind {
+            self.out.fresh_line();
+            self.routines.push(from..self.out.text.len() as u64);
+            self.previous = None;
         }
         if let Some(saved) = frame.saved {
             self.store.leave(saved);
@@ -174,7 +184,7 @@ impl<'a> Run<'a, '_> {
         *count += 1;
         let (number, of) = match kind {
             CallKind::Number(_) | CallKind::Program(_) | CallKind::Block(_) => (1, Some(passes)),
-            CallKind::Name(_) => (*count, None),
+            CallKind::Name(_) | CallKind::Routine(..) => (*count, None),
         };
         self.announce(kind, number, of, caller);
         self.frames.push(Frame { back, start, left: passes - 1, passes, kind, saved, repeats, section });
@@ -188,7 +198,7 @@ impl<'a> Run<'a, '_> {
             CallKind::Number(program) => format!("O{program:04}"),
             CallKind::Block(number) => format!("N{number}"),
             CallKind::Program(id) => self.names.name(id).to_ascii_uppercase(),
-            CallKind::Name(id) => format!("O<{}>", self.names.name(id)),
+            CallKind::Name(id) | CallKind::Routine(id, _) => format!("O<{}>", self.names.name(id)),
         };
         let text = match of {
             Some(passes) => format!("{name} CALL {number} OF {passes}"),

@@ -107,9 +107,11 @@ pub struct Expanded<'a> {
     files: Vec<(String, Vec<u8>)>,
     /// From the source to the program without flow; `None` where it has none.
     flow: Option<Vec<Segment>>,
-    /// From there to the program without corners, polar words and called cycles, step by step.
+    /// From there to the program without corners, angles of a lathe's drawing, polar words and called cycles, step by step.
     shorthand: Vec<Vec<Segment>>,
     warnings: Vec<Diagnostic>,
+    /// Bytes of the program without flow that are contours of cycles.
+    routines: Vec<Range<u64>>,
 }
 
 /// A place in a source file.
@@ -178,6 +180,14 @@ impl Expanded<'_> {
         place
     }
 
+    /// A program that cannot be written out, by what is wrong with its plain text.
+    fn refusal(&self, fault: Diagnostic) -> Refusal {
+        let settled = self.settle(vec![fault]);
+        let (file, diagnostics) = settled.into_iter().next().unwrap_or_default();
+        let file = self.file(file).map(|(name, text)| (name.to_owned(), text.to_vec()));
+        Refusal { diagnostics, file }
+    }
+
     /// Puts the places of diagnostics about the plain program into the source files: by file, in order.
     #[must_use]
     pub fn settle(&self, diagnostics: Vec<Diagnostic>) -> Vec<(usize, Vec<Diagnostic>)> {
@@ -211,12 +221,23 @@ pub fn expand<'a>(
         flow: None,
         shorthand: Vec::new(),
         warnings: Vec::new(),
+        routines: Vec::new(),
     };
     let mut expanded = if work.flow { run::run(text, dialect, environment)? } else { plain };
     if work.shorthand || (work.flow && Work::of(&expanded.text, dialect).shorthand) {
-        let steps: &[WriteOut] = if dialect.turning.is_some() {
-            &[turning::write_out]
-        } else if dialect.flow.called {
+        if dialect.turning.is_some() {
+            let drawn = turning::draw(&expanded.text, dialect);
+            if let Some((text, segments)) = drawn.map_err(|fault| expanded.refusal(*fault))? {
+                expanded.text = Cow::Owned(text);
+                expanded.shorthand.push(segments);
+            }
+            let written = turning::write_out(&expanded.text, dialect, &expanded.routines);
+            let (text, segments) = written.map_err(|fault| expanded.refusal(*fault))?;
+            expanded.text = Cow::Owned(text);
+            expanded.shorthand.push(segments);
+            return Ok(expanded);
+        }
+        let steps: &[WriteOut] = if dialect.flow.called {
             &[called::write_out, shorthand::write_out]
         } else if dialect.flow.return_by_m {
             &[returns::write_out]
@@ -224,12 +245,8 @@ pub fn expand<'a>(
             &[shorthand::write_out]
         };
         for write_out in steps {
-            let (text, segments) = write_out(&expanded.text, dialect).map_err(|fault| {
-                let settled = expanded.settle(vec![*fault]);
-                let (file, diagnostics) = settled.into_iter().next().unwrap_or_default();
-                let file = expanded.file(file).map(|(name, text)| (name.to_owned(), text.to_vec()));
-                Refusal { diagnostics, file }
-            })?;
+            let written = write_out(&expanded.text, dialect);
+            let (text, segments) = written.map_err(|fault| expanded.refusal(*fault))?;
             expanded.text = Cow::Owned(text);
             expanded.shorthand.push(segments);
         }

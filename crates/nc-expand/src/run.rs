@@ -55,6 +55,8 @@ pub(crate) struct Run<'a, 'e> {
     pub(crate) externals: BTreeMap<String, Option<usize>>,
     first_output: Option<std::ops::Range<u64>>,
     first_kept: Option<(std::ops::Range<u64>, Variable)>,
+    /// Bytes of the output that are contours of cycles.
+    pub(crate) routines: Vec<std::ops::Range<u64>>,
 }
 
 /// Whether the program goes on.
@@ -101,6 +103,7 @@ pub(crate) fn run<'a>(
         externals: BTreeMap::new(),
         first_output: None,
         first_kept: None,
+        routines: Vec::new(),
     };
     run.units(inch);
     match run.all() {
@@ -146,9 +149,13 @@ impl<'a> Run<'a, '_> {
                 )));
             }
             Kind::Copy => {
+                let written = self.out.text.len();
                 self.copy(source, statement, place, again);
                 self.note(statement);
                 self.acted |= statement.flags.words && !statement.flags.ends;
+                if statement.flags.routine {
+                    self.routine(source, statement, place, written)?;
+                }
                 if again {
                     self.spend(1)?;
                 }
@@ -163,8 +170,12 @@ impl<'a> Run<'a, '_> {
                 }
                 self.started = true;
                 self.acted |= !complex.defines();
+                let written = self.out.text.len();
                 self.complex(source, statement, complex, place, again)?;
                 self.bounded()?;
+                if statement.flags.routine {
+                    self.routine(source, statement, place, written)?;
+                }
                 if statement.flags.ends && !statement.flags.skip {
                     return Ok(Next::Ended);
                 }
@@ -511,7 +522,15 @@ impl<'a> Run<'a, '_> {
         }
         let files = self.sources[1..].iter().map(|s| (s.name.clone(), s.text.to_vec())).collect();
         let Output { text, segments, .. } = self.out;
-        Expanded { text: Cow::Owned(text), files, flow: Some(segments), shorthand: Vec::new(), warnings }
+        let routines = self.routines;
+        Expanded {
+            text: Cow::Owned(text),
+            files,
+            flow: Some(segments),
+            shorthand: Vec::new(),
+            warnings,
+            routines,
+        }
     }
 
     fn refusal(&self, stop: &Stop) -> Refusal {

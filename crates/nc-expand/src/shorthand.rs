@@ -448,7 +448,8 @@ impl<'d> Writer<'d> {
         self.plain_line(&words, words.corner().map_or(whole, |item| item.span))?;
         let [first, second, _] = self.state.plane;
         let next = [first, second].map(|axis| self.state.at[axis].unwrap_or(f64::NAN));
-        let Some(shape) = Shape::of(corner, next) else {
+        let shape = Shape::of(corner.from, corner.to, next, corner.form, corner.size);
+        let Some(shape) = shape else {
             let label = both!(
                 "the lines are too short for it, or go straight on or back",
                 "прямые для него слишком коротки или идут прямо вперёд или назад"
@@ -667,39 +668,46 @@ impl<'d> Writer<'d> {
 }
 
 /// A corner's ends and centre in the plane.
-struct Shape {
-    from: [f64; 2],
-    to: [f64; 2],
-    centre: [f64; 2],
+pub(crate) struct Shape {
+    pub(crate) from: [f64; 2],
+    pub(crate) to: [f64; 2],
+    pub(crate) centre: [f64; 2],
     /// The path turns towards the second axis from the first.
-    left: bool,
+    pub(crate) left: bool,
 }
 
 impl Shape {
-    fn of(corner: &Corner<'_>, next: [f64; 2]) -> Option<Self> {
+    /// Of the corner between two lines, from one place by `corner` to the `next`.
+    pub(crate) fn of(
+        start: [f64; 2],
+        corner: [f64; 2],
+        next: [f64; 2],
+        form: CornerForm,
+        size: f64,
+    ) -> Option<Self> {
         let away = |p: [f64; 2]| {
-            let d = [p[0] - corner.to[0], p[1] - corner.to[1]];
+            let d = [p[0] - corner[0], p[1] - corner[1]];
             let length = math::hypot(d[0], d[1]);
             ([d[0] / length, d[1] / length], length)
         };
-        let ((u, before), (v, after)) = (away(corner.from), away(next));
+        let ((u, before), (v, after)) = (away(start), away(next));
         let (cross, dot) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
         let inside = math::atan2(cross.abs(), dot);
         if !(inside > STRAIGHT_RAD && inside < std::f64::consts::PI - STRAIGHT_RAD) {
             return None;
         }
-        let cut = match corner.form {
-            CornerForm::Round => corner.size / math::tan(0.5 * inside),
-            CornerForm::Chamfer => corner.size,
-            CornerForm::ChamferLength => 0.5 * corner.size / math::sin(0.5 * inside),
+        let cut = match form {
+            CornerForm::Round => size / math::tan(0.5 * inside),
+            CornerForm::Chamfer => size,
+            CornerForm::ChamferLength => 0.5 * size / math::sin(0.5 * inside),
         };
         if cut > before + BEHIND || cut > after + BEHIND {
             return None;
         }
-        let along = |d: [f64; 2], by: f64| [corner.to[0] + by * d[0], corner.to[1] + by * d[1]];
+        let along = |d: [f64; 2], by: f64| [corner[0] + by * d[0], corner[1] + by * d[1]];
         // The centre lies on the line that halves the angle.
         let half = [u[0] + v[0], u[1] + v[1]];
-        let reach = corner.size / math::sin(0.5 * inside) / math::hypot(half[0], half[1]);
+        let reach = size / math::sin(0.5 * inside) / math::hypot(half[0], half[1]);
         // Coming along -u and leaving along v.
         Some(Self { from: along(u, cut), to: along(v, cut), centre: along(half, reach), left: cross < 0.0 })
     }

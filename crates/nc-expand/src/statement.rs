@@ -1,7 +1,7 @@
 //! Blocks as statements: what is copied, what is computed, where it goes on.
 
 use diagnostic::{Diagnostic, Text, both};
-use nc_syntax::dialect::{Action, Macros};
+use nc_syntax::dialect::{Action, Macros, TurningCycle};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value as WordValue};
 
 use crate::codes;
@@ -38,6 +38,8 @@ pub(crate) struct Flags {
     pub(crate) number: Option<Span>,
     /// It has words besides N and O.
     pub(crate) words: bool,
+    /// A cycle whose contour is a subroutine.
+    pub(crate) routine: bool,
 }
 
 /// What a block is.
@@ -236,6 +238,11 @@ impl Compiler<'_, '_> {
                         Some(Action::Inch) => flags.inch = Some(true),
                         Some(Action::Millimetre) => flags.inch = Some(false),
                         Some(Action::Cycle(_)) => flags.cycle = Some(true),
+                        Some(Action::Turning(
+                            TurningCycle::FinishRoutine
+                            | TurningCycle::RoughTurnRoutine(_)
+                            | TurningCycle::RoughFaceRoutine(_),
+                        )) => flags.routine = true,
                         Some(
                             Action::CycleCancel
                             | Action::Rapid

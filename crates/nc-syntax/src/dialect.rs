@@ -493,6 +493,31 @@ pub enum TurningCycle {
     ThreadPasses,
     /// G83 (A): a hole on the axis.
     DrillFace,
+    /// G70 of LinuxCNC: along the contour of a subroutine.
+    FinishRoutine,
+    /// G71, G71.1, G71.2 of LinuxCNC: passes along Z down to the contour of a subroutine.
+    RoughTurnRoutine(Pockets),
+    /// G72, G72.1, G72.2 of LinuxCNC: passes along X down to it.
+    RoughFaceRoutine(Pockets),
+}
+
+/// Which pockets of a contour a cycle of LinuxCNC cuts.
+///
+/// ```
+/// use nc_syntax::dialect::{Action, GCode, Pockets, TurningCycle};
+///
+/// let lathe = nc_dialect::builtin("linuxcnc-lathe").unwrap();
+/// let action = |code| lathe.code(GCode(code)).unwrap().action.clone();
+/// assert_eq!(action(711), Action::Turning(TurningCycle::RoughTurnRoutine(Pockets::Leave)));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pockets {
+    /// G71, G72
+    All,
+    /// G71.1, G72.1
+    Leave,
+    /// G71.2, G72.2: what the one before left.
+    Only,
 }
 
 /// What R and Z of a cycle mean for the blocks that repeat it without writing them again.

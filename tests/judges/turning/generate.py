@@ -416,9 +416,9 @@ def program(rng, spec, kind):
             w.lines[1:1] = [*body.lines, "o100 endsub"]
             w.say("F0.3")
             w.to("G0", 31, 2)
-            w.say("G71 Q100 X62. Z2. D1. I0.5 R0.4")
+            w.say(f"{rng.choice(('G71', 'G71.1'))} Q100 X62. Z2. D{rng.choice((0.2, 1))} I0.5 R0.4")
             w.to("G0", 31, 2)
-            w.say("G70 Q100 X62. Z2.")
+            w.say("G70 Q100 X62. Z2." + rng.choice(("", " D0.4 E0. P2")))
         else:
             w.to("G0", 31, 4)
             w.say("G76 P1.5 Z-30. I-2. J0.6 K1.84 R1.5 Q29. H2")

@@ -77,6 +77,12 @@ impl Contour {
     }
 }
 
+impl Arc {
+    pub(super) const fn centre(&self) -> Point {
+        self.centre
+    }
+}
+
 impl Way {
     fn angle(&self, centre: Point, point: Point) -> f64 {
         math::atan2(point[0] - centre[0], point[1] - centre[1])
@@ -384,7 +390,13 @@ impl Writer<'_, '_> {
     }
 
     /// Centre and sweep of an arc by I and K, or by R.
-    fn arc(&self, words: &Words<'_, '_>, from: Point, to: Point, clockwise: bool) -> Result<Arc, Fault> {
+    pub(super) fn arc(
+        &self,
+        words: &Words<'_, '_>,
+        from: Point,
+        to: Point,
+        clockwise: bool,
+    ) -> Result<Arc, Fault> {
         let refuse = |label: Text| {
             Err(words.contour_fault(words.whole(), both!("an arc that cannot be", "невозможная дуга"), label))
         };

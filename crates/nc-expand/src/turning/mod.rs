@@ -5,10 +5,12 @@
 //! "Canned cycle", "Multiple repetitive cycle"), and by parameters of the control, which the profile has to say
 //! ([`nc_syntax::dialect::TurningParameters`]).
 //!
+//! * [`drawing`]: corners and angles of drawings, before all else.
 //! * [`pass`]: one pass there and back, repeated by each block that names a place.
 //! * [`contour`]: the blocks between P and Q as a way in the plane.
 //! * [`rough`]: passes down to a contour, and the contour itself.
 //! * [`pecks`]: grooves and holes; [`drill`]: a hole on the axis.
+//! * [`routine`]: LinuxCNC's contours, which are subroutines; [`profile`]: their geometry; [`levels`]: passes down to them.
 //! * [`threads`]: a thread in several passes; [`compound`]: that of LinuxCNC.
 //!
 //! Places are whole millionths of the program's unit, X as its words have it: sums of them are exact. Where a pass ends
@@ -16,13 +18,19 @@
 
 mod compound;
 mod contour;
+mod drawing;
 mod drill;
 mod emit;
+mod levels;
 mod pass;
 mod pecks;
+mod profile;
 mod rough;
+mod routine;
 mod state;
 mod threads;
+
+use std::ops::Range;
 
 use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
@@ -35,6 +43,9 @@ use pass::Pass;
 use state::{Motion, State};
 
 type Fault = Box<Diagnostic>;
+
+/// A text, and where each stretch of it comes from.
+type Written = (Vec<u8>, Vec<Segment>);
 
 /// X word and Z, in millionths of the unit.
 type Spot = [i64; 2];
@@ -58,8 +69,15 @@ fn cycle_of(words: &Words<'_, '_>) -> Option<(TurningCycle, Span)> {
     })
 }
 
+/// The program with its corners and angles written out, where it has some.
+pub(crate) fn draw(text: &[u8], dialect: &Dialect) -> Result<Option<Written>, Fault> {
+    drawing::write_out(text, dialect)
+}
+
 /// The program with its cycles written out, and where each stretch of it comes from.
-pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<Segment>), Fault> {
+///
+/// `routines`: bytes that hold the contours of cycles, each behind the block of its cycle.
+pub(crate) fn write_out(text: &[u8], dialect: &Dialect, routines: &[Range<u64>]) -> Result<Written, Fault> {
     let Some(turning) = &dialect.turning else { return Ok((text.to_vec(), Vec::new())) };
     let mut blocks = Vec::new();
     let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
@@ -73,6 +91,7 @@ pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<
         out: Output::new(dialect, text),
         state: State::initial(dialect, turning),
         pass: None,
+        routines,
         first_blocks: rough::FirstBlocks::default(),
         unsure_feed: false,
     };
@@ -92,6 +111,8 @@ struct Writer<'b, 'a> {
     state: State,
     /// The single pass in force.
     pass: Option<Pass>,
+    /// Where contours stand that are subroutines.
+    routines: &'b [Range<u64>],
     /// What the blocks without P and Q said, which hold for those with them.
     first_blocks: rough::FirstBlocks,
     /// The last F stood in a roughing block: whether it holds behind that the manual leaves open.
@@ -150,6 +171,9 @@ impl<'b, 'a> Writer<'b, 'a> {
             TurningCycle::RoughTurn | TurningCycle::RoughFace | TurningCycle::RoughPattern => {
                 self.rough(at, cycle, span)
             }
+            TurningCycle::FinishRoutine
+            | TurningCycle::RoughTurnRoutine(_)
+            | TurningCycle::RoughFaceRoutine(_) => self.routine(at, cycle, span),
             TurningCycle::PeckFace | TurningCycle::PeckGroove => {
                 self.pecks(at, cycle, span)?;
                 Ok(at + 1)

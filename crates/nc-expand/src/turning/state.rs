@@ -1,6 +1,6 @@
 //! What has to be known of a lathe's program between two blocks.
 
-use nc_syntax::dialect::{Action, Dialect, Turning, TurningCycle};
+use nc_syntax::dialect::{Action, Dialect, PlaneCode, Turning, TurningCycle};
 use nc_syntax::{ItemKind, Number};
 use units::decimal::Decimal;
 
@@ -33,6 +33,12 @@ pub(super) struct State {
     pub(super) at: [Option<i64>; 2],
     /// G41 or G42 is in force.
     pub(super) compensated: bool,
+    /// G18 is in force.
+    pub(super) in_zx: bool,
+    /// G93 is in force.
+    pub(super) inverse_time: bool,
+    /// G90.1 is in force.
+    pub(super) centres_absolute: bool,
     /// The last F, with its point or without.
     pub(super) feed: Option<Number>,
     /// U and W are increments.
@@ -50,6 +56,9 @@ impl State {
             diameters: turning.diameters,
             at: [None; 2],
             compensated: false,
+            in_zx: false,
+            inverse_time: false,
+            centres_absolute: false,
             feed: None,
             increments: turning.increments,
             offset_in_t: turning.offset_in_t,
@@ -98,7 +107,11 @@ impl State {
             Action::LimitOrPreset if !with_places => return false,
             // The words of its block are places from its zero already.
             Action::WorkOffset(_) | Action::WorkOffsetNumbered => self.moves_frame(),
-            Action::Plane(_) => {}
+            Action::Plane(plane) => self.in_zx = *plane == PlaneCode::Zx,
+            Action::FeedInverseTime => self.inverse_time = true,
+            Action::FeedPerMinute | Action::FeedPerRevolution => self.inverse_time = false,
+            Action::ArcCentresAbsolute => self.centres_absolute = true,
+            Action::ArcCentresIncremental => self.centres_absolute = false,
             _ if action.keeps_places() => {}
             // Whatever moves the frame, or the axes by rules of the control; a single pass ends with it.
             _ => {

@@ -1,0 +1,449 @@
+//! Words of drawings on a lathe: corners (`,R2.`, `,C1.`) and angles (`,A160.`), written out as lines and arcs.
+//!
+//! B-64304EN-1, "Direct drawing dimension programming", in the plane of radius and Z. `,A` is the angle of a line from +Z
+//! towards +X; with X or Z it gives the other one, alone it needs a next line with `,A`, X and Z, and both meet where their
+//! lines cross. `,R` rounds the corner to the next line, `,C` cuts it off by as much along each. Lines alone (G1) have
+//! them, between the blocks that P and Q of a cycle name too. What is written has six decimals.
+//!
+//! A cycle leaves the tool where it stood: so does the contour behind a roughing cycle, whose blocks the control passes over.
+
+use diagnostic::{Text, both};
+use nc_syntax::dialect::CornerForm;
+use nc_syntax::dialect::{Action, TurningCycle};
+use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value};
+use units::math;
+
+use super::contour::Point;
+use super::state::{Motion, State};
+use super::{AXES, Fault, MILLION, Spot, Written, cycle_of};
+use crate::codes;
+use crate::output::{Output, Style, word};
+use crate::shorthand::{Shape, Words, from, shown};
+
+/// Two lines whose directions differ by less have no certain crossing, rad.
+const PARALLEL_RAD: f64 = 1e-3;
+
+/// The program with its drawing words written out; `None` where it has none.
+pub(super) fn write_out(text: &[u8], dialect: &Dialect) -> Result<Option<Written>, Fault> {
+    let Some(turning) = &dialect.turning else { return Ok(None) };
+    let (mut reader, mut block, mut blocks) = (Reader::new(text, dialect), Block::default(), Vec::new());
+    while reader.next(&mut block) {
+        blocks.push(block.clone());
+    }
+    if !dialect.flow.corner_words || !blocks.iter().any(|block| commas(block).next().is_some()) {
+        return Ok(None);
+    }
+    let mut drawing = Drawing {
+        dialect,
+        blocks: &blocks,
+        out: Output::new(dialect, text),
+        state: State::initial(dialect, turning),
+        contour: None,
+    };
+    let mut at = 0;
+    while at < blocks.len() {
+        at = drawing.block(at)?;
+    }
+    Ok(Some((drawing.out.text, drawing.out.segments)))
+}
+
+fn commas<'b>(block: &'b Block<'_>) -> impl Iterator<Item = &'b Item> {
+    block.items.iter().filter(|item| matches!(item.kind, ItemKind::CommaWord { .. }))
+}
+
+/// The blocks of a contour that follow.
+#[derive(Clone, Copy)]
+struct Ahead {
+    /// N of the last one.
+    last: i64,
+    /// Where the tool stands behind it.
+    stands: [Option<i64>; 2],
+}
+
+struct Drawing<'b, 'a> {
+    dialect: &'b Dialect,
+    blocks: &'b [Block<'a>],
+    out: Output,
+    state: State,
+    contour: Option<Ahead>,
+}
+
+/// A corner to the next line.
+#[derive(Clone, Copy)]
+struct Corner {
+    round: bool,
+    size: f64,
+    span: Span,
+}
+
+/// A line of a drawing, radius and Z.
+#[derive(Clone, Copy)]
+struct Line {
+    block: usize,
+    to: Point,
+    angle_rad: Option<f64>,
+    /// It leads to where its line meets the next one.
+    open: bool,
+    corner: Option<Corner>,
+}
+
+impl<'b, 'a> Drawing<'b, 'a> {
+    fn words(&self, at: usize) -> Words<'b, 'a> {
+        Words { block: &self.blocks[at], dialect: self.dialect }
+    }
+
+    /// Writes a block, or the lines that it begins; says which block is next.
+    fn block(&mut self, at: usize) -> Result<usize, Fault> {
+        let words = self.words(at);
+        if let Some(comma) = commas(words.block).next() {
+            return self.lines(at, comma.span);
+        }
+        self.step(&words);
+        self.out.copy(words.block.bytes, from(words.block));
+        Ok(at + 1)
+    }
+
+    /// After a block as it stands.
+    fn step(&mut self, words: &Words<'_, '_>) {
+        let stood = self.state.at;
+        let repeats = matches!(self.state.motion, Motion::Pass(_)) && !self.state.owns_motion(words);
+        let cycle = cycle_of(words);
+        self.state.step(words);
+        if let Some((cycle, _)) = cycle {
+            self.state.at = stood;
+            let passes =
+                matches!(cycle, TurningCycle::TurnPass | TurningCycle::ThreadPass | TurningCycle::FacePass);
+            self.state.motion = if passes { Motion::Pass(cycle) } else { Motion::Unknown };
+            let roughs = matches!(
+                cycle,
+                TurningCycle::RoughTurn | TurningCycle::RoughFace | TurningCycle::RoughPattern
+            );
+            let last = words.number(b'Q').and_then(|(number, _)| number.integer());
+            self.contour = last.filter(|_| roughs).map(|last| Ahead { last, stands: stood });
+        } else if repeats {
+            self.state.at = stood;
+        }
+        self.leave_contour(words);
+    }
+
+    fn leave_contour(&mut self, words: &Words<'_, '_>) {
+        if self.ends_contour(words)
+            && let Some(ahead) = self.contour.take()
+        {
+            self.state.at = ahead.stands;
+        }
+    }
+
+    fn ends_contour(&self, words: &Words<'_, '_>) -> bool {
+        let number = words.number(b'N').and_then(|(number, _)| number.integer());
+        self.contour.is_some_and(|ahead| number == Some(ahead.last))
+    }
+
+    fn scale(&self) -> [f64; 2] {
+        [if self.state.diameters == Some(true) { 0.5 / MILLION } else { 1.0 / MILLION }, 1.0 / MILLION]
+    }
+
+    fn plane(&self, spot: Spot) -> Point {
+        let scale = self.scale();
+        [0, 1].map(|k| spot[k] as f64 * scale[k])
+    }
+
+    fn spot(&self, point: Point) -> Spot {
+        let scale = self.scale();
+        [0, 1].map(|k| units::decimal::round(point[k] / scale[k]))
+    }
+
+    /// Lines that hang on one another, from the block `first` on.
+    fn lines(&mut self, first: usize, comma: Span) -> Result<usize, Fault> {
+        let words = self.words(first);
+        let [Some(x), Some(z)] = self.state.at else {
+            return Err(refusal(
+                &words,
+                comma,
+                both!(
+                    "where the line starts is not known: name X and Z before it",
+                    "неизвестно, откуда начинается прямая: назовите до неё X и Z"
+                ),
+            ));
+        };
+        if self.state.diameters.is_none() {
+            return Err(refusal(
+                &words,
+                comma,
+                both!("whether X is a diameter or a radius is not said", "не сказано, диаметр X или радиус"),
+            ));
+        }
+        let start = self.plane([x, z]);
+        let mut lines: Vec<Line> = Vec::new();
+        let mut at = first;
+        loop {
+            if at >= self.blocks.len() {
+                return Err(refusal(
+                    &words,
+                    comma,
+                    both!("a next line was expected behind it", "за ним ожидалась следующая прямая"),
+                ));
+            }
+            let words = self.words(at);
+            at += 1;
+            if !words.block.acts() {
+                continue;
+            }
+            let line = self.line(&words, at - 1, start, &lines)?;
+            if let Some(before) = lines.last_mut().filter(|before| before.open) {
+                // `open` has an angle, and so has the line behind it.
+                let stands = before.to;
+                before.to = crossing(stands, before.angle_rad, line.to, line.angle_rad).ok_or_else(|| {
+                    refusal(
+                        &words,
+                        words.whole(),
+                        both!("two lines that do not cross", "две прямые, которые не пересекаются"),
+                    )
+                })?;
+                before.open = false;
+            }
+            let waits = line.open || line.corner.is_some();
+            lines.push(line);
+            let ends = self.ends_contour(&words);
+            if waits && ends {
+                return Err(refusal(
+                    &words,
+                    words.whole(),
+                    both!("a corner in the last block of a contour", "сопряжение в последнем кадре контура"),
+                ));
+            }
+            if !waits {
+                break;
+            }
+        }
+        self.write(start, &lines, first, at)?;
+        let last = self.words(at - 1);
+        self.leave_contour(&last);
+        Ok(at)
+    }
+
+    /// One line, with what holds for its block.
+    fn line(
+        &mut self,
+        words: &Words<'_, '_>,
+        block: usize,
+        start: Point,
+        lines: &[Line],
+    ) -> Result<Line, Fault> {
+        let span = commas(words.block).next().map_or_else(|| words.whole(), |item| item.span);
+        let refuse = |label: Text| Err(refusal(words, span, label));
+        let before = lines.last();
+        let stands = before.map_or(start, |line| line.to);
+        let open_before = before.is_some_and(|line| line.open);
+        self.state.at = self.spot(stands).map(Some);
+        let fits = |action: &Action| {
+            matches!(
+                action,
+                Action::Line
+                    | Action::FeedPerMinute
+                    | Action::FeedPerRevolution
+                    | Action::Absolute
+                    | Action::Incremental
+                    | Action::Pass { takes_words: false }
+            )
+        };
+        let other = words.actions().any(|(action, _)| !fits(action));
+        self.state.step(words);
+        if self.state.motion != Motion::Line || other {
+            return refuse(both!(
+                "G1 was expected on both sides, and no other code in the block",
+                "по обе стороны ожидалось G1 и никаких других функций в кадре"
+            ));
+        }
+        if words.skipped() || b"IKRT".iter().any(|letter| words.number(*letter).is_some()) {
+            return refuse(both!(
+                "block delete, T, or a word of an arc stands beside it",
+                "рядом с ним пропуск кадра, T или слово дуги"
+            ));
+        }
+        let (mut angle_rad, mut corner) = (None, None);
+        for item in commas(words.block) {
+            let ItemKind::CommaWord { letter, value: Value::Number(number) } = item.kind else {
+                return refuse(both!("a number was expected", "ожидалось число"));
+            };
+            let size = self.dialect.numbers.length(number, self.state.inch).to_f64();
+            match letter {
+                b'A' if angle_rad.is_none() => angle_rad = Some(number.to_f64().to_radians()),
+                b'R' | b'C' if corner.is_none() && size > 0.0 => {
+                    corner = Some(Corner { round: letter == b'R', size, span: item.span });
+                }
+                _ => {
+                    return refuse(both!(
+                        "one angle `,A` and one corner, `,R` or `,C` above zero, can be written out",
+                        "развернуть можно один угол `,A` и одно сопряжение: `,R` или `,C` больше нуля"
+                    ));
+                }
+            }
+        }
+        let named = [[b'X', b'U'], [b'Z', b'W']]
+            .map(|letters| letters.iter().any(|letter| words.number(*letter).is_some()));
+        let increments = b"UW".iter().any(|letter| words.number(*letter).is_some()) || !self.state.absolute;
+        let [Some(x), Some(z)] = self.state.at else {
+            return refuse(both!("where it leads is not known", "неизвестно, куда она ведёт"));
+        };
+        let place = self.plane([x, z]);
+        let line = |to: Point, open: bool| Ok(Line { block, to, angle_rad, open, corner });
+        if open_before {
+            return match (angle_rad, named) {
+                (Some(_), [true, true]) if !increments => line(place, false),
+                _ => refuse(both!(
+                    "behind a line with an angle alone, `,A`, X and Z were expected",
+                    "за прямой, заданной одним углом, ожидались `,A`, X и Z"
+                )),
+            };
+        }
+        match (angle_rad, named) {
+            (None, [false, false]) => refuse(both!("a line was expected", "ожидалась прямая")),
+            (None, _) => line(place, false),
+            (Some(_), [true, true]) => refuse(both!(
+                "an angle beside X and Z: one of the three is too many",
+                "угол рядом с X и Z: одно из трёх лишнее"
+            )),
+            (Some(_), [false, false]) => line(stands, true),
+            (Some(angle), [x_named, _]) => {
+                let (sin, cos) = math::sin_cos(angle);
+                let (given, other) = if x_named { (0, 1) } else { (1, 0) };
+                let direction = [sin, cos];
+                if direction[given].abs() < PARALLEL_RAD {
+                    return refuse(both!(
+                        "at this angle the line never gets to that place",
+                        "под этим углом прямая туда не приходит"
+                    ));
+                }
+                let mut to = place;
+                to[other] =
+                    stands[other] + (place[given] - stands[given]) / direction[given] * direction[other];
+                line(to, false)
+            }
+        }
+    }
+
+    /// Writes the lines and their corners, and the blocks between them.
+    fn write(&mut self, start: Point, lines: &[Line], first: usize, behind: usize) -> Result<(), Fault> {
+        let mut stands = start;
+        let mut says_line = false;
+        let mut lines_ahead = lines.iter().zip(lines.iter().skip(1).map(Some).chain([None])).peekable();
+        for index in first..behind {
+            let block = &self.blocks[index];
+            let Some((line, next)) = lines_ahead.next_if(|(line, _)| line.block == index) else {
+                self.out.copy(block.bytes, from(block));
+                continue;
+            };
+            let words = self.words(index);
+            let (Some(corner), Some(next)) = (line.corner, next) else {
+                self.replaced(block, line.to, says_line);
+                (stands, says_line) = (line.to, false);
+                continue;
+            };
+            // First Z, then X: so turns the plane of G18.
+            let turn = |p: Point| [p[1], p[0]];
+            let form = if corner.round { CornerForm::Round } else { CornerForm::Chamfer };
+            let shape = Shape::of(turn(stands), turn(line.to), turn(next.to), form, corner.size);
+            let Some(shape) = shape else {
+                return Err(refusal(
+                    &words,
+                    corner.span,
+                    both!(
+                        "the lines are too short for it, or go straight on or back",
+                        "прямые для него слишком коротки или идут прямо вперёд или назад"
+                    ),
+                ));
+            };
+            let [begins, ends, centre] = [shape.from, shape.to, shape.centre].map(turn);
+            self.replaced(block, begins, says_line);
+            let mut text = if !corner.round {
+                b"G1".to_vec()
+            } else if shape.left {
+                b"G3".to_vec()
+            } else {
+                b"G2".to_vec()
+            };
+            self.place(&mut text, ends);
+            if corner.round {
+                let here = self.plane(self.spot(begins));
+                for (letter, k) in [(b'I', 0), (b'K', 1)] {
+                    text.push(b' ');
+                    let _ = word(&mut text, letter, centre[k] - here[k], Style::Decimals(6));
+                }
+            }
+            self.out.line(&text, from(block));
+            (stands, says_line) = (ends, true);
+        }
+        self.state.at = self.spot(stands).map(Some);
+        Ok(())
+    }
+
+    fn place(&self, text: &mut Vec<u8>, point: Point) {
+        let spot = self.spot(point);
+        for axis in 0..2 {
+            text.push(b' ');
+            let _ = word(text, AXES[axis], spot[axis] as f64 / MILLION, Style::Decimals(6));
+        }
+    }
+
+    /// The block as a comment, then the block with a place instead of its own words.
+    fn replaced(&mut self, block: &Block<'_>, to: Point, says_line: bool) {
+        self.out.comment(shown(block), from(block));
+        let own = |item: &&Item| match item.kind {
+            ItemKind::CommaWord { .. } | ItemKind::Word { letter: b'X' | b'Z' | b'U' | b'W', .. } => true,
+            ItemKind::Word { letter: b'G', value: Value::Number(_) } => {
+                let words = Words { block, dialect: self.dialect };
+                words.actions().any(|(action, span)| span == item.span && *action == Action::Line)
+            }
+            _ => false,
+        };
+        let is_line =
+            block.items.iter().any(|item| own(&item) && block.text(item.span)[0].eq_ignore_ascii_case(&b'G'));
+        let kept: Vec<&[u8]> =
+            block.items.iter().filter(|item| !own(item)).map(|item| block.text(item.span)).collect();
+        let (number, rest): (Vec<&[u8]>, Vec<&[u8]>) =
+            kept.into_iter().partition(|text| text[0].eq_ignore_ascii_case(&b'N'));
+        let mut text = number.join(&b' ');
+        if is_line || says_line {
+            if !text.is_empty() {
+                text.push(b' ');
+            }
+            text.extend_from_slice(b"G1");
+        }
+        self.place(&mut text, to);
+        let mut text = text.trim_ascii().to_vec();
+        for part in rest {
+            text.push(b' ');
+            text.extend_from_slice(part);
+        }
+        self.out.line(&text, from(block));
+    }
+}
+
+/// Where two lines through points under angles cross.
+fn crossing(a: Point, a_rad: Option<f64>, b: Point, b_rad: Option<f64>) -> Option<Point> {
+    let direction = |angle: f64| {
+        let (sin, cos) = math::sin_cos(angle);
+        [sin, cos]
+    };
+    let (u, v) = (direction(a_rad?), direction(b_rad?));
+    let sine = u[0] * v[1] - u[1] * v[0];
+    if sine.abs() < PARALLEL_RAD {
+        return None;
+    }
+    let share = ((b[0] - a[0]) * v[1] - (b[1] - a[1]) * v[0]) / sine;
+    Some([a[0] + share * u[0], a[1] + share * u[1]])
+}
+
+fn refusal(words: &Words<'_, '_>, span: Span, label: Text) -> Fault {
+    words.fault(
+        codes::SHORTHAND,
+        span,
+        both!("a drawing's word that cannot be written out", "слово чертежа, которое нельзя развернуть"),
+        label,
+        both!(
+            "post roundings as arcs, chamfers and slopes as lines with X and Z",
+            "выводите скругления дугами, фаски и уклоны прямыми с X и Z"
+        ),
+    )
+}

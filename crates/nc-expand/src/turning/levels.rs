@@ -1,0 +1,229 @@
+//! Passes of LinuxCNC's G71 and G72, in the frame of a laid contour ([`super::profile`]).
+//!
+//! Levels lie whole depths below the start. Each goes to where the diving piece reaches it, along the first axis
+//! to the contour, off by the escape in both axes, back by as much, and down again. Behind the lowest the contour itself
+//! is cut, up to where it dives again: there a pocket begins, which is cut likewise. Without pockets only what rises is
+//! cut; pockets alone begin at the bottom of the first dive.
+
+use nc_syntax::dialect::Pockets;
+
+use super::contour::Point;
+use super::profile::{MOST, Misfit, Round, SAME, SLACK, Segment, Stroke, length, sub};
+
+/// Passes of a depth down to a contour, the first piece of which dives.
+pub(super) fn cut(
+    segments: &[Segment],
+    pockets: Pockets,
+    depth: f64,
+    escape: f64,
+) -> Result<Vec<Stroke>, Misfit> {
+    let at = segments[0].start;
+    let mut cut = Cut { segments, at, strokes: vec![Stroke::Rapid(at)], depth, escape };
+    cut.down(pockets)?;
+    Ok(cut.strokes)
+}
+
+/// Passes on their way.
+struct Cut<'p> {
+    segments: &'p [Segment],
+    at: Point,
+    strokes: Vec<Stroke>,
+    depth: f64,
+    escape: f64,
+}
+
+impl Cut<'_> {
+    fn feed(&mut self, to: Point) {
+        self.strokes.push(Stroke::Line(to));
+        self.at = to;
+    }
+
+    fn arc(&mut self, round: Round, to: Point) {
+        self.strokes.push(Stroke::Arc { counter: round.counter, centre: round.centre, end: to });
+        self.at = to;
+    }
+
+    /// Where an arc that rises from its lowest place, or to its highest, ends: at the end, or at the top.
+    fn top(segment: &Segment, round: Round) -> Point {
+        if segment.end[0] < round.centre[0] {
+            [round.centre[0], round.centre[1] + length(sub(segment.start, round.centre))]
+        } else {
+            segment.end
+        }
+    }
+
+    /// Down a piece to a level, or its end; false where it does not dive.
+    fn dive(&mut self, k: usize, level: f64) -> Result<bool, Misfit> {
+        let segment = self.segments[k];
+        let Some(round) = segment.round else {
+            if segment.start[1] <= segment.end[1] {
+                return Ok(false);
+            }
+            let to = if level < segment.end[1] {
+                segment.end
+            } else {
+                let place = segment.at_level(level);
+                [*place.first().ok_or(Misfit::Apart)?, level]
+            };
+            if k == 0 {
+                self.strokes.push(Stroke::Rapid(to));
+                self.at = to;
+            } else {
+                self.feed(to);
+            }
+            return Ok(true);
+        };
+        if length(sub(self.at, segment.end)) < SLACK {
+            return Ok(true);
+        }
+        let beyond = self.at[0] - round.centre[0];
+        if if round.counter { beyond > 0.0 } else { beyond <= 0.0 } {
+            return Ok(false);
+        }
+        let places = segment.at_level(level);
+        let reached = if round.counter {
+            places.last().filter(|place| **place <= round.centre[0])
+        } else {
+            places.first().filter(|place| **place >= round.centre[0])
+        };
+        let to = reached.map_or(segment.end, |place| [*place, level]);
+        if reached.is_none() || length(sub(self.at, to)) > SLACK {
+            self.arc(round, to);
+        }
+        self.at = to;
+        Ok(true)
+    }
+
+    /// Up a piece; false where it does not rise to its end.
+    fn climb(&mut self, k: usize) -> Result<bool, Misfit> {
+        let segment = self.segments[k];
+        let Some(round) = segment.round else {
+            if segment.end[1] < segment.start[1] {
+                return Ok(false);
+            }
+            if length(sub(self.at, segment.start)) > SAME {
+                return Err(Misfit::Apart);
+            }
+            self.feed(segment.end);
+            return Ok(true);
+        };
+        let beyond = self.at[0] - round.centre[0];
+        if if round.counter { beyond < 0.0 } else { beyond > 0.0 } {
+            return Ok(false);
+        }
+        let to = if round.counter { Self::top(&segment, round) } else { segment.end };
+        if length(sub(self.at, to)) > SLACK {
+            self.arc(round, to);
+        }
+        self.at = to;
+        Ok(!round.counter)
+    }
+
+    /// Over to a piece at the height where the tool stands, and up it.
+    fn climb_over(&mut self, k: usize) {
+        let segment = self.segments[k];
+        let places = segment.at_level(self.at[1]);
+        let Some(round) = segment.round else {
+            if segment.end[1] >= segment.start[1]
+                && let Some(place) = places.first()
+            {
+                self.feed([*place, self.at[1]]);
+                self.feed(segment.end);
+            }
+            return;
+        };
+        let (place, to) = if round.counter {
+            (places.first().filter(|place| **place >= round.centre[0]), Self::top(&segment, round))
+        } else {
+            (places.last().filter(|place| **place <= round.centre[0]), segment.end)
+        };
+        let Some(place) = place else { return };
+        self.feed([*place, self.at[1]]);
+        if length(sub(self.at, to)) > SLACK {
+            self.arc(round, to);
+        }
+        self.at = to;
+    }
+
+    /// Passes down, pocket by pocket, and the contour behind them.
+    fn down(&mut self, mut pockets: Pockets) -> Result<(), Misfit> {
+        let highest = self.segments[0].start[1];
+        let lowest = self.segments.iter().map(|segment| segment.end[1]).fold(highest, f64::min);
+        if (highest - lowest) / self.depth > MOST as f64 {
+            return Err(Misfit::Endless);
+        }
+        let (mut level, mut k, mut turns) = (highest, 0, 0);
+        let mut origin = highest;
+        if pockets == Pockets::Only {
+            while k < self.segments.len() && self.dive(k, -1e9)? {
+                k += 1;
+            }
+            (pockets, origin) = (Pockets::All, self.at[1]);
+        }
+        while k < self.segments.len() {
+            turns += 1;
+            if turns > MOST {
+                return Err(Misfit::Endless);
+            }
+            while level > self.at[1] {
+                level -= self.depth;
+            }
+            if !self.dive(k, level)? {
+                if pockets == Pockets::Leave {
+                    (k..self.segments.len()).for_each(|k| self.climb_over(k));
+                    return Ok(());
+                }
+                while k < self.segments.len() && self.climb(k)? {
+                    k += 1;
+                }
+                // Where pockets alone are cut, levels count from the highest place so far.
+                origin = origin.max(self.at[1]);
+                level = origin;
+                continue;
+            }
+            if self.at[1] > level || (self.at[1] - level).abs() > SAME {
+                k += 1;
+                continue;
+            }
+            match self.pass(k)? {
+                Pass::Cut => level -= self.depth,
+                Pass::Met => k += 1,
+            }
+        }
+        Ok(())
+    }
+
+    /// One pass at the height where the tool stands.
+    fn pass(&mut self, k: usize) -> Result<Pass, Misfit> {
+        let here = self.at;
+        for ahead in k..self.segments.len() {
+            let places = self.segments[ahead].at_level(here[1]);
+            // An arc that dives may end the pass too.
+            let Some(to) = (if ahead == k { places.last() } else { places.first() }).copied() else {
+                continue;
+            };
+            let distance = (to - here[0]).abs();
+            if distance < SAME {
+                if ahead == k {
+                    continue;
+                }
+                return Ok(Pass::Met);
+            }
+            let off = self.escape * (0.5 * distance / self.escape).min(1.0);
+            self.feed([to, here[1]]);
+            self.strokes.push(Stroke::Rapid([to + off, here[1] + off]));
+            self.strokes.push(Stroke::Rapid([here[0] - off, here[1] + off]));
+            self.strokes.push(if k == 0 { Stroke::Rapid(here) } else { Stroke::Line(here) });
+            self.at = here;
+            return Ok(Pass::Cut);
+        }
+        Err(Misfit::Endless)
+    }
+}
+
+/// What became of a pass.
+enum Pass {
+    Cut,
+    /// Another piece begins where it would start.
+    Met,
+}

@@ -1,0 +1,358 @@
+//! Contours of LinuxCNC: G70, G71, G71.1, G71.2, G72, G72.1, G72.2 with a subroutine as their contour.
+//!
+//! G-code reference, "G70 Lathe finishing cycle", "G71 G72 Lathe roughing cycles"; what it leaves open is told by `rs274` of
+//! 2.9. Q is the number of the subroutine, X and Z where the cycle starts (else where the tool stands). G71, G72: D is
+//! the distance that stays, I the depth of a pass, R the escape; .1 cuts no pockets, .2 nothing but pockets. G70: P passes
+//! from D down to E off the contour. All of them are radii. The tool ends where the last move ends.
+//!
+//! The interpreter reads the blocks of the subroutine and executes none: of their codes it takes G0 to G3, and F, S, M and T
+//! do nothing. [`crate::run`] puts those blocks behind the block of the cycle, its variables and loops worked out.
+
+use std::ops::Range;
+
+use diagnostic::{Text, both};
+use nc_syntax::dialect::{Action, TurningCycle};
+use nc_syntax::{ItemKind, Span, Value};
+
+use super::emit::Code;
+use super::profile::{Misfit, Profile, Round, Segment, Stroke};
+use super::state::Motion;
+use super::{Fault, MILLION, Spot, Writer};
+use crate::codes;
+use crate::output::{Style, word};
+use crate::shorthand::{Words, from, shown};
+
+/// Passes of G70; more are a wrong P.
+const MOST_PASSES: i64 = 1000;
+/// So much must the radius of an arc be above half its chord: at less the interpreter may find no centre.
+const HALF_CIRCLE: f64 = 1e-9;
+
+impl Writer<'_, '_> {
+    /// Writes the cycle, and says which block is next.
+    pub(super) fn routine(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<usize, Fault> {
+        let words = self.words(at);
+        let refuse =
+            |message: Text, label: Text, help: Text| Err(words.cycle_fault(span, message, label, help));
+        self.require_diameters(&words, span)?;
+        for letter in *b"UW" {
+            if let Some((_, span)) = words.number(letter) {
+                return Err(words.cycle_fault(
+                    span,
+                    both!("{} beside this cycle", "{} рядом с этим циклом", letter as char),
+                    both!(
+                        "the interpreter takes it for an axis that a lathe does not have",
+                        "интерпретатор принимает его за ось, которой у токарного станка нет"
+                    ),
+                    both!("write the distance that stays as D", "напишите остающийся припуск словом D"),
+                ));
+            }
+        }
+        if !self.state.absolute || !self.state.in_zx || self.state.inverse_time || self.state.centres_absolute
+        {
+            return refuse(
+                both!("a cycle outside G18 G90 G91.1 and G94 or G95", "цикл вне G18 G90 G91.1 и G94 или G95"),
+                both!(
+                    "the interpreter starts in G17, and takes it in G18 and G90 alone",
+                    "интерпретатор начинает с G17, а цикл принимает только при G18 и G90"
+                ),
+                both!("write `G18 G90 G91.1` in a block before it", "напишите кадром раньше `G18 G90 G91.1`"),
+            );
+        }
+        let named = *b"XZ";
+        let both_named = named.iter().all(|letter| words.number(*letter).is_some());
+        let standing = if both_named { [i64::MAX; 2] } else { self.standing(&words, span)? };
+        let start = match self.state.target(&words) {
+            [Some(x), Some(z)] => [x, z],
+            _ => self.standing(&words, span)?,
+        };
+        let Some(blocks) = self.blocks_behind(at) else {
+            let number = words.number(b'Q').map(|(number, _)| number.to_f64());
+            return Err(words.fault(
+                codes::CONTOUR,
+                words.number(b'Q').map_or(span, |(_, span)| span),
+                match number {
+                    Some(number) => both!("no subroutine O{number} before this block", "до этого кадра нет подпрограммы O{number}"),
+                    None => both!("a cycle without Q", "цикл без Q"),
+                },
+                both!("Q is the number of the contour's subroutine", "Q — номер подпрограммы контура"),
+                both!(
+                    "write the contour before the cycle, as `O100 SUB` … `O100 ENDSUB`, and its number as Q100",
+                    "напишите контур до цикла, как `O100 SUB` … `O100 ENDSUB`, а его номер — как Q100"
+                ),
+            ));
+        };
+        let pieces = self.pieces(&words, start, blocks.clone())?;
+        let own: &[u8] = if cycle == TurningCycle::FinishRoutine { b"XZQDEP" } else { b"XZQDIR" };
+        let length = |letter: u8, usual: f64| {
+            self.state.length(&words, letter).map_or(usual, |value| value as f64 / MILLION)
+        };
+        let passes = words.number(b'P').map_or(Some(1), |(number, _)| number.integer());
+        let passes = passes.filter(|passes| (1..=MOST_PASSES).contains(passes));
+        let (distance, depth, escape) = (length(b'D', 0.0), length(b'I', 1.0), length(b'R', 0.5));
+        let Some(passes) = passes.filter(|_| distance >= 0.0 && depth > 0.0 && escape >= 0.0) else {
+            return refuse(
+                both!(
+                    "a distance, a depth or a number of passes that is none",
+                    "неверный припуск, глубина или число проходов"
+                ),
+                both!(
+                    "expected D and R from 0, I above 0, P from 1 to 1000",
+                    "ожидались D и R от 0, I больше 0, P от 1 до 1000"
+                ),
+                both!("correct these words", "исправьте эти слова"),
+            );
+        };
+        let profile = Profile::new(&pieces);
+        let strokes = match cycle {
+            TurningCycle::RoughTurnRoutine(pockets) => profile.rough(false, pockets, distance, depth, escape),
+            TurningCycle::RoughFaceRoutine(pockets) => profile.rough(true, pockets, distance, depth, escape),
+            _ => profile.finish(distance, length(b'E', 0.0), passes as u32),
+        };
+        let strokes = strokes.map_err(|misfit| misfit.told(&words, span))?;
+        let mut moves = self.begin(&words, standing, own)?;
+        for stroke in strokes {
+            let (code, to, centre) = match stroke {
+                Stroke::Rapid(to) => (Code::Rapid, to, None),
+                Stroke::Line(to) => (Code::Line, to, None),
+                Stroke::Arc { counter: false, centre, end } => (Code::Clockwise, end, Some(centre)),
+                Stroke::Arc { counter: true, centre, end } => (Code::CounterClockwise, end, Some(centre)),
+            };
+            let to = self.spot(to);
+            let mut round = Vec::new();
+            if let Some(centre) = centre {
+                if to == moves.at() {
+                    continue;
+                }
+                let here = self.plane(moves.at());
+                let _ = word(&mut round, b'I', centre[0] - here[0], Style::Decimals(6));
+                round.push(b' ');
+                let _ = word(&mut round, b'K', centre[1] - here[1], Style::Decimals(6));
+            }
+            self.go_with(&mut moves, code, to, &round);
+        }
+        if let Some((feed, _)) = words.number(b'F') {
+            (self.state.feed, self.unsure_feed) = (Some(feed), false);
+        }
+        self.end(moves);
+        self.state.motion = Motion::Unknown;
+        for index in blocks.clone() {
+            let block = &self.blocks[index];
+            if block.acts() {
+                self.out.comment(shown(block), from(block));
+            } else {
+                self.out.copy(block.bytes, from(block));
+            }
+        }
+        Ok(blocks.end)
+    }
+
+    /// The blocks of the subroutine, which stand behind the cycle's.
+    fn blocks_behind(&self, at: usize) -> Option<Range<usize>> {
+        let block = &self.blocks[at];
+        let end = block.offset + block.bytes.len() as u64;
+        let text = block.offset + block.bytes.trim_ascii_end().len() as u64;
+        let bytes = self.routines.iter().find(|range| (text..=end).contains(&range.start))?;
+        let behind = self.blocks[at + 1..].iter().take_while(|block| block.offset < bytes.end).count();
+        Some(at + 1..at + 1 + behind)
+    }
+
+    /// The contour in radius and Z; the first piece leads to it from the start.
+    fn pieces(
+        &self,
+        cycle: &Words<'_, '_>,
+        start: Spot,
+        blocks: Range<usize>,
+    ) -> Result<Vec<Segment>, Fault> {
+        let mut state = self.state.clone();
+        state.stands_at(start);
+        state.motion = Motion::Unknown;
+        let (mut at, mut pieces) = (self.plane(start), Vec::new());
+        for index in blocks {
+            let words = self.words(index);
+            let refuse = |message: Text, label: Text| Err(words.routine_fault(words.whole(), message, label));
+            words.check_routine_block()?;
+            state.step(&words);
+            let (clockwise, arc) = match state.motion {
+                Motion::Clockwise => (true, true),
+                Motion::CounterClockwise => (false, true),
+                _ => (false, false),
+            };
+            if !state.moves(&words) {
+                if arc && b"IK".iter().any(|letter| words.number(*letter).is_some()) {
+                    return refuse(
+                        both!("an arc without an end", "дуга без конечной точки"),
+                        both!(
+                            "the interpreter leaves it out of the contour",
+                            "интерпретатор не берёт её в контур"
+                        ),
+                    );
+                }
+                continue;
+            }
+            let [Some(x), Some(z)] = state.at else {
+                return refuse(
+                    both!("where the contour leads here is not known", "неизвестно, куда здесь ведёт контур"),
+                    both!("another frame, or above 400 km", "другая система координат или больше 400 км"),
+                );
+            };
+            let to = self.plane([x, z]);
+            if to == at {
+                continue;
+            }
+            if state.motion == Motion::Unknown || (arc && pieces.is_empty()) {
+                return refuse(
+                    both!("the contour does not begin with G0 or G1", "контур не начинается с G0 или G1"),
+                    both!(
+                        "its first block leads to it from the start of the cycle",
+                        "его первый кадр ведёт к нему от начала цикла"
+                    ),
+                );
+            }
+            let says_itself = words.actions().any(|(action, _)| *action == Action::ArcCounterClockwise);
+            if arc && !clockwise && !says_itself {
+                return refuse(
+                    both!("an arc without its G3", "дуга без своей G3"),
+                    both!(
+                        "in a contour the interpreter takes it for G2",
+                        "внутри контура интерпретатор принимает её за G2"
+                    ),
+                );
+            }
+            let round = if arc {
+                let radius =
+                    words.number(b'R').map(|(r, _)| words.dialect.numbers.length(r, state.inch).to_f64());
+                let half = 0.5 * units::math::hypot(to[0] - at[0], to[1] - at[1]);
+                if radius.is_some_and(|radius| radius * radius - half * half < HALF_CIRCLE || radius < 0.0) {
+                    return refuse(
+                        both!("an arc whose R is not certain", "дуга, у которой R не даёт верного центра"),
+                        both!(
+                            "its sign is not heeded, and at half a circle and below there is no centre",
+                            "знак не учитывается, а при полуокружности и меньше центра нет"
+                        ),
+                    );
+                }
+                Some(Round { centre: self.arc(&words, at, to, clockwise)?.centre(), counter: !clockwise })
+            } else {
+                None
+            };
+            pieces.push(Segment { start: at, end: to, round });
+            at = to;
+        }
+        if pieces.len() < 2 {
+            return Err(cycle.routine_fault(
+                cycle.number(b'Q').map_or_else(|| cycle.whole(), |(_, span)| span),
+                both!("the contour ends where it begins", "контур кончается там, где начинается"),
+                both!("one move only leads to it", "к нему ведёт одно движение"),
+            ));
+        }
+        Ok(pieces)
+    }
+}
+
+impl Words<'_, '_> {
+    fn routine_fault(&self, span: Span, message: Text, label: Text) -> Fault {
+        self.fault(
+            codes::CONTOUR,
+            span,
+            message,
+            label,
+            both!(
+                "correct the subroutine of the contour, or let the CAM write the moves",
+                "исправьте подпрограмму контура или выводите движения из CAM"
+            ),
+        )
+    }
+
+    /// Refuses what the interpreter reads in a contour and does not do.
+    fn check_routine_block(&self) -> Result<(), Fault> {
+        for item in &self.block.items {
+            let fits = match item.kind {
+                ItemKind::Comment | ItemKind::Name => true,
+                ItemKind::Word { letter: b'G', value: Value::Number(_) } => {
+                    let action =
+                        self.actions().find(|(_, span)| *span == item.span).map(|(action, _)| action);
+                    let motions =
+                        [Action::Rapid, Action::Line, Action::ArcClockwise, Action::ArcCounterClockwise];
+                    action.is_some_and(|action| motions.contains(action))
+                }
+                // Feed and speed are read and not executed: roughing and finishing go on with those of before.
+                ItemKind::Word { letter, value: Value::Number(_) } => b"XZIKRNFS".contains(&letter),
+                _ => false,
+            };
+            if !fits {
+                let text = String::from_utf8_lossy(self.block.text(item.span)).into_owned();
+                return Err(self.routine_fault(
+                    item.span,
+                    both!("{text} within a contour", "{text} внутри контура"),
+                    both!(
+                        "the interpreter reads the contour and executes none of its codes but G0 to G3",
+                        "интерпретатор читает контур и из его функций исполняет только G0–G3"
+                    ),
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Misfit {
+    fn told(self, words: &Words<'_, '_>, span: Span) -> Fault {
+        let (message, label) = match self {
+            Self::NotMonotone => (
+                both!(
+                    "the contour turns back along the axis of the passes",
+                    "контур возвращается назад вдоль оси проходов"
+                ),
+                both!(
+                    "G71 takes one that never turns back along Z, G72 along X, and arcs of a quarter turn at most",
+                    "G71 принимает контур, не возвращающийся по Z, G72 — по X, и дуги не больше четверти оборота"
+                ),
+            ),
+            Self::WrongSide => (
+                both!("the cycle starts on the side of the workpiece", "цикл начинается со стороны детали"),
+                both!(
+                    "the first block of the contour leads from the start down to it: X of G71, Z of G72",
+                    "первый кадр контура ведёт к нему от начала вглубь: по X для G71, по Z для G72"
+                ),
+            ),
+            Self::Distance => (
+                both!(
+                    "the contour cannot be moved off by this distance",
+                    "контур нельзя сместить на этот припуск"
+                ),
+                both!("an arc or a groove of it is narrower", "его дуга или канавка уже"),
+            ),
+            Self::Straight => (
+                both!(
+                    "two lines that go straight on, and a distance to stay",
+                    "две прямые, продолжающие друг друга, и ненулевой припуск"
+                ),
+                both!(
+                    "the interpreter finds no corner between them",
+                    "интерпретатор не находит между ними угла"
+                ),
+            ),
+            Self::Endless => (
+                both!(
+                    "passes that come to no end, or more than 20000 of them",
+                    "проходы без конца или их больше 20000"
+                ),
+                both!(
+                    "the contour has no place at some depth, or the depth is too small",
+                    "на какой-то глубине у контура нет точки, или глубина слишком мала"
+                ),
+            ),
+            Self::Apart => (
+                both!(
+                    "the contour has a place that the passes do not reach",
+                    "в контуре есть место, куда проходы не приводят"
+                ),
+                both!(
+                    "the interpreter stops here with an error",
+                    "интерпретатор здесь останавливается с ошибкой"
+                ),
+            ),
+        };
+        words.routine_fault(span, message, label)
+    }
+}

@@ -1,0 +1,129 @@
+//! Corners and angles of a lathe's drawing, worked out by hand.
+
+mod common;
+
+use common::blocks;
+use nc_expand::{Environment, Limits, expand};
+use nc_syntax::Dialect;
+
+fn dialect(diameters: Option<bool>) -> Dialect {
+    let mut dialect =
+        nc_dialect::builtin("fanuc-lathe").and_then(|dialect| dialect.in_system("A")).expect("a system");
+    dialect.turning.as_mut().expect("a lathe").diameters = diameters;
+    dialect
+}
+
+/// The lines that are no comments, behind the start; or the message.
+fn written(program: &str, diameters: Option<bool>) -> Result<Vec<String>, String> {
+    let text = format!("G0 X60. Z2.\n{program}");
+    let environment =
+        Environment { variables: &[], read_external: &common::nothing, limits: Limits::default() };
+    match expand(text.as_bytes(), &dialect(diameters), &environment) {
+        Ok(expanded) => {
+            let flat = String::from_utf8(expanded.text().to_vec()).expect("text");
+            Ok(blocks(&flat).into_iter().skip(1).map(str::to_owned).collect())
+        }
+        Err(refusal) => {
+            let diagnostic = &refusal.diagnostics[0];
+            Err(format!("{} {}", diagnostic.code.0, diagnostic.label.english()))
+        }
+    }
+}
+
+fn lines(program: &str) -> Vec<String> {
+    written(program, Some(true)).unwrap_or_else(|why| panic!("{program}\n{why}"))
+}
+
+#[test]
+fn corners_are_cut_in_radius_and_z() {
+    let wanted = [
+        "G1 X20. F0.2",
+        "X20. Z-8.",
+        "G2 X24. Z-10. I2. K0.",
+        "G1 X28. Z-10. M8",
+        "G1 X30. Z-11.",
+        "G1 X30. Z-20.",
+        "M30",
+    ];
+    assert_eq!(lines("G1 X20. F0.2\nZ-10. ,R2.\nX30. ,C1. M8\nZ-20.\nM30\n"), wanted);
+    // U and W are increments of what the drawing says, not of where the corner ends.
+    assert_eq!(lines("G1 X20. F0.2\nW-12. ,R2.\nU10. ,C1. M8\nW-10.\nM30\n"), wanted);
+    let radii = written("G1 X10. F0.2\nZ-10. ,R2.\nX15.\n", Some(false)).expect("radii");
+    assert_eq!(radii[1..], ["X10. Z-8.", "G2 X12. Z-10. I2. K0.", "G1 X15. Z-10."]);
+}
+
+#[test]
+fn angles_count_from_z_towards_x() {
+    // 17 of radius at 160 degrees: 17 / tan(160) = -46.707116.
+    let slope = lines("G1 X20. Z0. F0.2\nX54. ,A160.\nZ-60.\n");
+    assert_eq!(slope, ["G1 X20. Z0. F0.2", "X54. Z-46.707116", "Z-60."]);
+    assert_eq!(lines("G1 X20. Z0. F0.2\nX54. ,A-20.\nZ-60.\n"), slope);
+    // The cylinder meets the cone of 45 degrees where its radius is 10: Z-20.
+    let met = lines("G1 X20. Z0. F0.2\n,A180.\nX40. Z-30. ,A135.\nX50.\n");
+    assert_eq!(met[1..], ["X20. Z-20.", "X40. Z-30.", "X50."]);
+    // 5 / tan(67.5) = 2.071068 along both.
+    let round = lines("G1 X20. Z0. F0.2\n,A180. ,R5.\n(between)\nX40. Z-30. ,A135.\nX50.\n");
+    assert_eq!(
+        round[1..],
+        ["X20. Z-17.928932", "G2 X22.928932 Z-21.464466 I5. K0.", "G1 X40. Z-30.", "X50."]
+    );
+}
+
+#[test]
+fn a_contour_of_a_cycle_has_them_too() {
+    let program = |last: &str| {
+        format!(
+            "G71 U5. R0.5\nG71 P10 Q20 U0. W0. F0.2\nN10 G0 X20.\nG1 Z-10. ,R2.\n{last}\nG1 X50. ,C1.\nZ-5.\n"
+        )
+    };
+    let written_out = lines(&program("N20 X40."));
+    let finish = ["G0 X20. Z2.", "G1 Z-8.", "G2 X24. Z-10. I2. K0.", "G1 X40.", "G0 X60. Z2."];
+    let at = written_out.iter().position(|line| line.starts_with("G2")).expect("an arc") - 2;
+    assert_eq!(written_out[at..at + 5], finish, "{written_out:#?}");
+    // Behind it the tool stands where the cycle began: at Z2.
+    assert_eq!(written_out[at + 5..], ["G1 X52. Z2.", "G1 X50. Z1.", "G1 X50. Z-5."], "{written_out:#?}");
+    let told = written(&program("N20 X40. ,C1."), Some(true)).expect_err("no next line");
+    assert_eq!(told, "142 a corner in the last block of a contour");
+}
+
+#[test]
+fn what_is_not_certain_is_refused() {
+    let cases = [
+        (
+            "G1 X20. F0.2\nZ-10. ,R2.\nG2 X30. Z-15. R5.\n",
+            "142 G1 was expected on both sides, and no other code in the block",
+        ),
+        (
+            "G1 X20. F0.2\nZ-10. ,R2.\nZ-20.\n",
+            "142 the lines are too short for it, or go straight on or back",
+        ),
+        (
+            "G1 X20. F0.2\nZ-10. ,R20.\nX30.\n",
+            "142 the lines are too short for it, or go straight on or back",
+        ),
+        (
+            "G1 X20. F0.2\nX30. Z-10. ,A135.\nX40.\n",
+            "142 an angle beside X and Z: one of the three is too many",
+        ),
+        (
+            "G1 X20. F0.2\n,A180.\nX40. Z-30.\n",
+            "142 behind a line with an angle alone, `,A`, X and Z were expected",
+        ),
+        ("G1 X20. F0.2\n,A180.\nX40. Z-30. ,A180.\n", "142 two lines that do not cross"),
+        ("G1 X20. F0.2\nX40. ,A180.\n", "142 at this angle the line never gets to that place"),
+        ("G1 X20. F0.2\nZ-10. ,R2.\n", "142 a next line was expected behind it"),
+        (
+            "G1 X20. F0.2\nZ-10. ,B2.\nX30.\n",
+            "142 one angle `,A` and one corner, `,R` or `,C` above zero, can be written out",
+        ),
+        (
+            "G54\nG28 U0.\nG1 Z-10. ,R2.\nX30.\n",
+            "142 where the line starts is not known: name X and Z before it",
+        ),
+    ];
+    for (program, why) in cases {
+        assert_eq!(written(program, Some(true)), Err(why.to_owned()), "{program}");
+    }
+    let unsaid = written("G1 X20. F0.2\nZ-10. ,R2.\nX30.\n", None);
+    assert_eq!(unsaid, Err("142 whether X is a diameter or a radius is not said".to_owned()));
+}
