@@ -1,11 +1,11 @@
 //! What the words of a grammar's `does` mean.
 
 use nc_syntax::dialect::{
-    Action, Called, CycleCode, FramePart, GCode, PlaneCode, Side, TipSwitch, TurningCycle,
+    Action, Called, CurveCode, CycleCode, FramePart, GCode, PlaneCode, Side, TipSwitch, TurningCycle,
 };
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 92] = [
+pub const ACTION_NAMES: [&str; 97] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -70,6 +70,11 @@ pub const ACTION_NAMES: [&str; 92] = [
     "speed-limit",
     "limit-or-preset",
     "thread",
+    "curve-cubic",
+    "curve-quadratic",
+    "curve-points",
+    "curve-end",
+    "curve-knots",
     "turn-pass",
     "thread-pass",
     "face-pass",
@@ -168,6 +173,11 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "speed-limit" => Action::SpeedLimit,
         "limit-or-preset" => Action::LimitOrPreset,
         "thread" => Action::Thread,
+        "curve-cubic" => Action::Curve(CurveCode::Cubic),
+        "curve-quadratic" => Action::Curve(CurveCode::Quadratic),
+        "curve-points" => Action::Curve(CurveCode::Points),
+        "curve-end" => Action::Curve(CurveCode::End),
+        "curve-knots" => Action::Curve(CurveCode::Knots),
         "turn-pass" => Action::Turning(TurningCycle::TurnPass),
         "thread-pass" => Action::Turning(TurningCycle::ThreadPass),
         "face-pass" => Action::Turning(TurningCycle::FacePass),

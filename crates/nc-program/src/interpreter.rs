@@ -7,6 +7,7 @@ use smallvec::{SmallVec, smallvec};
 use toolpath::{Frame, Kinematics, Motion, Plane};
 
 use crate::codes;
+use crate::curves::{self, CurvePart};
 use crate::delete;
 use crate::modal::{
     ArcCentres, Aside, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Naming,
@@ -67,6 +68,8 @@ pub struct Context {
     pub kinematics: Kinematics,
     /// The block is an arc with R.
     pub arc_by_radius: bool,
+    /// The block belongs to a curve by control points.
+    pub curve: Option<CurvePart>,
     /// Cutter compensation is in force before or after the block.
     pub compensation: Option<Side>,
     /// The block may be skipped, in a cycle that goes on behind it: levels that it wrote would hold for the next
@@ -127,6 +130,8 @@ impl<'d> Interpreter<'d> {
             return_level: ReturnLevel::Initial,
             tool_length: ToolLength::Off,
             plane_begun: None,
+            curve: None,
+            curve_leaves_mm: None,
             kinematics: if setup.tip_at_start { Kinematics::Tip } else { Kinematics::Axes },
             work_offset: WorkOffset { code: None, number: None, zero_mm: None, rewritten: false },
             shifts: Shifts::default(),
@@ -245,6 +250,9 @@ fn run<'d>(
             Progress::Running | Progress::Ended => Progress::Ended,
         };
     }
+    if let (Progress::Ended, Some(begun)) = (state.progress, &before.curve) {
+        return Err(curves::open(words, begun, Span { start: 0, end: 1 }));
+    }
     if words.is_idle() || state.progress == Progress::Ended {
         return Ok(());
     }
@@ -264,6 +272,7 @@ fn run<'d>(
         || (state.feed_is_inverse_time && (demand.owner == Owner::Dwell || !words.has(Letters::of(b"F"))));
     tip::check(words, &demand, before, state)?;
     tilted::check(env, words, &demand, before, state)?;
+    curves::check(env, words, before, state)?;
     naming::disturb(env, words, &demand, before, state);
     moved.unnamed = state.named.map(Naming::lost);
     motion::execute(env, words, &demand, before, state, moved)?;
@@ -405,6 +414,7 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
         motion_code: state.motion_code(),
         thread: matches!(state.motion, MotionMode::Thread(_)),
         arc_by_radius: moved.arc_by_radius,
+        curve: moved.curve,
         compensation: state.compensation.side().or(before.compensation.side()),
         may_not_set_levels: state.aside.as_ref().is_some_and(|aside| aside.skipped.cycle.is_some()),
         repeats: moved.repeats,

@@ -38,6 +38,7 @@
 mod arc;
 mod circular;
 pub mod codes;
+mod curves;
 mod cycle;
 mod delete;
 mod evidence;
@@ -58,6 +59,7 @@ mod transform;
 mod turning;
 mod words;
 
+pub use curves::CurvePart;
 pub use evidence::{Evidence, Finding, Place, Questions};
 pub use interpreter::{Context, Interpreter, Step};
 pub use modal::{Compensation, Modal, ToolLength, WorkOffset};

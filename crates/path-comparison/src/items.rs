@@ -475,7 +475,11 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         let square_rad = (512.0 * PARABOLA_MM / radius_mm.max(1e-9)).sqrt().sqrt();
         let along_rad = units::math::powf(125.0 * PARABOLA_MM / (radius_mm * steep).max(1e-9), 1.0 / 3.0);
         let turn_rad = square_rad.min(along_rad).min(SAMPLE_RAD);
-        let pieces = (way.turning_rad() / turn_rad).max(way.rotary_turn_rad() / TURN_RAD);
+        let pieces = if way.is_curve() {
+            way.parabolas(PARABOLA_MM)
+        } else {
+            (way.turning_rad() / turn_rad).max(way.rotary_turn_rad() / TURN_RAD)
+        };
         let samples = match &self.others {
             None => pieces.max(length_mm / SAMPLE_MM),
             Some(others) => others.pieces(&way, length_mm),
