@@ -1,6 +1,6 @@
 //! Curves by control points: written as lines, each a chord that is corrected as a line is.
 
-use machine_model::{Command, Vector};
+use machine_model::{Command, Move, Vector};
 use smallvec::SmallVec;
 use toolpath::{Bezier, Chord, Feed, Position, Shape};
 
@@ -21,15 +21,34 @@ impl Corrector<'_> {
             return false;
         }
         self.heed(block, rotary_deg);
-        let Some((_, _, Some(everywhere))) = &self.everywhere else { return false };
-        let corner = everywhere.volume.0.map(|range| range.low);
-        let somewhere = Command { linear_mm: Vector::from(corner), ..self.state(block, rotary_deg) };
-        everywhere.gradient == 0.0
-            && !self.model.depends_on_direction()
-            && self.model.error_mm(&somewhere) == Vector::zeros()
+        if self.model.depends_on_direction()
+            || self
+                .everywhere
+                .as_ref()
+                .is_some_and(|(_, _, known)| known.as_ref().is_some_and(|e| e.gradient > 0.0))
+        {
+            return false;
+        }
+        // An error that leaves no chord anywhere is affine, and one that is zero in all corners besides is zero.
+        let (range_mm, state) = (self.model.volume().0, self.state(block, rotary_deg));
+        let none_at = |corner: usize| {
+            let mm =
+                |axis: usize| if corner >> axis & 1 == 0 { range_mm[axis].low } else { range_mm[axis].high };
+            let there = Command { linear_mm: Vector::new(mm(0), mm(1), mm(2)), ..state };
+            self.model.error_mm(&there) == Vector::zeros()
+        };
+        let across = Move {
+            range_mm,
+            speed_mm: range_mm.map(|range| range.high - range.low),
+            acceleration_mm: [0.0; 3],
+            passes: 1,
+            state,
+            turn: None,
+        };
+        (0..8).all(none_at) && self.model.chord_bound_mm(&across) == 0.0
     }
 
-    /// A part of a curve by control points: equation (113).
+    /// A part of a curve by control points: (P11) of docs/path-promise.md.
     ///
     /// A chord and what it stands for are nowhere further apart than (112) says, and the line that is written is proven to lead
     /// the tool along the chord within what is left of the tolerance.

@@ -5,7 +5,7 @@ use nc_syntax::dialect::{
 };
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 97] = [
+pub const ACTION_NAMES: [&str; 98] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -75,6 +75,7 @@ pub const ACTION_NAMES: [&str; 97] = [
     "curve-points",
     "curve-end",
     "curve-knots",
+    "curve-plane-knots",
     "turn-pass",
     "thread-pass",
     "face-pass",
@@ -178,6 +179,7 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "curve-points" => Action::Curve(CurveCode::Points),
         "curve-end" => Action::Curve(CurveCode::End),
         "curve-knots" => Action::Curve(CurveCode::Knots),
+        "curve-plane-knots" => Action::Curve(CurveCode::PlaneKnots),
         "turn-pass" => Action::Turning(TurningCycle::TurnPass),
         "thread-pass" => Action::Turning(TurningCycle::ThreadPass),
         "face-pass" => Action::Turning(TurningCycle::FacePass),

@@ -168,6 +168,9 @@ fn note(action: &Action) -> String {
             CurveCode::Quadratic => "I J is the control point; written as lines",
             CurveCode::Points => "a control point with its weight P, order L; cut by G5.3",
             CurveCode::End => "the control points before are cut: written as lines",
+            CurveCode::PlaneKnots => {
+                "a control point in the plane with its weight R, a knot K, order P, Q; written as lines"
+            }
             CurveCode::Knots => "a control point with its weight R, a knot K, order P; written as lines",
         }
         .to_owned(),

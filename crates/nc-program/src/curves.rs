@@ -1,13 +1,14 @@
 //! Curves by control points: G5, G5.1, G5.2 with G5.3, G6.2.
 //!
-//! LinuxCNC's as its interpreter 2.9 reads them (`interp_convert.cc`: `convert_spline`, `convert_nurbs`), Fanuc's as the
-//! operator's manual of the series 15i has them (NURBS interpolation). A curve becomes rational Bézier curves
+//! LinuxCNC's as its interpreter reads them (`interp_convert.cc`: `convert_spline`, `convert_nurbs`; G5.2 outside the plane of
+//! G17 and G6.2 since the versions behind 2.9, which refuse them), Fanuc's as the operator's manual of the series 15i has them
+//! (NURBS interpolation). A curve becomes rational Bézier curves
 //! ([`toolpath::Nurbs::beziers`]), each a feed motion of the block with which the curve is whole.
 
 use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::dialect::CurveCode;
 use nc_syntax::{Letters, Span};
-use toolpath::{Bezier, Division, Feed, MOST_DEGREE, Motion, Nurbs, NurbsFault, Position, Shape};
+use toolpath::{Bezier, Division, Feed, MOST_DEGREE, Motion, Nurbs, NurbsFault, Plane, Position, Shape};
 
 use crate::codes;
 use crate::frames::settle;
@@ -51,7 +52,7 @@ pub struct Begun {
 const MOST_POINTS: usize = 4096;
 
 /// Letters of a control point.
-const POINT_LETTERS: Letters = LINEAR_LETTERS.or(Letters::of(b"PLKR"));
+const POINT_LETTERS: Letters = LINEAR_LETTERS.or(Letters::of(b"PLKQR"));
 
 /// A block in the mode of a curve.
 pub(crate) fn execute(
@@ -72,7 +73,9 @@ pub(crate) fn execute(
         CurveCode::Cubic | CurveCode::Quadratic => bezier(env, words, before, state, form, moved),
         CurveCode::Points => point(env, words, before, state, moved),
         CurveCode::End => whole_by_end(words, state, moved, span),
-        CurveCode::Knots => knot(env, words, before, state, moved, written.is_some()),
+        CurveCode::Knots | CurveCode::PlaneKnots => {
+            knot(env, words, before, state, moved, form, written.is_some())
+        }
     }
 }
 
@@ -137,28 +140,37 @@ fn serves(words: &Words<'_, '_, '_>, before: &Modal, state: &Modal, span: Span) 
     Ok(())
 }
 
-/// The plane that LinuxCNC's curves lie in, and the axes that they leave alone.
-fn in_plane_xy(words: &Words<'_, '_, '_>, state: &Modal, span: Span) -> Outcome<()> {
-    const ACROSS: Letters = Letters::of(b"Z");
-    if state.plane != toolpath::Plane::Xy {
+/// The axes of LinuxCNC's curves: those of the plane in force, of G5 and G5.1 X and Y alone.
+fn plane_axes(words: &Words<'_, '_, '_>, state: &Modal, form: CurveCode, span: Span) -> Outcome<Letters> {
+    let only_xy = matches!(form, CurveCode::Cubic | CurveCode::Quadratic);
+    if only_xy && state.plane != Plane::Xy {
         return Err(refuse(
             words,
             span,
-            both!("a curve outside the plane of G17", "кривая не в плоскости G17"),
+            both!("{} outside the plane of G17", "{} не в плоскости G17", words.text(span)),
             both!("this control cuts it in X and Y only", "эта стойка режет её только в X и Y"),
         )
-        .help(both!("write G17 before it", "напишите перед ней G17")));
+        .help(both!(
+            "write G17 before it, or G5.2 for another plane",
+            "напишите перед ней G17, а для другой плоскости G5.2"
+        )));
     }
-    if words.has(ACROSS) {
+    let [first, second, normal] = state.plane.axes();
+    let across = Letters::of(&[LINEAR[normal]]);
+    if words.has(across) {
+        let letter = LINEAR[normal] as char;
         return Err(refuse(
             words,
-            words.span(ACROSS),
-            both!("Z in a curve of X and Y", "Z в кривой по X и Y"),
+            words.span(across),
+            both!("{letter} in a curve of another plane", "{letter} в кривой другой плоскости"),
             both!("the control does not move it there", "стойка её здесь не перемещает"),
         )
-        .help(both!("move Z in a block of its own", "переместите Z отдельным кадром")));
+        .help(both!(
+            "select the curve's plane with G17, G18 or G19, or move {letter} in a block of its own",
+            "выберите плоскость кривой функцией G17, G18 или G19 или переместите {letter} отдельным кадром"
+        )));
     }
-    Ok(())
+    Ok(Letters::of(&[LINEAR[first], LINEAR[second]]))
 }
 
 /// I, J, P and Q in mm, by letter.
@@ -181,7 +193,7 @@ fn bezier(
     let span =
         words.codes.iter().find(|code| is_curve(code)).map_or(words.span(AXIS_LETTERS), |code| code.span);
     let code = words.text(span);
-    in_plane_xy(words, state, span)?;
+    plane_axes(words, state, form, span)?;
     settle(words, state)?;
     let frame = require_frame(env, words, state)?.clone();
     let ends = end(words, state, &frame)?;
@@ -280,11 +292,10 @@ fn point(
     state: &mut Modal,
     moved: &mut Moved,
 ) -> Outcome<()> {
-    const PLACE: Letters = Letters::of(b"XY");
     const P: Letters = Letters::of(b"P");
     let span = words.span(POINT_LETTERS);
     not_skipped(words, span)?;
-    in_plane_xy(words, state, span)?;
+    let place = plane_axes(words, state, CurveCode::Points, span)?;
     settle(words, state)?;
     let frame = require_frame(env, words, state)?.clone();
     let start = require_known(words, &state.axes, &Text::pair("the curve", "кривая"))?;
@@ -301,34 +312,26 @@ fn point(
             points_mm,
             weights,
             knots: vec![],
-            axes: PLACE,
+            axes: place,
             pointed: None,
         })
     });
     if let Some(order) = words.whole(b'L')? {
         let degree = usize::try_from(order).unwrap_or(usize::MAX).wrapping_sub(1);
         if !first || !(2..=MOST_DEGREE).contains(&degree) {
-            return Err(order_refused(words, b'L', !first, 3));
+            return Err(order_refused(words, b'L', !first, [3, MOST_DEGREE as u32 + 1]));
         }
         begun.degree = degree;
     }
     let weight = words.plain(b'P');
-    if words.has(PLACE) && words.letters.and(PLACE) != PLACE {
-        return Err(refuse(
-            words,
-            words.span(PLACE),
-            both!("a control point with only one of X and Y", "контрольная точка только с одним из X и Y"),
-            both!("both were expected", "ожидались оба"),
-        )
-        .help(both!("write X and Y of each control point", "пишите X и Y каждой контрольной точки")));
-    }
+    both_axes(words, place)?;
     match weight {
         Some(weight) if weight > 0.0 => {}
         Some(_) => return Err(weight_refused(words, P)),
-        None if words.has(PLACE) => {
+        None if words.has(place) => {
             return Err(refuse(
                 words,
-                words.span(PLACE),
+                words.span(place),
                 both!("a control point without its weight P", "контрольная точка без веса P"),
                 both!("the control would take -1, or the last one", "стойка взяла бы -1 или прежний"),
             )
@@ -337,11 +340,10 @@ fn point(
         None => {}
     }
     match weight {
-        Some(weight) if words.has(PLACE) => {
+        Some(weight) if words.has(place) => {
             // Increments count from where the axes stand, which is the curve's start until it is cut.
-            let place =
-                require_known(words, &end(words, state, &frame)?, &Text::pair("the curve", "кривая"))?;
-            begun.add(words, place.linear_mm, weight)?;
+            let at = require_known(words, &end(words, state, &frame)?, &Text::pair("the curve", "кривая"))?;
+            begun.add(words, at.linear_mm, weight)?;
         }
         Some(weight) if first => begun.weights[0] = weight,
         Some(_) => {
@@ -364,6 +366,20 @@ fn point(
     state.curve = Some(begun);
     moved.curve = Some(CurvePart::Said);
     Ok(())
+}
+
+/// A control point in a plane has both of its axes.
+fn both_axes(words: &Words<'_, '_, '_>, axes: Letters) -> Outcome<()> {
+    if !words.has(axes) || words.letters.and(axes) == axes {
+        return Ok(());
+    }
+    let message = both!(
+        "a control point with only one of {}",
+        "контрольная точка только с одним словом из {}",
+        axes.names()
+    );
+    Err(refuse(words, words.span(axes), message, both!("both were expected", "ожидались оба"))
+        .help(both!("write both of each control point", "пишите оба слова каждой контрольной точки")))
 }
 
 /// G5.3: the curve is whole.
@@ -406,6 +422,7 @@ fn knot(
     before: &Modal,
     state: &mut Modal,
     moved: &mut Moved,
+    form: CurveCode,
     written: bool,
 ) -> Outcome<()> {
     const K: Letters = Letters::of(b"K");
@@ -428,11 +445,14 @@ fn knot(
     let frame = require_frame(env, words, state)?.clone();
     let start = require_known(words, &state.axes, &Text::pair("the curve", "кривая"))?;
     let axes = words.letters.and(LINEAR_LETTERS);
+    let in_plane = form == CurveCode::PlaneKnots;
+    if in_plane {
+        both_axes(words, plane_axes(words, state, form, span)?)?;
+    }
     let mut begun = match state.curve.take() {
         Some(begun) => begun,
         None if written && !axes.is_empty() => {
             let line = words.block.line;
-            let form = CurveCode::Knots;
             let (points_mm, weights) = (vec![], vec![]);
             Box::new(Begun {
                 line,
@@ -472,17 +492,32 @@ fn knot(
         }
     };
     let first = before.curve.is_none();
-    if written && !first {
+    if written && !first && !axes.is_empty() {
         let message = both!("a curve begins inside another", "кривая начинается внутри другой");
         let label =
             both!("the one of line {} lacks knots", "той, что в строке {}, не хватает узлов", begun.line);
         return Err(refuse(words, span, message, label).help(every_knot(&begun)));
     }
     if let Some(order) = words.whole(b'P')? {
-        if !first || !(2..=4).contains(&order) {
-            return Err(order_refused(words, b'P', !first, 2));
+        let most = if in_plane { MOST_DEGREE as u32 + 1 } else { 4 };
+        if !first || !(2..=most).contains(&order) {
+            return Err(order_refused(words, b'P', !first, [2, most]));
         }
         begun.degree = order as usize - 1;
+    } else if first && in_plane {
+        return Err(refuse(
+            words,
+            span,
+            both!("a curve without its order P", "кривая без порядка P"),
+            both!(
+                "the control would take that of the curve before",
+                "стойка взяла бы порядок прежней кривой"
+            ),
+        )
+        .help(both!(
+            "write P in the first block of the curve, 4 for a cubic one",
+            "напишите P в первом кадре кривой, для кубической 4"
+        )));
     }
     let Some(knot) = words.coordinate(b'K', false) else {
         return Err(refuse(
@@ -573,6 +608,9 @@ fn knot(
         state.curve = Some(begun);
         moved.curve = Some(CurvePart::Said);
         return Ok(());
+    }
+    if in_plane {
+        state.motion = MotionMode::None;
     }
     let Begun { degree, points_mm, weights, knots, start, axes, .. } = *begun;
     cut(words, state, moved, &Nurbs { degree, points_mm, weights, knots }, &start, axes, span)
@@ -673,9 +711,14 @@ fn weight_refused(words: &Words<'_, '_, '_>, letter: Letters) -> Box<Diagnostic>
     ))
 }
 
-fn order_refused(words: &Words<'_, '_, '_>, letter: u8, late: bool, least: usize) -> Box<Diagnostic> {
+fn order_refused(
+    words: &Words<'_, '_, '_>,
+    letter: u8,
+    late: bool,
+    [least, most]: [u32; 2],
+) -> Box<Diagnostic> {
     let span = words.span(Letters::of(&[letter]));
-    let (letter, most) = (letter as char, if least == 2 { 4 } else { MOST_DEGREE + 1 });
+    let letter = letter as char;
     if late {
         return refuse(
             words,
@@ -790,7 +833,7 @@ pub(crate) fn open(words: &Words<'_, '_, '_>, begun: &Begun, span: Span) -> Box<
     let message = both!("the curve of line {} is not whole", "кривая из строки {} не окончена", begun.line);
     let label = both!("{} stands inside it", "внутри неё стоит {}", words.text(span));
     let help = match begun.form {
-        CurveCode::Knots => every_knot(begun),
+        CurveCode::Knots | CurveCode::PlaneKnots => every_knot(begun),
         _ => both!(
             "end the curve with G5.3 before this block",
             "закончите кривую функцией G5.3 до этого кадра"

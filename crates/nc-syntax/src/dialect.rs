@@ -141,6 +141,8 @@ pub enum CurveCode {
     End,
     /// Fanuc's G6.2: X Y Z of a control point, its weight R, a knot K, the order P.
     Knots,
+    /// LinuxCNC's G6.2: the same in a plane; Q says how the control divides the curve.
+    PlaneKnots,
 }
 
 /// What a G code does, as far as `nc-program` must know.

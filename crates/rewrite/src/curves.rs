@@ -5,7 +5,7 @@ use diagnostic::Diagnostic;
 use nc_emit::{WordEdit, WordEdits};
 use nc_program::Context;
 use nc_syntax::dialect::Action;
-use nc_syntax::{Block, Letters};
+use nc_syntax::{Block, Item, ItemKind, Letters, Word};
 use smallvec::SmallVec;
 use toolpath::Motion;
 
@@ -13,7 +13,7 @@ use crate::notices::refusal;
 use crate::pass::Pass;
 
 /// Letters of control points, knots, weights and the order.
-const OWN: [u8; 9] = *b"XYZIJKPLR";
+const OWN: [u8; 10] = *b"XYZIJKPLQR";
 
 impl Pass<'_> {
     /// A block that says a part of a curve: what it says is taken out of it where the curve is written as lines.
@@ -26,7 +26,7 @@ impl Pass<'_> {
         let from = self.out.len();
         if self.stays_a_curve(context, letters) {
             self.pass(block, context, &[])?;
-        } else {
+        } else if self.says_more(block) {
             let removed = OWN.into_iter().filter(|letter| letters.contains(*letter));
             let words: WordEdits = removed.map(|letter| (letter, WordEdit::Remove)).collect();
             // In the place of the code stands the one of the lines that follow.
@@ -40,13 +40,25 @@ impl Pass<'_> {
                 .emitter
                 .rewrite(block, &[nc_emit::Piece { motion, words }], &mut self.out)
                 .map_err(|diagnostic| vec![diagnostic])?;
-            if self.out[from..].trim_ascii().is_empty() {
-                self.out.truncate(from);
-            }
         }
         let written = self.out.len() > from;
         self.note(block, context, &[], &[], 1, written);
         Ok(())
+    }
+
+    /// True where a block says more than its part of a curve.
+    fn says_more(&self, block: &Block<'_>) -> bool {
+        let dialect = self.job.dialect;
+        let own = |item: &Item| match item.kind {
+            ItemKind::Word { letter: b'G', value } => {
+                let word = Word { letter: b'G', value, span: item.span };
+                let row = word.g_code().and_then(|code| dialect.code(code));
+                row.is_some_and(|row| matches!(row.action, Action::Curve(_)))
+            }
+            ItemKind::Word { letter, .. } => OWN.contains(&letter),
+            _ => false,
+        };
+        !block.items.iter().all(own)
     }
 
     /// The block with which a curve is whole.
