@@ -8,7 +8,7 @@ form: G5, G5.1, and G5.2 in the plane of G17.
 import math
 
 # A curve is divided so finely that its polygon leaves it by so much, mm; by second differences of so many places a span.
-FINE_MM, LOOKS, MOST = 5e-6, 32, 5000
+FINE_MM, LOOKS, MOST = 2e-5, 32, 5000
 # LinuxCNC's points, of a curve that both evaluate, agree to the last bits of inches.
 SAME_MM = 1e-7
 

@@ -528,7 +528,9 @@ fn knot(
         )
         .help(both!("write K in each block of the curve", "пишите K в каждом кадре кривой")));
     };
-    begun.as_pointed(words, K.or(R))?;
+    if !in_plane {
+        begun.as_pointed(words)?;
+    }
     if begun.knots.last().is_some_and(|last| knot < *last) {
         return Err(refuse(
             words,
@@ -639,10 +641,10 @@ impl Begun {
     }
 
     /// Knots and weights above zero all have a point, or none has: without it they count something else.
-    fn as_pointed(&mut self, words: &Words<'_, '_, '_>, letters: Letters) -> Outcome<()> {
+    fn as_pointed(&mut self, words: &Words<'_, '_, '_>) -> Outcome<()> {
         for letter in [b'K', b'R'] {
             let Some((number, span)) = words.number(letter) else { continue };
-            if number.decimal.mantissa == 0 || letters.and(Letters::of(&[letter])).is_empty() {
+            if number.decimal.mantissa == 0 {
                 continue;
             }
             if *self.pointed.get_or_insert(number.has_point) != number.has_point {

@@ -1,21 +1,17 @@
 //! The geometry of a feed motion.
 
 use machine_model::Vector;
-use toolpath::{Bezier, Feed, Position, Shape};
+use toolpath::{Feed, Position, Shape};
 use units::math::{atan2, sin_cos};
 
 /// The path of a feed motion in axis commands: a line, or an arc whose radius and normal axis run linearly with the
-/// angle, or a curve by control points; rotary axes turn in step.
+/// angle; rotary axes turn in step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Way {
     start: Position,
     end: Position,
     arc: Option<Turning>,
-    curve: Option<Bezier>,
 }
-
-/// A curve by control points is looked at in so many even parts.
-const STEPS: u32 = 128;
 
 /// An arc as its angle and radius run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +30,7 @@ impl Way {
     #[must_use]
     pub fn of(feed: &Feed) -> Self {
         let arc = match feed.shape {
+            // A curve by control points is given as lines.
             Shape::Line | Shape::Bezier(_) => None,
             Shape::Arc(arc) => {
                 let axes = arc.plane.axes();
@@ -52,13 +49,12 @@ impl Way {
                 })
             }
         };
-        let curve = if let Shape::Bezier(curve) = feed.shape { Some(curve) } else { None };
-        Self { start: feed.start, end: feed.end, arc, curve }
+        Self { start: feed.start, end: feed.end, arc }
     }
 
     /// A straight line between two places, the rotary axes standing.
     pub(crate) fn line(start: Position, end: Position) -> Self {
-        Self { start, end, arc: None, curve: None }
+        Self { start, end, arc: None }
     }
 
     /// The place at s, 0 ≤ s ≤ 1, mm.
@@ -70,9 +66,6 @@ impl Way {
         }
         if s >= 1.0 {
             return self.end.linear_mm.into();
-        }
-        if let Some(curve) = &self.curve {
-            return curve.at(&self.start.linear_mm, &self.end.linear_mm, s).into();
         }
         let [from, to] = [&self.start, &self.end].map(|p| Vector::from(p.linear_mm));
         let mut at = from + (to - from) * s;
@@ -94,18 +87,14 @@ impl Way {
         self.end.rotary_deg
     }
 
-    /// True where neither an arc, a curve nor a turn bends it, seen from the workpiece.
+    /// True where neither an arc nor a turn bends it, seen from the workpiece.
     pub(crate) fn is_straight(&self) -> bool {
-        self.arc.is_none() && self.curve.is_none() && self.start.rotary_deg == self.end.rotary_deg
+        self.arc.is_none() && self.start.rotary_deg == self.end.rotary_deg
     }
 
     /// How far the tangent turns, rad.
     #[must_use]
     pub fn turning_rad(&self) -> f64 {
-        if self.curve.is_some() {
-            let ways: Vec<Vector> = self.steps().map(|[from, to]| to - from).collect();
-            return ways.windows(2).map(|way| way[0].angle(&way[1])).sum();
-        }
         self.arc.as_ref().map_or(0.0, |arc| arc.sweep_rad.abs())
     }
 
@@ -124,9 +113,6 @@ impl Way {
 
     /// Length of the linear axes' way, mm.
     pub(crate) fn length_mm(&self) -> f64 {
-        if self.curve.is_some() {
-            return self.steps().map(|[from, to]| (to - from).norm()).sum();
-        }
         let chord = self.at(1.0) - self.at(0.0);
         match &self.arc {
             None => chord.norm(),
@@ -140,7 +126,7 @@ impl Way {
     /// The places where an axis of an arc turns back, in order.
     pub(crate) fn turns(&self) -> Vec<f64> {
         let Some(Turning { axes, angle_rad, sweep_rad, radius_mm, .. }) = &self.arc else {
-            return self.turns_of_curve();
+            return Vec::new();
         };
         const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
         // Of a circle at its quadrants; a spiral or a helix turns a little aside of them.
@@ -162,48 +148,9 @@ impl Way {
         found
     }
 
-    /// By control points.
-    pub(crate) const fn is_curve(&self) -> bool {
-        self.curve.is_some()
-    }
-
-    /// How many parabolas stand for a curve by control points within `most_mm`: what a parabola through both ends and the
-    /// middle is off by is h³/125 of the third derivative, which is looked for at [`STEPS`] places and doubled.
-    pub(crate) fn parabolas(&self, most_mm: f64) -> f64 {
-        let places: Vec<Vector> = (0..=STEPS).map(|k| self.at(f64::from(k) / f64::from(STEPS))).collect();
-        let third = |p: &[Vector]| (p[3] - 3.0 * p[2] + 3.0 * p[1] - p[0]).norm();
-        let most = places.windows(4).map(third).fold(0.0, f64::max) * f64::from(STEPS).powi(3);
-        // At a corner that is drawn by control points on each other a parabola still bends with the curve.
-        units::math::powf(2.0 * most / (125.0 * most_mm), 1.0 / 3.0).max(4.0)
-    }
-
-    /// Ends of even parts of a curve.
-    fn steps(&self) -> impl Iterator<Item = [Vector; 2]> + '_ {
-        let at = |k: u32| self.at(f64::from(k) / f64::from(STEPS));
-        (0..STEPS).map(move |k| [at(k), at(k + 1)])
-    }
-
-    fn turns_of_curve(&self) -> Vec<f64> {
-        let mut found = Vec::new();
-        if self.curve.is_some() {
-            let step = 1.0 / f64::from(STEPS);
-            let ways: Vec<Vector> = self.steps().map(|[from, to]| to - from).collect();
-            for (k, way) in ways.windows(2).enumerate() {
-                let turns = (0..3).filter(|axis| way[0][*axis] * way[1][*axis] < 0.0);
-                found.extend(turns.map(|axis| self.farthest(axis, step * (k + 1) as f64, step)));
-            }
-            found.sort_by(f64::total_cmp);
-        }
-        found
-    }
-
-    /// Where an axis of an arc stands farthest near s.
+    /// Where an axis stands farthest near s.
     fn turning_place(&self, axis: usize, s: f64) -> f64 {
-        self.farthest(axis, s, (0.1 / self.turning_rad().max(0.1)).min(0.5))
-    }
-
-    /// Where an axis stands farthest within `reach` of s.
-    fn farthest(&self, axis: usize, s: f64, reach: f64) -> f64 {
+        let reach = (0.1 / self.turning_rad().max(0.1)).min(0.5);
         let (mut low, mut high) = ((s - reach).max(0.0), (s + reach).min(1.0));
         let middle = self.at(s.clamp(0.0, 1.0))[axis];
         let sign = if middle * 2.0 >= self.at(low)[axis] + self.at(high)[axis] { 1.0 } else { -1.0 };
