@@ -11,6 +11,7 @@ use toolpath::Motion;
 
 use crate::notices::refusal;
 use crate::pass::Pass;
+use crate::words::Original;
 
 /// Letters of control points, knots, weights and the order.
 const OWN: [u8; 10] = *b"XYZIJKPLQR";
@@ -27,8 +28,7 @@ impl Pass<'_> {
         if self.stays_a_curve(context, letters) {
             self.pass(block, context, &[])?;
         } else if self.says_more(block) {
-            let removed = OWN.into_iter().filter(|letter| letters.contains(*letter));
-            let words: WordEdits = removed.map(|letter| (letter, WordEdit::Remove)).collect();
+            let words = without(letters);
             // In the place of the code stands the one of the lines that follow.
             let dialect = self.job.dialect;
             let codes = block.words().filter_map(|word| dialect.code(word.g_code()?));
@@ -80,7 +80,9 @@ impl Pass<'_> {
                 .map_err(|error| refusal(&error, motion, block, context))?;
             corrections.push(corrected.correction);
             if !stays {
-                let editing = self.editing(context, letters, motion);
+                // A part of the first degree is a line, and its block a curve's all the same.
+                let mut editing = self.editing(context, letters, motion);
+                editing.original = Original::Curve;
                 for piece in &corrected.pieces {
                     let edited = editing.edit(piece, pieces.is_empty(), false);
                     pieces.push(edited);
@@ -90,6 +92,10 @@ impl Pass<'_> {
             for axis in 0..3 {
                 info.named[axis] |= info.stated.axes[axis];
             }
+        }
+        if pieces.is_empty() {
+            // Too little to move an axis a step.
+            pieces.push(nc_emit::Piece { motion: Some(self.codes.line()), words: without(letters) });
         }
         let from = self.out.len();
         if stays {
@@ -111,4 +117,10 @@ impl Pass<'_> {
         let rotary_deg = self.state.interpreter.modal().axes.partial().rotary_deg;
         self.state.corrector.is_without_errors(&info, rotary_deg)
     }
+}
+
+/// The block without what it says of a curve.
+fn without(letters: Letters) -> WordEdits {
+    let removed = OWN.into_iter().filter(|letter| letters.contains(*letter));
+    removed.map(|letter| (letter, WordEdit::Remove)).collect()
 }
