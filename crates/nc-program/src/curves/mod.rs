@@ -236,7 +236,7 @@ fn cut(
     let pieces = nurbs.beziers().map_err(|fault| faults::of_fault(words, span, &fault))?;
     let at = |linear_mm| Position { linear_mm, ..*start };
     let mut from = start.linear_mm;
-    for (_, end_mm, curve) in pieces {
+    for (end_mm, curve) in pieces {
         let (start, end) = (at(from), at(end_mm));
         let shape = if curve.degree() == 1 { Shape::Line } else { Shape::Bezier(curve) };
         moved.motions.push(Motion::Feed(Feed { start, end, shape, rate, division: Division::Any }));
