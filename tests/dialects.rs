@@ -227,6 +227,11 @@ fn named(row: &Row) -> Option<&'static str> {
     if row.treatment == Treatment::Refused && !row.note.starts_with("with more than") {
         return Some(BY_ITS_ROW);
     }
+    if row.treatment == Treatment::Corrected
+        && ["G5", "G5.1", "G5.2", "G5.3", "G6.2"].contains(&row.code.as_str())
+    {
+        return Some("`lines_follow_the_exact_curve` in tests/curves.rs");
+    }
     if row.treatment == Treatment::Followed && row.code == "G68.2" {
         return Some("`in_a_tilted_plane_the_tip_goes_where_the_program_says` in tests/five_axis.rs");
     }

@@ -30,6 +30,7 @@ mod calibrate_turning;
 mod closed_loop;
 mod controls;
 mod corpus;
+mod curves;
 mod diagnose;
 mod diagnose_plan;
 mod dialects;

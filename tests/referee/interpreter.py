@@ -10,6 +10,8 @@ import os
 import re
 import tempfile
 
+from curves import SAME_MM, Fault, Reader
+
 INCH = 25.4
 WORD = re.compile(r"([A-Z])\s*([-+]?\s*(?:\d[\d\s]*\.?[\d\s]*|\.\s*\d[\d\s]*))")
 LENGTHS = frozenset("XYZIJKRQ")
@@ -101,6 +103,9 @@ class Text:
         # Axes that may stand anywhere after a line: reference returns, tool changes.
         self.lost = {}
         percent, executable, tool = 0, False, None
+        # Curves have a line in their place here; `as_posted` is the text with them.
+        self.as_posted, curves = [], Reader()
+        self.curves = curves.curves
         # G43 H0 is the tool in the spindle: the last T when M6 came.
         selected, loaded = None, None
         for number_, line in enumerate(lines, 1):
@@ -117,6 +122,7 @@ class Text:
             executable = executable or bool(bare)
             if any(mark in bare for mark in "#[<") or bare.startswith("O"):
                 self.lines.append(bare)
+                self.as_posted.append(bare)
                 self.tool[number_] = tool
                 continue
             kept = []
@@ -145,7 +151,7 @@ class Text:
                 name = f"{letter}{value:g}"
                 if letter in "MST":
                     events.append(name)
-                elif letter in "HDN" or name in ("G43", "G49"):
+                elif letter in "HDN" or name in ("G43", "G49", "G96", "G97"):
                     pass
                 else:
                     if letter in LENGTHS and least_increment is not None and "." not in text and positions:
@@ -157,6 +163,14 @@ class Text:
                 self.events[number_] = events
             self.words[number_] = letters
             self.tool[number_] = tool
+            self.as_posted.append(" ".join(kept))
+            try:
+                instead = curves.line(number_, words)
+            except (Fault, KeyError, TypeError) as fault:
+                raise Unreadable(f"line {number_}: {fault!r}") from None
+            if instead is not None:
+                kept = [f"{letter}{text}" for letter, text in instead]
+                self.words[number_] = {letter for letter, _ in instead}
             self.lines.append(" ".join(kept))
 
 
@@ -255,23 +269,61 @@ def write_offsets(path, offsets):
                 file.write(f"{5201 + 20 * index + axis}\t{value / INCH!r}\n")
 
 
-def interpret(raw, offsets, least_increment=None):
-    """Moves and events of a program.
-
-    Events are (name, line, index of the move before which it happens).
-    """
+def parse(lines, offsets):
+    """What the interpreter makes of a text."""
     import gcode  # of the package linuxcnc-uspace
 
-    text = Text(raw, least_increment)
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "program.ngc")
         with open(path, "w", encoding="latin-1") as file:
-            file.write("\n".join(text.lines) + "\nM2\n")
+            file.write("\n".join(lines) + "\nM2\n")
         canon = Canon(folder)
         write_offsets(canon.parameter_file, offsets)
         result, line = gcode.parse(path, canon, "G21 G17 G40 G49 G80 G90 G94", "")
         if result > gcode.MIN_ERROR:
             raise Unreadable(f"line {line}: {gcode.strerror(result)}")
+    return canon
+
+
+def evaluated_alike(text, moves, as_posted):
+    """Holds the evaluation of each curve here against LinuxCNC's own."""
+    for number, curve in text.curves.items():
+        (start, end), *more = [(move.start, move.end) for move in moves if move.line == number]
+        found = [move.end for move in as_posted if move.line == number]
+        expected = curve.at_its_places(start, end)
+        # It adds up its steps, and may come to the end twice.
+        if len(found) == len(expected) + 1:
+            del found[-2]
+        if more or len(found) != len(expected):
+            raise Unreadable(f"line {number}: {len(found)} places of a curve, {len(expected)} were expected")
+        u, v = curve.axes
+        worst = max(math.hypot(a[u] - b[0], a[v] - b[1]) for a, b in zip(found, expected))
+        if worst > SAME_MM:
+            raise Unreadable(f"line {number}: LinuxCNC evaluates the curve {worst} mm aside")
+
+
+def interpret(raw, offsets, least_increment=None):
+    """Moves and events of a program.
+
+    Events are (name, line, index of the move before which it happens).
+    """
+    text = Text(raw, least_increment)
+    canon = parse(text.lines, offsets)
+    moves = []
+    for move in canon.moves:
+        curve = None if move.rapid else text.curves.get(move.line)
+        if curve is None:
+            moves.append(move)
+            continue
+        start = move.start
+        for end in curve.path(move.start, move.end):
+            moves.append(Move(False, move.line, start, end, None, move.feed))
+            start = end
+    if text.curves and all(curve.linuxcnc for curve in text.curves.values()):
+        evaluated_alike(text, canon.moves, parse(text.as_posted, offsets).moves)
+    if text.curves and canon.dwells:
+        raise Unreadable("a dwell in a program with curves")
+    canon.moves = moves
     known = set()
     last = 0
     before = False

@@ -228,7 +228,8 @@ class Judge:
             while low + 1 < len(trail) and trail[low + 1][0] < way - SLACK_MM:
                 low += 1
             target, best, k = self.nominal(move, corner), math.inf, low
-            while k < len(trail) and (best == math.inf or trail[k][0] <= way + SLACK_MM):
+            # One sample more: the corner may lie between two.
+            while k < len(trail) and (best == math.inf or trail[max(k - 1, 0)][0] <= way + SLACK_MM):
                 best = min(best, distance(trail[k][1], target))
                 if k > 0:
                     best = min(best, to_segment(trail[k - 1][1], trail[k][1], target))

@@ -71,11 +71,12 @@ impl Curve {
         }
     }
 
-    /// The geometry of a motion between two axis commands.
+    /// The geometry of a motion between two axis commands. A curve by control points is written as lines, each a motion of its
+    /// own ([`crate::Corrector::correct`]): here it is the line between its ends.
     #[must_use]
     pub fn new(start: Vector, end: Vector, shape: &Shape) -> Self {
         match shape {
-            Shape::Line => Self::Line(start, end),
+            Shape::Line | Shape::Bezier(_) => Self::Line(start, end),
             Shape::Arc(arc) => {
                 let axes = arc.plane.axes();
                 let [u, v, _] = axes;

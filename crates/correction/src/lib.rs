@@ -12,6 +12,7 @@
 mod approach;
 mod arc;
 mod before;
+mod by_chords;
 mod centre;
 mod corrected;
 mod corrector;

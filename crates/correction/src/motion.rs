@@ -77,7 +77,7 @@ impl Corrector<'_> {
     }
 
     /// From here on X, Y and Z are something else. Where they still say the same, the motions tell.
-    fn switch(&mut self, kinematics: Kinematics) -> Result<(), CorrectionError> {
+    pub(crate) fn switch(&mut self, kinematics: Kinematics) -> Result<(), CorrectionError> {
         self.model = self.models.of(kinematics).ok_or(CorrectionError::NoBoundsForTurns)?;
         self.kinematics = kinematics;
         (self.last, self.known, self.everywhere) = (None, None, None);
@@ -197,7 +197,10 @@ impl Corrector<'_> {
         Ok(one(Piece::new(PieceKind::Rapid, axes, 1.0), correction))
     }
 
-    fn feed(&mut self, feed: &Feed, block: &Block) -> Result<Corrected, CorrectionError> {
+    pub(crate) fn feed(&mut self, feed: &Feed, block: &Block) -> Result<Corrected, CorrectionError> {
+        if let Shape::Bezier(curve) = &feed.shape {
+            return self.curve(feed, curve, block);
+        }
         if matches!(feed.shape, Shape::Line)
             && self.lead.is_none()
             && feed.start.rotary_deg == feed.end.rotary_deg
@@ -271,7 +274,7 @@ impl Corrector<'_> {
                 corrected: &mut corrected,
             };
             match feed.shape {
-                Shape::Line => self.follow_line(&mut follow, &part)?,
+                Shape::Line | Shape::Bezier(_) => self.follow_line(&mut follow, &part)?,
                 Shape::Arc(arc) if block.frame.similarity(arc.plane).is_some() => {
                     if let Some((solved, largest_mm)) = self.solved_arc(&follow.machine, &part) {
                         follow.solved = Some(solved);
@@ -317,7 +320,7 @@ impl Corrector<'_> {
     }
 
     /// A line to where the axes stand, with a word for each axis that the block names, or for the first that may have one.
-    fn standstill(&self, block: &Block) -> Result<Piece, CorrectionError> {
+    pub(crate) fn standstill(&self, block: &Block) -> Result<Piece, CorrectionError> {
         let standing = self.standing_program(block);
         let mut named = block.stated.axes;
         if named == [false; 3] {

@@ -1,12 +1,12 @@
 //! What the words of a grammar's `does` mean.
 
 use nc_syntax::dialect::{
-    Action, Called, CornerForm, CycleCode, FramePart, GCode, PlaneCode, Pockets, Side, TipSwitch,
+    Action, Called, CornerForm, CurveCode, CycleCode, FramePart, GCode, PlaneCode, Pockets, Side, TipSwitch,
     TurningCycle,
 };
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 108] = [
+pub const ACTION_NAMES: [&str; 114] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -74,6 +74,12 @@ pub const ACTION_NAMES: [&str; 108] = [
     "speed-limit",
     "limit-or-preset",
     "thread",
+    "curve-cubic",
+    "curve-quadratic",
+    "curve-points",
+    "curve-end",
+    "curve-knots",
+    "curve-plane-knots",
     "turn-pass",
     "thread-pass",
     "face-pass",
@@ -188,6 +194,12 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "speed-limit" => Action::SpeedLimit,
         "limit-or-preset" => Action::LimitOrPreset,
         "thread" => Action::Thread,
+        "curve-cubic" => Action::Curve(CurveCode::Cubic),
+        "curve-quadratic" => Action::Curve(CurveCode::Quadratic),
+        "curve-points" => Action::Curve(CurveCode::Points),
+        "curve-end" => Action::Curve(CurveCode::End),
+        "curve-knots" => Action::Curve(CurveCode::Knots),
+        "curve-plane-knots" => Action::Curve(CurveCode::PlaneKnots),
         "turn-pass" => Action::Turning(TurningCycle::TurnPass),
         "thread-pass" => Action::Turning(TurningCycle::ThreadPass),
         "face-pass" => Action::Turning(TurningCycle::FacePass),

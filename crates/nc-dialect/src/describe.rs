@@ -1,7 +1,7 @@
 //! The code-by-code list of a dialect, for people.
 
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{Action, CycleCode, FramePart, GCode, LengthAfter, MCode, Macros};
+use nc_syntax::dialect::{Action, CurveCode, CycleCode, FramePart, GCode, LengthAfter, MCode, Macros};
 
 use crate::action_name;
 
@@ -73,6 +73,7 @@ pub const fn treatment(action: &Action) -> Treatment {
         | Action::ArcClockwise
         | Action::ArcCounterClockwise
         | Action::Thread
+        | Action::Curve(_)
         | Action::Cycle(_) => Treatment::Corrected,
         Action::Reference | Action::MachineCoordinates | Action::Probe => Treatment::NotCorrected,
         Action::Dwell | Action::DwellBySetting | Action::DwellP | Action::Pass { .. } => Treatment::Passed,
@@ -168,6 +169,17 @@ fn note(action: &Action) -> String {
             "kept as arcs where one or a few hold the tolerance".to_owned()
         }
         Action::Thread => "one block in step with the spindle; never split".to_owned(),
+        Action::Curve(form) => match form {
+            CurveCode::Cubic => "I J and P Q are the control points; written as lines",
+            CurveCode::Quadratic => "I J is the control point; written as lines",
+            CurveCode::Points => "a control point with its weight P, order L; cut by G5.3",
+            CurveCode::End => "the control points before are cut: written as lines",
+            CurveCode::PlaneKnots => {
+                "a control point in the plane with its weight R, a knot K, order P, Q; written as lines"
+            }
+            CurveCode::Knots => "a control point with its weight R, a knot K, order P; written as lines",
+        }
+        .to_owned(),
         Action::Turning(_) | Action::Called(_) => "written out as moves".to_owned(),
         Action::ProgramFrame { part, adds } => {
             let what = match part {

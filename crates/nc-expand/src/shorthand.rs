@@ -206,7 +206,9 @@ impl State {
         match action {
             Action::Rapid => self.motion = Motion::Rapid,
             Action::Line => self.motion = Motion::Line,
-            Action::ArcClockwise | Action::ArcCounterClockwise => self.motion = Motion::Arc,
+            Action::ArcClockwise | Action::ArcCounterClockwise | Action::Curve(_) => {
+                self.motion = Motion::Arc
+            }
             Action::Cycle(_) => self.motion = Motion::Cycle,
             Action::CycleCancel => self.motion = Motion::None,
             Action::Plane(plane) => {

@@ -248,7 +248,8 @@ impl Compiler<'_, '_> {
                             | Action::Rapid
                             | Action::Line
                             | Action::ArcClockwise
-                            | Action::ArcCounterClockwise,
+                            | Action::ArcCounterClockwise
+                            | Action::Curve(_),
                         ) => flags.cycle = Some(false),
                         _ => {}
                     }

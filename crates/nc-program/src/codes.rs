@@ -90,6 +90,10 @@ pub const TILTED_PLANE: Code = Code(231);
 /// The rotary axes do not stand upright on a tilted plane, or where the control turns them is not certain. Remedy: in the
 /// message.
 pub const PLANE_ANGLES: Code = Code(232);
+/// A curve by control points whose words, or what it stands under, cannot be honoured as they stand. Remedy: in the message.
+pub const CURVE: Code = Code(233);
+/// A curve of several blocks is not whole where something else follows. Remedy: G5.3, or the knots that lack.
+pub const CURVE_OPEN: Code = Code(234);
 /// Lengths with and without a decimal point, where a parameter of the control decides what the latter are. Remedy:
 /// `--decimal`.
 pub const MIXED_LENGTHS: Code = Code(241);

@@ -62,6 +62,9 @@ pub(crate) fn merge(words: &Words<'_, '_, '_>, aside: &Aside, executed: &Modal) 
     both.speed_limited = executed.speed_limited && skipped.speed_limited;
     both.edge_unsaid = executed.edge_unsaid || skipped.edge_unsaid;
     both.feed_is_inverse_time = executed.feed_is_inverse_time || skipped.feed_is_inverse_time;
+    if executed.curve_leaves_mm != skipped.curve_leaves_mm {
+        both.curve_leaves_mm = None;
+    }
     both.unsettled = [0, 1, 2].map(|i| executed.unsettled[i] || skipped.unsettled[i]);
     // `/M30` ends the program or not: what follows is executed or not, and must be right where it is.
     both.progress = Progress::Running;
@@ -166,6 +169,15 @@ fn difference(skipped: &Modal, executed: &Modal) -> Option<(Text, Text)> {
         pair(&with.plane_begun, &without.plane_begun, |v| {
             if v.is_some() {
                 both!("the beginning of a tilted plane", "начало наклонной плоскости")
+            } else {
+                both!("none of it", "без неё")
+            }
+        })
+    })
+    .or_else(|| {
+        pair(&with.curve, &without.curve, |v| {
+            if v.is_some() {
+                both!("the beginning of a curve", "начало кривой")
             } else {
                 both!("none of it", "без неё")
             }

@@ -7,6 +7,7 @@ use smallvec::{SmallVec, smallvec};
 use toolpath::{Frame, Kinematics, Motion, Mover, Plane};
 
 use crate::codes;
+use crate::curves::{self, CurvePart};
 use crate::delete;
 use crate::direction::DirectionWords;
 use crate::modal::{
@@ -70,6 +71,8 @@ pub struct Context {
     pub direction: Option<DirectionWords>,
     /// The block is an arc with R.
     pub arc_by_radius: bool,
+    /// The block belongs to a curve by control points.
+    pub curve: Option<CurvePart>,
     /// Cutter compensation is in force before or after the block.
     pub compensation: Option<Side>,
     /// The block may be skipped, in a cycle that goes on behind it: levels that it wrote would hold for the next
@@ -131,6 +134,8 @@ impl<'d> Interpreter<'d> {
             tool_length: ToolLength::Off,
             vectors: false,
             plane_begun: None,
+            curve: None,
+            curve_leaves_mm: None,
             kinematics: if setup.tip_at_start { Kinematics::Tip } else { Kinematics::Axes },
             work_offset: WorkOffset { code: None, number: None, zero_mm: None, rewritten: false },
             shifts: Shifts::default(),
@@ -250,6 +255,9 @@ fn run<'d>(
             Progress::Running | Progress::Ended => Progress::Ended,
         };
     }
+    if let (Progress::Ended, Some(begun)) = (state.progress, &before.curve) {
+        return Err(curves::open(words, begun, Span { start: 0, end: 1 }));
+    }
     if words.is_idle() || state.progress == Progress::Ended {
         return Ok(());
     }
@@ -269,6 +277,7 @@ fn run<'d>(
         || (state.feed_is_inverse_time && (demand.owner == Owner::Dwell || !words.has(Letters::of(b"F"))));
     tip::check(words, &demand, before, state)?;
     tilted::check(env, words, &demand, before, state)?;
+    curves::check(env, words, before, state)?;
     naming::disturb(env, words, &demand, before, state);
     moved.unnamed = state.named.map(Naming::lost);
     motion::execute(env, words, &demand, before, state, moved)?;
@@ -411,6 +420,7 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
         thread: matches!(state.motion, MotionMode::Thread(_)),
         direction: moved.direction,
         arc_by_radius: moved.arc_by_radius,
+        curve: moved.curve,
         compensation: state.compensation.side().or(before.compensation.side()),
         may_not_set_levels: state.aside.as_ref().is_some_and(|aside| aside.skipped.cycle.is_some()),
         repeats: moved.repeats,

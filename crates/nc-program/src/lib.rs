@@ -39,6 +39,7 @@ mod alike;
 mod arc;
 mod circular;
 pub mod codes;
+mod curves;
 mod cycle;
 mod delete;
 mod direction;
@@ -61,6 +62,7 @@ mod turning;
 mod words;
 
 pub use alike::looks_like;
+pub use curves::CurvePart;
 pub use direction::DirectionWords;
 pub use evidence::{Evidence, Finding, Place, Questions};
 pub use interpreter::{Context, Interpreter, Step};

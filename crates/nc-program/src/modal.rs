@@ -1,6 +1,6 @@
 //! The state of a program between two blocks: one enum per modal group.
 
-use nc_syntax::dialect::{CycleCode, GCode, Side};
+use nc_syntax::dialect::{CurveCode, CycleCode, GCode, Side};
 use toolpath::{Frame, Kinematics, Partial, Plane};
 use units::decimal::Decimal;
 
@@ -33,6 +33,8 @@ pub enum MotionMode {
     Arc(Turn, GCode),
     /// G32, G33 of lathes
     Thread(GCode),
+    /// G5 to G5.3, G6.2
+    Curve(CurveCode, GCode),
 }
 
 impl MotionMode {
@@ -41,7 +43,11 @@ impl MotionMode {
     pub const fn code(self) -> Option<GCode> {
         match self {
             Self::None | Self::Undecided { .. } => None,
-            Self::Rapid(code) | Self::Line(code) | Self::Arc(_, code) | Self::Thread(code) => Some(code),
+            Self::Rapid(code)
+            | Self::Line(code)
+            | Self::Arc(_, code)
+            | Self::Thread(code)
+            | Self::Curve(_, code) => Some(code),
         }
     }
 }
@@ -445,6 +451,10 @@ pub struct Modal {
     pub vectors: bool,
     /// A tilted plane of several blocks that is not whole yet.
     pub plane_begun: Option<crate::tilted::Begun>,
+    /// A curve of several blocks that is not whole yet.
+    pub curve: Option<Box<crate::curves::Begun>>,
+    /// From the end of the G5 that the block before was to the control point with which another goes on, program axes, mm.
+    pub curve_leaves_mm: Option<[f64; 2]>,
     /// G54–G59, G54.1.
     pub work_offset: WorkOffset,
     /// G52, G92.

@@ -7,6 +7,7 @@ use toolpath::{Division, Feed, FeedRate, Motion, Mover, Shape};
 
 use crate::circular::circular;
 use crate::codes;
+use crate::curves::{self, CurvePart};
 use crate::cycle;
 use crate::direction::{self, DirectionWords};
 use crate::frames::{self, settle};
@@ -31,6 +32,7 @@ pub(crate) struct Moved {
     pub(crate) motions: Motions,
     pub(crate) arc_by_radius: bool,
     pub(crate) direction: Option<DirectionWords>,
+    pub(crate) curve: Option<CurvePart>,
     pub(crate) repeats: u32,
     pub(crate) states_position: bool,
     /// X, Y, Z that U, V or W stands for.
@@ -148,7 +150,8 @@ fn untransformed(
 
 /// G4 P beside a motion (LinuxCNC): first the dwell, then the motion. P must be the dwell's alone.
 fn dwell_beside(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
-    let arc = matches!(state.motion, MotionMode::Arc(..)) && words.has(AXIS_LETTERS.or(ARC_LETTERS));
+    let arc = matches!(state.motion, MotionMode::Arc(..) | MotionMode::Curve(..))
+        && words.has(AXIS_LETTERS.or(ARC_LETTERS));
     if state.cycle.is_some() || arc {
         let span = words.span(Letters::of(b"P").or(AXIS_LETTERS));
         return Err(words
@@ -209,6 +212,7 @@ fn by_mode(
                 straight(env, words, before, state, rapid, moved)?;
             }
         }
+        MotionMode::Curve(form, _) => curves::execute(env, words, before, state, form, moved)?,
         MotionMode::Thread(_) => {
             if words.has(ARC_LETTERS.without(turning::thread_lead(env))) {
                 return Err(stray(words, both!("this block is no arc", "этот кадр не дуга")));

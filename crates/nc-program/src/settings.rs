@@ -246,10 +246,13 @@ fn takes_p(
     demand: &Demand<'_>,
     wanted: &Wanted<'_>,
 ) -> bool {
-    let arc = matches!(wanted.motion.unwrap_or(state.motion), MotionMode::Arc(..));
+    let motion = wanted.motion.unwrap_or(state.motion);
+    let curve = matches!(motion, MotionMode::Curve(..));
+    let arc = matches!(motion, MotionMode::Arc(..));
     let cycle = wanted.cycle.is_some() || (state.cycle.is_some() && wanted.motion.is_none());
     demand.owner != Owner::Motion
         || cycle
+        || curve
         || !words.m_codes.is_empty()
         || (arc && env.dialect.frames.arc_turns)
 }
@@ -505,6 +508,7 @@ fn set<'d>(
         Action::ArcClockwise => wanted.motion = Some(MotionMode::Arc(Turn::Clockwise, code)),
         Action::ArcCounterClockwise => wanted.motion = Some(MotionMode::Arc(Turn::CounterClockwise, code)),
         Action::Thread => wanted.motion = Some(MotionMode::Thread(code)),
+        Action::Curve(form) => wanted.motion = Some(MotionMode::Curve(*form, code)),
         Action::Plane(PlaneCode::Xy) => state.plane = Plane::Xy,
         Action::Plane(PlaneCode::Zx) => state.plane = Plane::Zx,
         Action::Plane(PlaneCode::Yz) => state.plane = Plane::Yz,

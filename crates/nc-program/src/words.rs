@@ -475,7 +475,12 @@ fn conflict(a: &CodeEntry, b: &CodeEntry) -> bool {
 pub(crate) const fn is_motion(action: &Action) -> bool {
     matches!(
         action,
-        Action::Rapid | Action::Line | Action::ArcClockwise | Action::ArcCounterClockwise | Action::Thread
+        Action::Rapid
+            | Action::Line
+            | Action::ArcClockwise
+            | Action::ArcCounterClockwise
+            | Action::Thread
+            | Action::Curve(_)
     )
 }
 

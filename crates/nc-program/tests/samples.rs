@@ -16,7 +16,7 @@ fn census(run: &Run) -> [usize; 5] {
             Motion::Rapid { .. } => 0,
             Motion::Feed(feed) => match feed.shape {
                 Shape::Line => 1,
-                Shape::Arc(_) => 2,
+                Shape::Arc(_) | Shape::Bezier(_) => 2,
             },
             Motion::Hole(_) => 3,
             Motion::Uncorrected { .. } => 4,

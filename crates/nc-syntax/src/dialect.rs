@@ -128,6 +128,23 @@ pub struct Numbers {
     pub spaces_inside: bool,
 }
 
+/// How a code says a curve by control points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveCode {
+    /// LinuxCNC's G5: from the start by I J, from the end by P Q.
+    Cubic,
+    /// LinuxCNC's G5.1: from the start by I J.
+    Quadratic,
+    /// LinuxCNC's G5.2: X Y of a control point, its weight P, the order L.
+    Points,
+    /// LinuxCNC's G5.3: the control points before are a curve.
+    End,
+    /// Fanuc's G6.2: X Y Z of a control point, its weight R, a knot K, the order P.
+    Knots,
+    /// LinuxCNC's G6.2: the same in a plane; Q says how the control divides the curve.
+    PlaneKnots,
+}
+
 /// What a G code does, as far as `nc-program` must know.
 ///
 /// ```
@@ -151,6 +168,8 @@ pub enum Action {
     ArcClockwise,
     /// G3
     ArcCounterClockwise,
+    /// G5 to G5.3, G6.2
+    Curve(CurveCode),
     /// G4: X, U or P are a time.
     Dwell,
     /// G4 whose time is set elsewhere: no word of the block is one.

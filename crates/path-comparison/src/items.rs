@@ -2,12 +2,14 @@
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
+use std::convert::Infallible;
 use std::rc::Rc;
 
 use machine_model::{Command, Models, PathModel, Play, Vector, turned_by_mm};
 use smallvec::SmallVec;
 use toolpath::{
-    CycleKind, FeedRate, Hole, HoleMove, Kinematics, MOST_PECKS, Motion, Partial, PeckRetreats, whole_pecks,
+    Bezier, CycleKind, Feed, FeedRate, Hole, HoleMove, Kinematics, MOST_PECKS, Motion, Partial, PeckRetreats,
+    Position, Shape, whole_pecks,
 };
 
 use crate::course::{Course, Others};
@@ -23,6 +25,8 @@ const SAMPLE_MM: f64 = 0.5;
 const PARABOLA_MM: f64 = 1e-7;
 /// Largest turn between places, rad.
 const SAMPLE_RAD: f64 = 0.5;
+/// A curve by control points is compared as lines that lie beside it by no more, mm.
+const CURVE_MM: f64 = 2e-5;
 /// Largest turn of the rotary axes between them, rad: at 500 mm a place leaves the parabola by some nanometres.
 const TURN_RAD: f64 = 0.01;
 /// No motion is asked for at more places.
@@ -449,11 +453,34 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         let common = Common { line, process, limit_mm, tool_mm: tool_mm.into(), dwell };
         self.feeds += usize::from(matches!(motion, Motion::Feed(_) | Motion::Hole(_)));
         match motion {
+            Motion::Feed(Feed { start, end, shape: Shape::Bezier(curve), rate, .. }) => {
+                self.along_a_curve(&common, [start, end], &curve, rate);
+            }
             Motion::Feed(feed) => self.feeding(&common, Way::of(&feed), feed.rate, [false; 2]),
             Motion::Rapid { start, end } => self.positioning(&common, start, end, Kind::Rapid),
             Motion::Uncorrected { end, .. } => self.positioning(&common, self.at, end, Kind::Uncorrected),
             Motion::Hole(hole) => self.hole(&common, &hole),
         }
+    }
+
+    /// A curve by control points, as so many lines that they are it but for [`CURVE_MM`]: where its parameter runs unevenly no
+    /// parabola of it says what is near.
+    fn along_a_curve(
+        &mut self,
+        common: &Common,
+        [start, end]: [Position; 2],
+        curve: &Bezier,
+        rate: FeedRate,
+    ) {
+        let mut from = start;
+        let (from_mm, to_mm) = (start.linear_mm, end.linear_mm);
+        let all: Result<(), Infallible> = curve.chords(&from_mm, &to_mm, CURVE_MM, &mut |chord| {
+            let to = Position { linear_mm: chord.end_mm, ..end };
+            self.feeding(common, Way::line(from, to), rate, [false; 2]);
+            from = to;
+            Ok(())
+        });
+        all.unwrap_or_else(|never| match never {});
     }
 
     /// From here on X, Y and Z are something else: nothing of where they were is comparable.

@@ -30,7 +30,8 @@ impl Way {
     #[must_use]
     pub fn of(feed: &Feed) -> Self {
         let arc = match feed.shape {
-            Shape::Line => None,
+            // A curve by control points is given as lines.
+            Shape::Line | Shape::Bezier(_) => None,
             Shape::Arc(arc) => {
                 let axes = arc.plane.axes();
                 let from_centre = |p: &Position| {

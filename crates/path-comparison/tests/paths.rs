@@ -78,7 +78,7 @@ fn cut(feeds: &[Feed], pieces: u32) -> Vec<Feed> {
         for k in 1..=pieces {
             let to: [f64; 3] = way.at(f64::from(k) / f64::from(pieces)).into();
             let shape = match whole.shape {
-                Shape::Line => Shape::Line,
+                Shape::Line | Shape::Bezier(_) => Shape::Line,
                 Shape::Arc(arc) => Shape::Arc(Arc { sweep_rad: arc.sweep_rad / f64::from(pieces), ..arc }),
             };
             all.push(feed(from, to, shape));

@@ -36,6 +36,7 @@
 
 mod check;
 mod chunks;
+mod curves;
 mod feed;
 mod guards;
 mod job;

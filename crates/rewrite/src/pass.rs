@@ -2,7 +2,7 @@
 
 use correction::Correction;
 use diagnostic::{Diagnostic, both};
-use nc_program::{Context, Questions};
+use nc_program::{Context, CurvePart, Questions};
 use nc_syntax::{Block, Letters, Reader};
 use smallvec::SmallVec;
 use toolpath::{Feed, FeedRate, Hole, Motion, Shape};
@@ -21,7 +21,7 @@ type Pieces = SmallVec<[nc_emit::Piece; 4]>;
 /// A pass over blocks.
 pub(crate) struct Pass<'a> {
     pub(crate) job: &'a Job<'a>,
-    codes: MotionCodes,
+    pub(crate) codes: MotionCodes,
     pub(crate) questions: Questions<'a>,
     pub(crate) state: State<'a>,
     pub(crate) out: Vec<u8>,
@@ -104,6 +104,11 @@ impl Pass<'_> {
         letters: Letters,
         motions: &[Motion],
     ) -> Result<(), Vec<Diagnostic>> {
+        match context.curve {
+            Some(CurvePart::Said) => return self.curve_said(block, context, letters),
+            Some(CurvePart::Cut) => return self.curve_cut(block, context, letters, motions),
+            None => {}
+        }
         let mut info = self.info(context, letters);
         info.reframed = context.unnamed.map(|lost| lost.is_some_and(|lost| lost.line == block.line));
         if let [Motion::Feed(feed)] = motions {
@@ -220,7 +225,7 @@ impl Pass<'_> {
     }
 
     /// A block that stays as it is; its motion code must still be in force in the output.
-    fn pass(
+    pub(crate) fn pass(
         &mut self,
         block: &Block<'_>,
         context: &Context,
@@ -304,7 +309,7 @@ impl Pass<'_> {
         [0, 1, 2].map(|axis| program_deg[axis] + aside_deg[axis])
     }
 
-    fn info(&self, context: &Context, letters: Letters) -> correction::Block {
+    pub(crate) fn info(&self, context: &Context, letters: Letters) -> correction::Block {
         info(self.job, context, letters)
     }
 
@@ -334,7 +339,7 @@ impl Pass<'_> {
         }
     }
 
-    fn note(
+    pub(crate) fn note(
         &mut self,
         block: &Block<'_>,
         context: &Context,

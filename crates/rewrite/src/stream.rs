@@ -368,7 +368,7 @@ mod tests {
     use crate::job::{Corrected, Figures};
 
     /// The pieces of programs: what a state can be carried through.
-    const PARTS: [&str; 15] = [
+    const PARTS: [&str; 16] = [
         "G1 X10. Y5. Z3. F500\n",
         "G1 X11.5 Y5.25 Z2.5\nX12. Y6.\nX12.5\nY7.125\nZ2.\nX13.25 Y8.5 Z1.75\n",
         "(A COMMENT)\nG0 Z20.\nX-5. Y-5.\nG1 Z1. F300\n",
@@ -384,6 +384,7 @@ mod tests {
         "G49\nG43 H2\nG0 X0. Y0. Z30.\nG1 Z5. F200\n",
         "N100 G1 X30. Y10.\r\nN110 X31.\r\n",
         "G1 X90. Y-60. Z12.\nX-90.\nY60.\n",
+        "G1 X5. Y5. Z3.\nG6.2 P3 K0. X5. Y5. Z3.\nK0. X7. Y5. Z3. (POINT)\nK0. X7. Y8. Z2.5\nM8\nK1.\nN9 K1.\nK1. F400\nG1 X6.\n",
     ];
 
     fn in_chunks(

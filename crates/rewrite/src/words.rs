@@ -19,6 +19,11 @@ pub(crate) struct MotionCodes {
 }
 
 impl MotionCodes {
+    /// G1.
+    pub(crate) const fn line(&self) -> GCode {
+        self.line
+    }
+
     /// From the dialect's table; codes it lacks keep their usual numbers and are never written.
     pub(crate) fn of(dialect: &Dialect) -> Self {
         let find = |action: Action, usual: u16| {
@@ -63,6 +68,8 @@ pub(crate) fn retreats(dialect: &Dialect) -> PeckRetreats {
 pub(crate) enum Original {
     Straight,
     Arc,
+    /// By control points.
+    Curve,
     Cycle,
 }
 
@@ -70,6 +77,7 @@ impl Original {
     pub(crate) fn of(motion: &Motion) -> Self {
         match motion {
             Motion::Feed(Feed { shape: Shape::Arc(_), .. }) => Self::Arc,
+            Motion::Feed(Feed { shape: Shape::Bezier(_), .. }) => Self::Curve,
             Motion::Hole(_) => Self::Cycle,
             _ => Self::Straight,
         }
@@ -168,6 +176,7 @@ impl Editing<'_> {
                 let own: &[u8] = match self.original {
                     Original::Straight => b"",
                     Original::Arc => b"IJKRP",
+                    Original::Curve => b"IJKLPQR",
                     Original::Cycle => b"IJKRQPL",
                 };
                 own.iter().for_each(|letter| push(*letter, Goal::Stays, 0));

@@ -4,18 +4,22 @@
 //! commands*: what the control tells the axes, machine coordinates, millimetres and degrees, after
 //! work offset and tool length. No text, no matrices, no machine.
 
+mod chords;
 mod feed_rate;
 mod frame;
 mod hole;
 mod motion;
+mod nurbs;
 mod plane;
 mod position;
 mod tilted;
 
+pub use chords::Chord;
 pub use feed_rate::FeedRate;
 pub use frame::{Frame, Similarity};
 pub use hole::{Cycle, CycleKind, Hole, HoleMove, MOST_PECKS, PeckRetreats, whole_pecks};
 pub use motion::{Arc, Division, Feed, Kinematics, Motion, Mover, Shape};
+pub use nurbs::{Bezier, MOST_DEGREE, Nurbs, NurbsFault};
 pub use plane::Plane;
 pub use position::{Partial, Position};
 pub use tilted::{NoAngles, RotaryChain, RotaryLink, TiltRule, TiltedPlane, WholeTurns, unit};

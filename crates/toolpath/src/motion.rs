@@ -1,4 +1,4 @@
-use crate::{FeedRate, Hole, Partial, Plane, Position, TiltedPlane};
+use crate::{Bezier, FeedRate, Hole, Partial, Plane, Position, TiltedPlane};
 
 /// What X, Y and Z are while rotary axes stand somewhere.
 ///
@@ -60,6 +60,7 @@ pub struct Arc {
 /// let turn_rad = |shape: Shape| match shape {
 ///     Shape::Line => 0.0,
 ///     Shape::Arc(arc) => arc.sweep_rad.abs(),
+///     Shape::Bezier(_) => unimplemented!("by its control points"),
 /// };
 /// let clockwise = Arc { plane: Plane::Xy, centre_mm: [10.0, 0.0], sweep_rad: -1.5 };
 /// assert_eq!((turn_rad(Shape::Line), turn_rad(Shape::Arc(clockwise))), (0.0, 1.5));
@@ -70,6 +71,8 @@ pub enum Shape {
     Line,
     /// Arc in a plane, the normal axis in step with the angle.
     Arc(Arc),
+    /// A curve by control points: what G5, G5.2 and G6.2 cut.
+    Bezier(Bezier),
 }
 
 /// A motion on a path that was promised.
@@ -154,7 +157,7 @@ pub enum Motion {
         /// Where it ends, as far as known.
         end: Partial,
     },
-    /// G1, G2, G3.
+    /// G1, G2, G3; a part of a curve by control points.
     Feed(Feed),
     /// G73, G74, G76, G81–G89.
     Hole(Hole),

@@ -231,6 +231,68 @@ impl Writer<'_> {
         self.line(&words);
     }
 
+    /// A curve by control points in the plane of G17, mostly whole: LinuxCNC's G5, G5.1 or G5.2, elsewhere G6.2.
+    fn curve(&mut self) {
+        let reach = self.reach().max(500);
+        let offset = |generator: &mut Self| [generator.step(reach), generator.step(reach)];
+        let mut place = self.at;
+        let [u, v] = offset(self);
+        (place[0], place[1]) = (place[0] + u, place[1] + v);
+        let linuxcnc = self.dialect == "linuxcnc";
+        if linuxcnc && self.one_in(2) {
+            let cubic = self.one_in(2);
+            let mut words = vec![if cubic { "G5" } else { "G5.1" }.to_owned()];
+            words.extend(self.target(place, [true, true, false]));
+            let [i, j] = offset(self);
+            if !cubic || !self.one_in(4) {
+                words.extend([self.word('I', i), self.word('J', j)]);
+            }
+            if cubic {
+                let [p, q] = offset(self);
+                words.extend([self.word('P', p), self.word('Q', q)]);
+            }
+            self.line(&words);
+            return;
+        }
+        let order = 3 + self.below(2);
+        let points = order - i64::from(self.one_in(8)) + self.below(4);
+        let begun = self.at;
+        for k in 0..points {
+            let [u, v] = if k == 0 && !linuxcnc { [0, 0] } else { offset(self) };
+            let mut to = self.at;
+            (to[0], to[1]) = (to[0] + u, to[1] + v);
+            let mut words = Vec::new();
+            if k == 0 {
+                words.push(if linuxcnc { "G5.2" } else { "G6.2" }.to_owned());
+                words.push(format!("{}{order}", if linuxcnc { 'L' } else { 'P' }));
+            }
+            words.extend(self.target(to, [true, true, false]));
+            if self.incremental {
+                // Each counts from the start.
+                self.at = begun;
+            }
+            let weight = 500 + self.below(4) * 500;
+            if linuxcnc {
+                words.push(self.word('P', weight));
+            } else {
+                words.push(format!("K{}.", (k - order + 1).max(0)));
+                words.push(format!("R{}.{}", weight / 1000, weight % 1000 / 100));
+            }
+            if self.one_in(8) {
+                words.push("F250.".to_owned());
+            }
+            self.line(&words);
+        }
+        if !self.one_in(16) {
+            if linuxcnc {
+                self.say("G5.3");
+            } else {
+                (0..order).for_each(|_| self.say(&format!("K{}.", points - order + 1)));
+            }
+        }
+        self.straight("G1");
+    }
+
     fn cycle(&mut self) {
         let kind = self.below(8);
         let (deep, near) = (self.at[2] - 1_000 - self.below(9_000), self.at[2] - self.below(1_000));
@@ -445,8 +507,9 @@ impl Writer<'_> {
     }
 
     fn part(&mut self) {
-        match self.below(33) {
+        match self.below(35) {
             32 => self.optional(),
+            33..=34 => self.curve(),
             0..=7 => self.straight("G1"),
             8..=10 => self.straight(""),
             11..=12 => self.straight("G0"),

@@ -187,12 +187,12 @@ pub(crate) fn tried(
             let [u, v, _] = arc.plane.axes();
             (arc.plane, Some([arc.centre_mm[0] - start[u], arc.centre_mm[1] - start[v]]))
         }
-        Shape::Line => (Plane::Xy, None),
+        Shape::Line | Shape::Bezier(_) => (Plane::Xy, None),
     };
     let own_end = if block.incremental[0] { control.at + (end - start) } else { end };
     let untouched = [Piece {
         kind: match shape {
-            Shape::Line => PieceKind::Line,
+            Shape::Line | Shape::Bezier(_) => PieceKind::Line,
             Shape::Arc(arc) => PieceKind::Arc {
                 clockwise: arc.sweep_rad < 0.0,
                 centre: Centre::Offsets([Goal::AsStated; 2]),

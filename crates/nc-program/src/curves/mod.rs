@@ -1,0 +1,321 @@
+//! Curves by control points: G5, G5.1, G5.2 with G5.3, G6.2.
+//!
+//! LinuxCNC's as its interpreter reads them (`interp_convert.cc`: `convert_spline`, `convert_nurbs`; G5.2 outside the plane of
+//! G17 and G6.2 since the versions behind 2.9, which refuse them), Fanuc's as the operator's manual of the series 15i has them
+//! (NURBS interpolation). A curve becomes rational Bézier curves
+//! ([`toolpath::Nurbs::beziers`]), each a feed motion of the block with which the curve is whole.
+
+mod bezier;
+mod faults;
+mod knots;
+mod points;
+
+use diagnostic::{Diagnostic, Text, both};
+use nc_syntax::dialect::CurveCode;
+use nc_syntax::{Letters, Span};
+use toolpath::{Division, Feed, Motion, Nurbs, Plane, Position, Shape};
+
+use crate::codes;
+use crate::modal::{Axis, Distance, FeedMode, Modal, Naming};
+use crate::motion::{Moved, compensated, feed_rate};
+use crate::settings::Environment;
+use crate::words::{
+    AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, Preparatory, ROTARY_LETTERS, Refusal, Words,
+};
+
+/// What a block is of a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurvePart {
+    /// It says a part of one that a later block cuts: nothing moves yet.
+    Said,
+    /// The curve is whole: its motions are the block's.
+    Cut,
+}
+
+/// A curve of several blocks that is not whole yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Begun {
+    /// Line of its first block.
+    pub line: u64,
+    form: CurveCode,
+    /// What stays as it is until the curve is whole.
+    start: Position,
+    degree: usize,
+    /// Axis commands, mm.
+    points_mm: Vec<[f64; 3]>,
+    weights: Vec<f64>,
+    knots: Vec<f64>,
+    /// Axes that its control points name.
+    axes: Letters,
+    /// Whether K and R above zero have a decimal point, where one has been read.
+    pointed: Option<bool>,
+}
+
+/// More control points than any program has: the state of a program is carried from block to block.
+const MOST_POINTS: usize = 4096;
+
+/// Letters of a control point.
+const POINT_LETTERS: Letters = LINEAR_LETTERS.or(Letters::of(b"PLKQR"));
+
+/// A block in the mode of a curve.
+pub(crate) fn execute(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    before: &Modal,
+    state: &mut Modal,
+    form: CurveCode,
+    moved: &mut Moved,
+) -> Outcome<()> {
+    let written = words.codes.iter().find(|code| is_curve(code));
+    if written.is_none() && !words.has(POINT_LETTERS.or(AXIS_LETTERS).or(Letters::of(b"IJQ"))) {
+        return Ok(());
+    }
+    let span = written.map_or_else(|| words.span(POINT_LETTERS), |code| code.span);
+    serves(words, before, state, span)?;
+    match form {
+        CurveCode::Cubic | CurveCode::Quadratic => bezier::bezier(env, words, before, state, form, moved),
+        CurveCode::Points => points::point(env, words, before, state, moved),
+        CurveCode::End => points::whole_by_end(words, state, moved, span),
+        CurveCode::Knots | CurveCode::PlaneKnots => {
+            knots::knot(env, words, before, state, moved, form, written.is_some())
+        }
+    }
+}
+
+/// A code of a curve.
+fn is_curve(code: &Preparatory<'_>) -> bool {
+    matches!(code.entry.action, nc_syntax::dialect::Action::Curve(_))
+}
+
+fn refuse(words: &Words<'_, '_, '_>, span: Span, message: Text, label: Text) -> Refusal {
+    words.refuse(codes::CURVE, message, span, label)
+}
+
+/// What no curve goes together with, whatever its form.
+fn serves(words: &Words<'_, '_, '_>, before: &Modal, state: &Modal, span: Span) -> Outcome<()> {
+    let lines = || both!("let the CAM write lines or arcs", "выводите из CAM прямые или дуги");
+    if compensated(before, state) {
+        return Err(refuse(
+            words,
+            span,
+            both!("a curve under cutter compensation", "кривая при коррекции на радиус"),
+            both!("no control offsets it", "ни одна стойка не строит её эквидистанту"),
+        )
+        .help(both!(
+            "cancel the compensation with G40 before it, or let the CAM write the offset path",
+            "отмените перед ней коррекцию функцией G40 или выводите эквидистанту из CAM"
+        )));
+    }
+    if words.has(ROTARY_LETTERS) {
+        return Err(refuse(
+            words,
+            words.span(ROTARY_LETTERS),
+            both!("a rotary axis in a curve", "поворотная ось в кривой"),
+            both!("its path is not resolved", "такой путь не разворачивается"),
+        )
+        .help(lines()));
+    }
+    if state.feed_mode == FeedMode::InverseTime {
+        return Err(refuse(
+            words,
+            span,
+            both!("a curve under G93", "кривая при G93"),
+            both!(
+                "the time of the whole curve or of its parts? controls differ",
+                "время всей кривой или её частей? у стоек по-разному"
+            ),
+        )
+        .help(both!("program the curve with G94", "запрограммируйте кривую при G94")));
+    }
+    if !state.transform.is_none() {
+        let message = both!("a curve under {}", "кривая, пока действует {:#}", state.transform.name());
+        return Err(refuse(
+            words,
+            span,
+            message,
+            both!(
+                "controls forbid it, or differ in what it does",
+                "стойки это запрещают или делают по-разному"
+            ),
+        )
+        .help(lines()));
+    }
+    Ok(())
+}
+
+/// The axes of LinuxCNC's curves: those of the plane in force, of G5 and G5.1 X and Y alone.
+fn plane_axes(words: &Words<'_, '_, '_>, state: &Modal, form: CurveCode, span: Span) -> Outcome<Letters> {
+    let only_xy = matches!(form, CurveCode::Cubic | CurveCode::Quadratic);
+    if only_xy && state.plane != Plane::Xy {
+        return Err(refuse(
+            words,
+            span,
+            both!("{} outside the plane of G17", "{} не в плоскости G17", words.text(span)),
+            both!("this control cuts it in X and Y only", "эта стойка режет её только в X и Y"),
+        )
+        .help(both!(
+            "write G17 before it, or G5.2 for another plane",
+            "напишите перед ней G17, а для другой плоскости G5.2"
+        )));
+    }
+    let [first, second, normal] = state.plane.axes();
+    let across = Letters::of(&[LINEAR[normal]]);
+    if words.has(across) {
+        let letter = LINEAR[normal] as char;
+        return Err(refuse(
+            words,
+            words.span(across),
+            both!("{letter} in a curve of another plane", "{letter} в кривой другой плоскости"),
+            both!("the control does not move it there", "стойка её здесь не перемещает"),
+        )
+        .help(both!(
+            "select the curve's plane with G17, G18 or G19, or move {letter} in a block of its own",
+            "выберите плоскость кривой функцией G17, G18 или G19 или переместите {letter} отдельным кадром"
+        )));
+    }
+    Ok(Letters::of(&[LINEAR[first], LINEAR[second]]))
+}
+
+impl Begun {
+    fn add(&mut self, words: &Words<'_, '_, '_>, place_mm: [f64; 3], weight: f64) -> Outcome<()> {
+        if self.points_mm.len() == MOST_POINTS {
+            return Err(refuse(
+                words,
+                words.span(LINEAR_LETTERS),
+                both!(
+                    "a curve of more than {MOST_POINTS} control points",
+                    "в кривой больше {MOST_POINTS} контрольных точек"
+                ),
+                both!("no control takes so many", "столько не принимает ни одна стойка"),
+            )
+            .help(both!("let the CAM write several curves", "выводите из CAM несколько кривых")));
+        }
+        self.points_mm.push(place_mm);
+        self.weights.push(weight);
+        Ok(())
+    }
+
+    /// Knots and weights above zero all have a point, or none has: without it they count something else.
+    fn as_pointed(&mut self, words: &Words<'_, '_, '_>) -> Outcome<()> {
+        for letter in [b'K', b'R'] {
+            let Some((number, span)) = words.number(letter) else { continue };
+            if number.decimal.mantissa == 0 {
+                continue;
+            }
+            if *self.pointed.get_or_insert(number.has_point) != number.has_point {
+                return Err(refuse(
+                    words,
+                    span,
+                    both!(
+                        "knots and weights with and without a decimal point",
+                        "узлы и веса с десятичной точкой и без неё"
+                    ),
+                    both!(
+                        "without it some controls count thousandths",
+                        "без неё некоторые стойки считают тысячные"
+                    ),
+                )
+                .help(both!("write all of them with a decimal point", "пишите их все с десятичной точкой")));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The motions of a whole curve.
+fn cut(
+    words: &Words<'_, '_, '_>,
+    state: &mut Modal,
+    moved: &mut Moved,
+    nurbs: &Nurbs,
+    start: &Position,
+    axes: Letters,
+    span: Span,
+) -> Outcome<()> {
+    let rate = feed_rate(words, state)?;
+    let pieces = nurbs.beziers().map_err(|fault| faults::of_fault(words, span, &fault))?;
+    let at = |linear_mm| Position { linear_mm, ..*start };
+    let mut from = start.linear_mm;
+    for (end_mm, curve) in pieces {
+        let (start, end) = (at(from), at(end_mm));
+        let shape = if curve.degree() == 1 { Shape::Line } else { Shape::Bezier(curve) };
+        moved.motions.push(Motion::Feed(Feed { start, end, shape, rate, division: Division::Any }));
+        from = end_mm;
+    }
+    state.axes.linear = from.map(Axis::At);
+    if state.distance == Distance::Absolute {
+        // Its control points have said where they are.
+        for (axis, letter) in LINEAR.iter().enumerate() {
+            if axes.contains(*letter) {
+                (state.named[axis], moved.unnamed[axis]) = (Naming::Named, None);
+            }
+        }
+    }
+    moved.curve = Some(CurvePart::Cut);
+    Ok(())
+}
+
+/// A curve that has begun and what else stands in the block.
+pub(crate) fn check(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    before: &Modal,
+    state: &mut Modal,
+) -> Outcome<()> {
+    if words.has(AXIS_LETTERS) || !words.codes.is_empty() || !words.commands.is_empty() {
+        // Only a G5 that follows at once goes on from a G5.
+        state.curve_leaves_mm = None;
+    }
+    let Some(begun) = &before.curve else { return Ok(()) };
+    let stops = words.m_codes.iter().find(|(number, _)| {
+        env.dialect
+            .m_code(*number)
+            .is_some_and(|row| row.ends_program || row.loses_position.contains(&true) || row.changes_tool)
+    });
+    let other = words.codes.iter().find(|code| !is_curve(code)).map(|code| code.span);
+    let offset = words.has(Letters::of(b"DH")).then(|| words.span(Letters::of(b"DH")));
+    let command = words.commands.first().map(|command| command.1);
+    let other = other.or(offset).or(command);
+    let form =
+        words.codes.iter().find(|code| is_curve(code) && !belongs(code, begun.form)).map(|code| code.span);
+    match stops.map(|(_, span)| *span).or(other).or(form) {
+        Some(span) => Err(open(words, begun, span)),
+        None => Ok(()),
+    }
+}
+
+/// The refusal of what stands inside a curve.
+pub(crate) fn open(words: &Words<'_, '_, '_>, begun: &Begun, span: Span) -> Box<Diagnostic> {
+    let message = both!("the curve of line {} is not whole", "кривая из строки {} не окончена", begun.line);
+    let label = both!("{} stands inside it", "внутри неё стоит {}", words.text(span));
+    let help = match begun.form {
+        CurveCode::Knots | CurveCode::PlaneKnots => faults::every_knot(begun),
+        _ => both!(
+            "end the curve with G5.3 before this block",
+            "закончите кривую функцией G5.3 до этого кадра"
+        ),
+    };
+    words.refuse(codes::CURVE_OPEN, message, span, label).help(help)
+}
+
+/// A curve of several blocks is whole or not at all.
+fn not_skipped(words: &Words<'_, '_, '_>, span: Span) -> Outcome<()> {
+    if words.block.switches() == 0 {
+        return Ok(());
+    }
+    Err(refuse(
+        words,
+        span,
+        both!("a block of a curve that may be skipped", "кадр кривой, который можно пропустить"),
+        both!("without it the curve is another", "без него кривая другая"),
+    )
+    .help(both!("write the curve in blocks without `/`", "напишите кривую кадрами без `/`")))
+}
+
+fn belongs(code: &Preparatory<'_>, form: CurveCode) -> bool {
+    use nc_syntax::dialect::Action;
+    match form {
+        CurveCode::Points => matches!(code.entry.action, Action::Curve(CurveCode::Points | CurveCode::End)),
+        _ => code.entry.action == Action::Curve(form),
+    }
+}

@@ -1,0 +1,151 @@
+//! G5.2 and G5.3: a NURBS whose knots the control chooses.
+
+use diagnostic::{Text, both};
+use nc_syntax::dialect::CurveCode;
+use nc_syntax::{Letters, Span};
+use toolpath::{MOST_DEGREE, Nurbs};
+
+use super::faults::{order_refused, weight_refused};
+use super::{Begun, CurvePart, POINT_LETTERS, cut, not_skipped, plane_axes, refuse};
+use crate::frames::settle;
+use crate::modal::{Modal, MotionMode};
+use crate::motion::Moved;
+use crate::position::{end, require_frame, require_known};
+use crate::settings::Environment;
+use crate::words::{Outcome, Words};
+
+/// A control point of G5.2.
+pub(super) fn point(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    before: &Modal,
+    state: &mut Modal,
+    moved: &mut Moved,
+) -> Outcome<()> {
+    const P: Letters = Letters::of(b"P");
+    let span = words.span(POINT_LETTERS);
+    not_skipped(words, span)?;
+    let place = plane_axes(words, state, CurveCode::Points, span)?;
+    settle(words, state)?;
+    let frame = require_frame(env, words, state)?.clone();
+    let start = require_known(words, &state.axes, &Text::pair("the curve", "кривая"))?;
+    let first = before.curve.is_none();
+    let mut begun = state.curve.take().unwrap_or_else(|| {
+        let line = words.block.line;
+        let (points_mm, weights) = (vec![start.linear_mm], vec![1.0]);
+        let form = CurveCode::Points;
+        Box::new(Begun {
+            line,
+            form,
+            start,
+            degree: 2,
+            points_mm,
+            weights,
+            knots: vec![],
+            axes: place,
+            pointed: None,
+        })
+    });
+    if let Some(order) = words.whole(b'L')? {
+        let degree = usize::try_from(order).unwrap_or(usize::MAX).wrapping_sub(1);
+        if !first || !(2..=MOST_DEGREE).contains(&degree) {
+            return Err(order_refused(words, b'L', !first, [3, MOST_DEGREE as u32 + 1]));
+        }
+        begun.degree = degree;
+    }
+    let weight = words.plain(b'P');
+    both_axes(words, place)?;
+    match weight {
+        Some(weight) if weight > 0.0 => {}
+        Some(_) => return Err(weight_refused(words, P)),
+        None if words.has(place) => {
+            return Err(refuse(
+                words,
+                words.span(place),
+                both!("a control point without its weight P", "контрольная точка без веса P"),
+                both!("the control would take -1, or the last one", "стойка взяла бы -1 или прежний"),
+            )
+            .help(both!("write P1 for an even curve", "для обычной кривой напишите P1")));
+        }
+        None => {}
+    }
+    match weight {
+        Some(weight) if words.has(place) => {
+            // Increments count from where the axes stand, which is the curve's start until it is cut.
+            let at = require_known(words, &end(words, state, &frame)?, &Text::pair("the curve", "кривая"))?;
+            begun.add(words, at.linear_mm, weight)?;
+        }
+        Some(weight) if first => begun.weights[0] = weight,
+        Some(_) => {
+            return Err(refuse(
+                words,
+                words.span(P),
+                both!("a weight without its control point", "вес без контрольной точки"),
+                both!(
+                    "only in a curve's first block it is that of the start",
+                    "только в первом кадре кривой он относится к её началу"
+                ),
+            )
+            .help(both!(
+                "write X, Y and P of each control point",
+                "пишите X, Y и P каждой контрольной точки"
+            )));
+        }
+        None => {}
+    }
+    state.curve = Some(begun);
+    moved.curve = Some(CurvePart::Said);
+    Ok(())
+}
+
+/// A control point in a plane has both of its axes.
+pub(super) fn both_axes(words: &Words<'_, '_, '_>, axes: Letters) -> Outcome<()> {
+    if !words.has(axes) || words.letters.and(axes) == axes {
+        return Ok(());
+    }
+    let message = both!(
+        "a control point with only one of {}",
+        "контрольная точка только с одним словом из {}",
+        axes.names()
+    );
+    Err(refuse(words, words.span(axes), message, both!("both were expected", "ожидались оба"))
+        .help(both!("write both of each control point", "пишите оба слова каждой контрольной точки")))
+}
+
+/// G5.3: the curve is whole.
+pub(super) fn whole_by_end(
+    words: &Words<'_, '_, '_>,
+    state: &mut Modal,
+    moved: &mut Moved,
+    span: Span,
+) -> Outcome<()> {
+    state.motion = MotionMode::None;
+    let Some(begun) = state.curve.take() else {
+        return Err(refuse(
+            words,
+            span,
+            both!("{} without G5.2 before it", "{} без G5.2 перед ней", words.text(span)),
+            both!("no curve has begun", "кривая не начата"),
+        )
+        .help(both!(
+            "begin the curve with G5.2 and its control points",
+            "начните кривую функцией G5.2 и контрольными точками"
+        )));
+    };
+    let others = POINT_LETTERS.or(Letters::of(b"IJQ"));
+    if words.has(others) {
+        return Err(refuse(
+            words,
+            words.span(others),
+            both!("words beside {}", "слова рядом с {}", words.text(span)),
+            both!("the control would leave them out", "стойка бы их пропустила"),
+        )
+        .help(both!(
+            "write the last control point in a block before it",
+            "напишите последнюю контрольную точку кадром раньше"
+        )));
+    }
+    let begun = *begun;
+    let nurbs = Nurbs::uniform(begun.degree, begun.points_mm, begun.weights);
+    cut(words, state, moved, &nurbs, &begun.start, begun.axes, span)
+}
