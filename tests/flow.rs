@@ -154,7 +154,7 @@ fn subprograms_come_from_named_folders_and_from_nowhere_else() {
     let said = messages(&place.correct("linuxcnc", CROOKED, &more));
     assert!(said.contains("VP0122") && said.contains("pocket.ngc:3:1"), "{said}");
     std::fs::write(place.path("subs/pocket.ngc"), sub.replace("F200", "")).expect("writable");
-    std::fs::write(place.path("subs/pocket.ngc"), sub.replace("G1 Y#2", "G5 X1 Y#2")).expect("writable");
+    std::fs::write(place.path("subs/pocket.ngc"), sub.replace("G1 Y#2", "G33.1 Z-#2 K1")).expect("writable");
     let said = messages(&place.correct("linuxcnc", CROOKED, &more));
     assert!(said.contains("VP0208") && said.contains("pocket.ngc:3:1"), "{said}");
     let missing = place.correct("linuxcnc", CROOKED, &["--include", "no/such/folder"]);

@@ -48,7 +48,7 @@ impl Corrector<'_> {
         (0..8).all(none_at) && self.model.chord_bound_mm(&across) == 0.0
     }
 
-    /// A part of a curve by control points: (P11) of docs/path-promise.md.
+    /// A part of a curve by control points: (P12) of docs/path-promise.md.
     ///
     /// A chord and what it stands for are nowhere further apart than (112) says, and the line that is written is proven to lead
     /// the tool along the chord within what is left of the tolerance.

@@ -12,7 +12,7 @@ use crate::solve::{inside, solve};
 use crate::turning_bound::error_in_turn;
 use crate::{
     Axis, Command, Description, Engine, EngineId, LinearAxis, Move, PathModel, Range, RigidBody, RotaryAxis,
-    Solution, SolveError, Squareness, Turn, Vector, Volume,
+    RotaryPlay, Solution, SolveError, Squareness, Turn, Vector, Volume,
 };
 
 /// A machine under tool centre point control (G43.4, TRAORI, switched kinematics).
@@ -98,13 +98,16 @@ impl Course {
 
 /// How the rotary axes turn on a stretch; `None` where they stand.
 fn turning(stretch: &Move) -> Option<Turn> {
-    stretch.turn.filter(|turn| turn.commanded_rad[0] != turn.commanded_rad[1])
+    let moves = |ends: &[Vector; 2]| ends[0] != ends[1];
+    stretch.turn.filter(|turn| moves(&turn.commanded_rad) || moves(&turn.lag_rad))
 }
 
 /// A stretch on which the rotary axes stand, with its state saying where.
 fn as_it_stands(stretch: &Move) -> Move {
-    let rotary_rad = stretch.turn.map_or(stretch.state.rotary_rad, |turn| turn.commanded_rad[0]);
-    Move { state: Command { rotary_rad, ..stretch.state }, turn: None, ..*stretch }
+    let Some(turn) = stretch.turn else { return *stretch };
+    let rotary_play = RotaryPlay { lag_rad: turn.lag_rad[0], ..stretch.state.rotary_play };
+    let state = Command { rotary_rad: turn.commanded_rad[0], rotary_play, ..stretch.state };
+    Move { state, turn: None, ..*stretch }
 }
 
 impl TipControl {

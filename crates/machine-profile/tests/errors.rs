@@ -304,7 +304,7 @@ fn location_error_of_another_axis() {
     assert_snapshot!(told(&format!("{}\n[rotary.C]\nEX0A_um = 1\n", base())), @r####"
     error[VP0302]: unknown key `EX0A_um`
       line 13: `EX0A_um` not a key of this table
-    help: did you mean `EX0C_um`? Known here: centre_mm, travel_deg, direction, tilt, resolution_deg, errors, EX0C_um, EY0C_um, EA0C_urad, EB0C_urad
+    help: did you mean `EX0C_um`? Known here: centre_mm, travel_deg, direction, tilt, resolution_deg, errors, errors_negative, backlash_urad, EX0C_um, EY0C_um, EA0C_urad, EB0C_urad
     "####);
 }
 

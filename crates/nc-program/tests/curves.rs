@@ -172,6 +172,9 @@ proptest! {
         let mut at = [0.0, 0.0, 10.0];
         for step in &run.steps[3..] {
             for motion in &step.motions {
+                if let Motion::Rapid { end, .. } = motion {
+                    at = [0, 1, 2].map(|axis| end.linear_mm[axis].unwrap_or(at[axis]));
+                }
                 let Motion::Feed(feed) = motion else { continue };
                 prop_assert_eq!(feed.start.linear_mm, at, "{}", text);
                 at = feed.end.linear_mm;

@@ -39,7 +39,7 @@ impl Bezier {
     ///     (chord.beside_mm <= 0.01).then_some(()).ok_or(())
     /// };
     /// curve.chords(&[0.0; 3], &[10.0, 0.0, 0.0], 0.01, count).unwrap();
-    /// assert_eq!(lines, 17);
+    /// assert_eq!(lines, 21);
     /// ```
     ///
     /// # Errors
