@@ -36,7 +36,7 @@ impl Kind {
     }
 }
 
-/// What stands in the braces of [`super::words`].
+/// What stands in the braces of `words.rs`.
 #[derive(Clone, Debug, Default)]
 pub struct Figures<'a> {
     /// Texts.

@@ -32,7 +32,7 @@ pub const CAUSES: usize = 2;
 /// A cause that can be switched off.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cause {
-    /// What kind: a key of [`super::words`].
+    /// What kind: a key of `words.rs`.
     pub kind: &'static str,
     /// Which one, as in the profile: `EC0Y`, `X`, `thermal.X`.
     pub symbol: String,
