@@ -43,19 +43,30 @@ fn calibrations_open_print_and_fit_a_telephone() {
         return;
     };
     for (report, sections, drawings) in [(positioning(), 2, 1), (circles(), 5, 18)] {
-        let visit = visit(browser, &report.page);
-        visit.was_quiet();
-        assert_eq!(visit.dom.matches("<section ").count(), sections);
-        assert_eq!(visit.dom.matches("<svg ").count(), drawings);
-        // Wide tables and drawings scroll in themselves; the page does not.
-        assert_eq!(width_in_a_frame(browser, &report, 390), 390);
-        let pdf = report.folder.path().join("report.pdf");
-        let more = [format!("--print-to-pdf={}", pdf.display()), "--no-pdf-header-footer".to_owned()];
-        browse(browser, &report.page, &more);
-        let bytes = std::fs::read(&pdf).expect("a PDF");
-        let pages = bytes.windows(12).filter(|w| w == b"/Type /Page\n").count();
-        assert!((1..12).contains(&pages), "{pages} pages");
+        opens_prints_and_fits(browser, &report, sections, drawings, 1..12);
     }
+}
+
+/// A page of so many sections and drawings opens without a message, fits a telephone and prints on so many sheets.
+pub(crate) fn opens_prints_and_fits(
+    browser: &str,
+    report: &Report,
+    sections: usize,
+    drawings: usize,
+    sheets: std::ops::Range<usize>,
+) {
+    let visit = visit(browser, &report.page);
+    visit.was_quiet();
+    assert_eq!(visit.dom.matches("<section ").count(), sections);
+    assert_eq!(visit.dom.matches("<svg ").count(), drawings);
+    // Wide tables and drawings scroll in themselves; the page does not.
+    assert_eq!(width_in_a_frame(browser, report, 390), 390);
+    let pdf = report.folder.path().join("report.pdf");
+    let more = [format!("--print-to-pdf={}", pdf.display()), "--no-pdf-header-footer".to_owned()];
+    browse(browser, &report.page, &more);
+    let bytes = std::fs::read(&pdf).expect("a PDF");
+    let pages = bytes.windows(12).filter(|w| w == b"/Type /Page\n").count();
+    assert!(sheets.contains(&pages), "{pages} pages");
 }
 
 #[test]

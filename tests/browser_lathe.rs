@@ -1,7 +1,7 @@
 //! Pages of lathes: what `predict --lathe` and `calibrate turning` show, in both languages, and in a browser.
 
-use crate::browser::{Report, browse, chromium, data_of, nothing_acted, pictures, text, visit};
-use crate::browser_calibrate::width_in_a_frame;
+use crate::browser::{Report, chromium, data_of, nothing_acted, pictures, text};
+use crate::browser_calibrate::opens_prints_and_fits;
 use crate::common::{messages, run};
 
 const LATHE: &str = "machine-profiles/generic_lathe.toml";
@@ -154,17 +154,7 @@ fn pages_of_lathes_open_print_and_fit_a_telephone() {
     let russian = ["--lang", "ru"];
     let reports = [(turned(SHAFT, &[]), 5, 4), (turned(SHAFT, &russian), 5, 4), (pieces(&[]), 4, 1)];
     for (report, sections, drawings) in reports {
-        let visit = visit(browser, &report.page);
-        visit.was_quiet();
-        assert_eq!(visit.dom.matches("<section ").count(), sections);
-        assert_eq!(visit.dom.matches("<svg ").count(), drawings);
-        assert_eq!(width_in_a_frame(browser, &report, 390), 390);
-        let pdf = report.folder.path().join("report.pdf");
-        let more = [format!("--print-to-pdf={}", pdf.display()), "--no-pdf-header-footer".to_owned()];
-        browse(browser, &report.page, &more);
-        let bytes = std::fs::read(&pdf).expect("a PDF");
-        let pages = bytes.windows(12).filter(|w| w == b"/Type /Page\n").count();
-        assert!((1..8).contains(&pages), "{pages} pages");
+        opens_prints_and_fits(browser, &report, sections, drawings, 1..8);
     }
 }
 

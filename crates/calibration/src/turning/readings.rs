@@ -450,25 +450,31 @@ fn order_of_parts(rows: &[TurnedReading], tools: &Levels) -> Vec<f64> {
     let mut order = vec![0.0; rows.len()];
     for level in 0..tools.count() {
         let own: Vec<usize> = (0..rows.len()).filter(|k| tools.of_row[*k] == level).collect();
-        let mut parts: Vec<usize> = Vec::new();
-        for k in &own {
-            if !parts.contains(&rows[*k].part) {
-                parts.push(rows[*k].part);
-            }
-        }
-        if own.iter().all(|k| rows[*k].time_s.is_some()) {
-            let start = |part: usize| {
-                let times = own.iter().filter(|k| rows[**k].part == part).filter_map(|k| rows[*k].time_s);
-                times.fold(f64::INFINITY, f64::min)
-            };
-            parts.sort_by(|a, b| start(*a).total_cmp(&start(*b)));
-        }
-        for k in own {
-            let place = parts.iter().position(|part| *part == rows[k].part).unwrap_or(0);
-            order[k] = place as f64 - 0.5 * (parts.len() - 1) as f64;
-        }
+        order_within(&own, |k| (rows[k].part, rows[k].time_s), &mut order);
     }
     order
+}
+
+/// The same for the rows `own` of one tool; `of`: part and time of a row, s.
+pub(super) fn order_within(own: &[usize], of: impl Fn(usize) -> (usize, Option<f64>), order: &mut [f64]) {
+    let mut parts: Vec<usize> = Vec::new();
+    for k in own {
+        if !parts.contains(&of(*k).0) {
+            parts.push(of(*k).0);
+        }
+    }
+    if own.iter().all(|k| of(*k).1.is_some()) {
+        let start = |part: usize| {
+            let times =
+                own.iter().map(|k| of(*k)).filter(|(of, _)| *of == part).filter_map(|(_, time_s)| time_s);
+            times.fold(f64::INFINITY, f64::min)
+        };
+        parts.sort_by(|a, b| start(*a).total_cmp(&start(*b)));
+    }
+    for k in own {
+        let place = parts.iter().position(|part| *part == of(*k).0).unwrap_or(0);
+        order[*k] = place as f64 - 0.5 * (parts.len() - 1) as f64;
+    }
 }
 
 /// What an F of so many degrees of freedom exceeds with this chance; infinite ones below: the noise is known.

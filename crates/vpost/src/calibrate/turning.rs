@@ -11,7 +11,7 @@ use calibration::turning::{
 };
 use clap::Args;
 use diagnostic::{Diagnostic, Speaks, Text, both};
-use machine_model::{Axis, Command, PathModel, Vector};
+use machine_model::{Axis, Command, PathModel, RotaryPlay, Vector};
 use machine_profile::{Calibrated, LatheParts, Profile};
 use measurement_files::{Row, Sheet, numbered};
 
@@ -101,6 +101,50 @@ pub(crate) fn vector_mm(profile: &Profile, tool: &str) -> Result<Vector, Text> {
     })
 }
 
+/// The part that a row was read on.
+pub(crate) fn part_name<'s>(row: &Row<'s>) -> Result<std::borrow::Cow<'s, str>, Failure> {
+    let name = row.text("part");
+    if name.is_empty() {
+        let help = both!(
+            "name the clamping and finishing cut, like P1",
+            "назовите установку и чистовой проход, например P1"
+        );
+        let message = both!("a reading of no part", "показание без образца");
+        return Err(row.refuse(CELL, "part", message, help).into());
+    }
+    Ok(name)
+}
+
+/// Where the carriage stood that cut a diameter, both mm.
+pub(crate) fn stood_at(
+    row: &Row<'_>,
+    profile: &Profile,
+    tool_mm: Vector,
+    z_mm: f64,
+    diameter_mm: f64,
+) -> Result<Command, Failure> {
+    let centre_mm = profile.lathe.as_ref().map_or(0.0, |lathe| lathe.spindle.centre_mm.x);
+    let linear_mm = Vector::new(centre_mm + 0.5 * diameter_mm, tool_mm.y, z_mm) - tool_mm;
+    if (profile.volume().nearest(&linear_mm) - linear_mm).amax() > 1e-9 {
+        let message = both!(
+            "the tool stands outside the travel or the tables of the profile there",
+            "инструмент стоит там вне хода или таблиц профиля"
+        );
+        let help = both!(
+            "z_mm is the machine's Z, diameter_mm twice the machine's X from the spindle's axis",
+            "z_mm — Z станка, diameter_mm — удвоенный X станка от оси шпинделя"
+        );
+        return Err(row.refuse(AXES, "z_mm", message, help).into());
+    }
+    Ok(Command {
+        linear_mm,
+        rotary_rad: Vector::zeros(),
+        tool_mm,
+        direction: [0; 3],
+        rotary_play: RotaryPlay::default(),
+    })
+}
+
 impl Parts {
     fn read(&mut self, path: &Path, profile: &Profile, ignore: &[String]) -> Result<(), Failure> {
         let sheet = sources::sheet(path, COLUMNS, EXPECTED, ignore)?;
@@ -132,16 +176,7 @@ impl Parts {
                     .into());
             }
         };
-        let name = row.text("part");
-        if name.is_empty() {
-            let help = both!(
-                "name the clamping and finishing cut, like P1",
-                "назовите установку и чистовой проход, например P1"
-            );
-            return Err(row
-                .refuse(CELL, "part", both!("a reading of no part", "показание без образца"), help)
-                .into());
-        }
+        let name = part_name(row)?;
         let (part, tool) = (numbered(&mut self.parts, &name), row.text("tool"));
         let tool_mm = vector_mm(profile, &tool).map_err(|help| {
             let message = both!(
@@ -175,21 +210,7 @@ impl Parts {
                 )
                 .into());
         }
-        let centre_mm = profile.lathe.as_ref().map_or(0.0, |lathe| lathe.spindle.centre_mm.x);
-        let tip_mm = Vector::new(centre_mm + 0.5 * diameter_mm, tool_mm.y, z_mm);
-        let linear_mm = tip_mm - tool_mm;
-        let volume = profile.volume();
-        if (volume.nearest(&linear_mm) - linear_mm).amax() > 1e-9 {
-            let message = both!(
-                "the tool stands outside the travel or the tables of the profile there",
-                "инструмент стоит там вне хода или таблиц профиля"
-            );
-            let help = both!(
-                "z_mm is the machine's Z, diameter_mm twice the machine's X from the spindle's axis",
-                "z_mm — Z станка, diameter_mm — удвоенный X станка от оси шпинделя"
-            );
-            return Err(row.refuse(AXES, "z_mm", message, help).into());
-        }
+        let command = stood_at(row, profile, tool_mm, z_mm, diameter_mm)?;
         let uncertainty_mm = row.number("u_um")?.map(|u| u * 1e-3);
         if uncertainty_mm.is_some_and(|u| u <= 0.0) {
             let message = both!("an uncertainty is above zero", "неопределённость больше нуля");
@@ -206,13 +227,7 @@ impl Parts {
             part,
             tool,
             feature,
-            command: Command {
-                linear_mm,
-                rotary_rad: Vector::zeros(),
-                tool_mm,
-                direction: [0; 3],
-                rotary_play: Default::default(),
-            },
+            command,
             deviation_mm: d_um * 1e-3,
             by_effects_mm: 0.0,
             uncertainty_mm,

@@ -7,16 +7,15 @@ use calibration::turning::{
     lathe_causes,
 };
 use diagnostic::{Speaks, Text, both};
-use machine_model::{Command, Vector};
 use machine_profile::{LatheParts, Profile};
 use measurement_files::{Row, Sheet, numbered};
 use serde_json::{Value, json};
 
 use super::Diagnose;
 use crate::arguments::Shared;
-use crate::calibrate::codes::{AXES, CELL, UNITS, question};
+use crate::calibrate::codes::{CELL, UNITS, question};
 use crate::calibrate::sources;
-use crate::calibrate::turning::{MOST_UM, base_of, by_effects, vector_mm};
+use crate::calibrate::turning::{MOST_UM, base_of, by_effects, part_name, stood_at, vector_mm};
 use crate::figures::round;
 use crate::file;
 use crate::message::{Failure, Messages};
@@ -117,15 +116,7 @@ impl Parts {
     }
 
     fn one(&mut self, row: &Row<'_>, profile: &Profile) -> Result<(), Failure> {
-        let name = row.text("part");
-        if name.is_empty() {
-            let help = both!(
-                "name the clamping and finishing cut, like P1",
-                "назовите установку и чистовой проход, например P1"
-            );
-            let message = both!("a reading of no part", "показание без образца");
-            return Err(row.refuse(CELL, "part", message, help).into());
-        }
+        let name = part_name(row)?;
         let tool = row.text("tool");
         let tool_mm = vector_mm(profile, &tool).map_err(|help| {
             let message =
@@ -170,19 +161,7 @@ impl Parts {
             let help = both!("give the commanded diameter in mm", "дайте заданный диаметр в мм");
             return Err(row.refuse(CELL, "diameter_mm", message, help).into());
         }
-        let centre_mm = profile.lathe.as_ref().map_or(0.0, |lathe| lathe.spindle.centre_mm.x);
-        let linear_mm = Vector::new(centre_mm + 0.5 * diameter_mm, tool_mm.y, z_mm) - tool_mm;
-        if (profile.volume().nearest(&linear_mm) - linear_mm).amax() > 1e-9 {
-            let message = both!(
-                "the tool stands outside the travel or the tables of the profile there",
-                "инструмент стоит там вне хода или таблиц профиля"
-            );
-            let help = both!(
-                "z_mm is the machine's Z, diameter_mm twice the machine's X from the spindle's axis",
-                "z_mm — Z станка, diameter_mm — удвоенный X станка от оси шпинделя"
-            );
-            return Err(row.refuse(AXES, "z_mm", message, help).into());
-        }
+        let command = stood_at(row, profile, tool_mm, z_mm, diameter_mm)?;
         let part = numbered(&mut self.parts, &name);
         let tool = (!tool.is_empty()).then(|| numbered(&mut self.tools, &tool));
         let time_s = row.number("time_s")?;
@@ -200,13 +179,7 @@ impl Parts {
             part,
             tool,
             feature: Feature::Diameter,
-            command: Command {
-                linear_mm,
-                rotary_rad: Vector::zeros(),
-                tool_mm,
-                direction: [0; 3],
-                rotary_play: Default::default(),
-            },
+            command,
             deviation_mm: 0.0,
             by_effects_mm: 0.0,
             uncertainty_mm: None,

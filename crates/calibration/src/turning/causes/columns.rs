@@ -5,6 +5,7 @@ use turning::{Bending, Force, Workpiece, WorkpieceError};
 use units::math;
 
 use super::{Bar, CauseRow};
+use crate::turning::readings::order_within;
 
 /// What may be found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -228,23 +229,7 @@ fn order(rows: &[CauseRow]) -> Vec<f64> {
         }
         done.push(tool);
         let own: Vec<usize> = (0..rows.len()).filter(|k| rows[*k].tool == tool).collect();
-        let mut parts: Vec<usize> = Vec::new();
-        for k in &own {
-            if !parts.contains(&rows[*k].part) {
-                parts.push(rows[*k].part);
-            }
-        }
-        if own.iter().all(|k| rows[*k].time_s.is_some()) {
-            let start = |part: usize| {
-                let times = own.iter().filter(|k| rows[**k].part == part).filter_map(|k| rows[*k].time_s);
-                times.fold(f64::INFINITY, f64::min)
-            };
-            parts.sort_by(|a, b| start(*a).total_cmp(&start(*b)));
-        }
-        for k in own {
-            let place = parts.iter().position(|part| *part == rows[k].part).unwrap_or(0);
-            order[k] = place as f64 - 0.5 * (parts.len() - 1) as f64;
-        }
+        order_within(&own, |k| (rows[k].part, rows[k].time_s), &mut order);
     }
     order
 }
