@@ -4,10 +4,10 @@ use crate::browser::{Report, chromium, data_of, nothing_acted, pictures, text};
 use crate::browser_calibrate::opens_prints_and_fits;
 use crate::common::{messages, run};
 
-const LATHE: &str = "machine-profiles/generic_lathe.toml";
+pub(crate) const LATHE: &str = "machine-profiles/generic_lathe.toml";
 
 /// A shaft of 40 mm along 120 mm, with a chamfer, an arc and a collar.
-const SHAFT: &str = "%\nO1000\nG21 G18 G40 G99 G54\nG50 S2500\nT0101\nG96 S180 M3\nG0 X80. Z5.\nX36. Z2.\nG1 Z0. F0.2\nX40. Z-2.\n\
+pub(crate) const SHAFT: &str = "%\nO1000\nG21 G18 G40 G99 G54\nG50 S2500\nT0101\nG96 S180 M3\nG0 X80. Z5.\nX36. Z2.\nG1 Z0. F0.2\nX40. Z-2.\n\
 Z-120.\nG2 X50. Z-125. R5.\nG1 X60.\nZ-145.\nX80.\nG0 Z5.\nM5\nM30\n%\n";
 
 fn turned(program: &str, more: &[&str]) -> Report {
@@ -21,11 +21,10 @@ fn turned(program: &str, more: &[&str]) -> Report {
     Report { folder, page }
 }
 
-/// Test pieces of the tutorial: a cone and a barrel.
-fn pieces(more: &[&str]) -> Report {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+/// A lathe, test pieces of the tutorial (a cone and a barrel) and a further one, written to a folder.
+pub(crate) fn written_pieces(folder: &std::path::Path) -> [String; 3] {
     let file = |name: &str, text: &str| {
-        let path = folder.path().join(name);
+        let path = folder.join(name);
         std::fs::write(&path, text).expect("writable");
         path.to_str().expect("a plain path").to_owned()
     };
@@ -42,7 +41,12 @@ fn pieces(more: &[&str]) -> Report {
     let b = [(80, -9.4), (136, -8.4), (192, -13.8), (248, -23.3), (304, -37.2), (360, -57.0)];
     let c = [(100, -6.1), (160, -7.7), (220, -15.4), (280, -28.6), (340, -46.5)];
     let parts = file("parts.csv", &[header, &rows("A", 40, &a), &rows("B", 60, &b)].concat());
-    let third = file("third.csv", &[header, &rows("C", 50, &c)].concat());
+    [lathe, parts, file("third.csv", &[header, &rows("C", 50, &c)].concat())]
+}
+
+fn pieces(more: &[&str]) -> Report {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [lathe, parts, third] = written_pieces(folder.path());
     let page = folder.path().join("pieces.html");
     let html = page.to_str().expect("a plain path").to_owned();
     let all = ["calibrate", "turning", &parts, "-m", &lathe, "--holdout", &third, "--html", &html, "-q"];

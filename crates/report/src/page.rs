@@ -3,7 +3,7 @@
 use diagnostic::{Language, Text, say};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::text::{json_block, shown};
+use crate::text::{Numbers, json_block, shown};
 
 /// One part of a page.
 #[derive(Clone, Debug)]
@@ -102,6 +102,17 @@ pub fn table(language: Language, header: &[&str], numbers: &[usize], rows: &[Vec
             }
         }
     }
+}
+
+/// [`table`] with headings in every language, and numbers that were written with a point.
+#[must_use]
+pub fn table_of(language: Language, header: &[Text], numbers: &[usize], rows: &[Vec<String>]) -> Markup {
+    let header: Vec<&str> = header.iter().map(|text| text.in_language(language)).collect();
+    let cell = |(at, cell): (usize, &String)| {
+        if numbers.contains(&at) { language.figures(cell.clone()) } else { cell.clone() }
+    };
+    let rows: Vec<Vec<String>> = rows.iter().map(|row| row.iter().enumerate().map(cell).collect()).collect();
+    table(language, &header, numbers, &rows)
 }
 
 /// A drawing with its words, and its numbers behind a fold.

@@ -1,7 +1,7 @@
 //! How far a surface leaves the programmed one, and what kind of deviation that is.
 
 use diagnostic::{Text, both};
-use report::text::number as um;
+pub(crate) use report::text::number as um;
 
 use super::surface::{Place, Surface, Turned};
 
@@ -213,6 +213,11 @@ pub(super) fn ridges(places: &[Place]) -> Vec<Ridge> {
         }
     }
     out.into_iter().map(|(_, ridge)| ridge).collect()
+}
+
+/// A place, mm.
+pub(crate) fn mm(value: f64) -> String {
+    crate::number::short(value, 3).replacen('-', "\u{2212}", 1)
 }
 
 #[cfg(test)]

@@ -1,13 +1,13 @@
 //! What a lathe turns as one page: the outline, its roundness, its roughness, and what a correction will bring.
 
-use diagnostic::{Language, Text, both};
+use diagnostic::{Language, Text, both, say};
 use maud::{Markup, html};
-use report::page::{Page, Section, table};
-use report::text::{number, shown};
+use report::page::{Page, Section, table_of};
+use report::text::{Numbers, number, shown};
 use serde::Serialize;
 use turning::Lathe;
 
-use super::judged::{Form, Outline, ridges};
+use super::judged::{Form, Outline, mm, ridges, um};
 use super::surface::{HIGHEST_WAVE, Stretch, Surface, Turned};
 use crate::message::{Failure, Wording};
 use crate::settings::Settings;
@@ -40,7 +40,7 @@ pub(super) struct Facts<'a> {
 
 /// What the JSON in the page says beside `predict --lathe --json`.
 #[derive(Serialize)]
-struct Numbers<'a> {
+struct Figures<'a> {
     #[serde(flatten)]
     turned: &'a Turned,
     tolerance_um: f64,
@@ -93,7 +93,7 @@ pub(super) fn html(
         },
         sections: round::wanted(turned, facts.at_mm, lathe)?,
     };
-    let numbers = Numbers {
+    let numbers = Figures {
         turned,
         tolerance_um: page.tolerance_um(),
         sections: &page.sections,
@@ -122,22 +122,11 @@ fn file_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
-/// A size, in micrometres as people read them.
-fn um(value: f64) -> String {
-    number(value)
-}
-
-/// A place, mm.
-fn mm(value: f64) -> String {
-    crate::number::short(value, 3).replacen('-', "\u{2212}", 1)
-}
-
 impl Shown<'_> {
     fn say(&self, text: &Text) -> String {
-        text.in_language(self.language).to_owned()
+        self.language.prose(text)
     }
 
-    /// A heading: one of two constant texts.
     fn tolerance_um(&self) -> f64 {
         self.facts.settings.options.tolerance_mm * 1e3
     }
@@ -284,11 +273,6 @@ impl Shown<'_> {
         out
     }
 
-    fn table(&self, header: &[Text], numbers: &[usize], rows: &[Vec<String>]) -> Markup {
-        let header: Vec<&str> = header.iter().map(|text| text.in_language(self.language)).collect();
-        table(self.language, &header, numbers, rows)
-    }
-
     fn cylinder_table(&self) -> Markup {
         let pair = |before: Option<f64>, after: Option<f64>| match (before, after) {
             (Some(before), Some(after)) => format!("{} \u{2192} {}", um(before), um(after)),
@@ -329,7 +313,7 @@ impl Shown<'_> {
             both!("CYLt, zone", "CYLt, зона"),
         ];
         html! {
-            (self.table(&header, &[0, 1, 2, 3, 4, 5, 6, 7], &rows))
+            (table_of(self.language, &header, &[0, 1, 2, 3, 4, 5, 6, 7], &rows))
             p.muted { (self.say(&both!(
                 "Before and, behind the arrow, after the correction. Size: mean deviation of the diameter. Cone: growth of the diameter from the end at the chuck to the other. Barrel: diameter in the middle less that at both ends, a saddle below zero. Straightness of the generatrix about its least-squares line, on the radius. CYLt: cylindricity by least squares and by the minimum zone (ISO 12180), spindle included.",
                 "До исправления и, за стрелкой, после него. Размер: среднее отклонение диаметра. Конус: рост диаметра от конца у патрона к другому. Бочка: диаметр в середине минус диаметр на концах, ниже нуля — седло. Прямолинейность образующей относительно её средней линии, по радиусу. CYLt: отклонение от цилиндричности по среднему цилиндру и по минимальной зоне (ИСО 12180), вместе со шпинделем."
@@ -367,7 +351,7 @@ impl Shown<'_> {
             both!("exact against it", "точно против неё"),
         ];
         html! {
-            (self.table(&header, &[0, 1, 2, 3, 4, 5], &rows))
+            (table_of(self.language, &header, &[0, 1, 2, 3, 4, 5], &rows))
             p.muted { (self.say(&both!(
                 "Height of the ridge that the nose leaves between two turns, the geometry alone; a dash where the nose does not meet its own cut of the turn before.",
                 "Высота гребешка, который вершина оставляет между двумя оборотами, только геометрия; прочерк там, где вершина не встречает свой след прошлого оборота."
@@ -396,9 +380,9 @@ impl Shown<'_> {
         let numbers: Vec<usize> = (0..waves_header.len()).collect();
         html! {
             div.side { @for drawn in &self.sections { (drawn.figure(&self.sections, self.language)) } }
-            (self.table(&header, &[0, 1, 2, 3, 4], &zones))
-            h3 { (Text::pair("Harmonics", "Гармоники")) }
-            (self.table(&waves_header, &numbers, &waves))
+            (table_of(self.language, &header, &[0, 1, 2, 3, 4], &zones))
+            h3 { (say!(self.language, "Harmonics", "Гармоники")) }
+            (table_of(self.language, &waves_header, &numbers, &waves))
             p.muted { (self.say(&both!(
                 "Amplitude, half of what the wave spans, and in degrees where its crest lies, from X+ of the workpiece. One wave a turn is the centre: eccentricity, and no roundness.",
                 "Амплитуда, половина размаха волны, и место её вершины в градусах от X+ детали. Одна волна на оборот — это центр: эксцентриситет, а не круглость."
@@ -410,14 +394,14 @@ impl Shown<'_> {
         let settings = self.facts.settings;
         html! {
             dl {
-                dt { (Text::pair("program", "программа")) }
+                dt { (say!(self.language, "program", "программа")) }
                 dd { (shown(self.facts.name)) " " span.muted { "BLAKE3 " (blake3::hash(self.facts.text).to_string()) } }
-                dt { (Text::pair("lathe", "станок")) } dd { (shown(&settings.profile.name)) }
-                dt { (Text::pair("profile and its tables", "профиль и его таблицы")) }
+                dt { (say!(self.language, "lathe", "станок")) } dd { (shown(&settings.profile.name)) }
+                dt { (say!(self.language, "profile and its tables", "профиль и его таблицы")) }
                 dd { (shown(&settings.profile_name)) " " span.muted { "BLAKE3 " (settings.profile_hash.to_string()) } }
-                dt { (Text::pair("places along Z", "места вдоль Z")) }
-                dd { (self.turned.places.len()) ", " (mm(self.surface.step_mm)) " " (Text::pair("mm apart", "мм друг от друга")) }
-                dt { (Text::pair("made by", "сделано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.turned/1" }
+                dt { (say!(self.language, "places along Z", "места вдоль Z")) }
+                dd { (self.turned.places.len()) ", " (self.language.figures(mm(self.surface.step_mm))) " " (say!(self.language, "mm apart", "мм друг от друга")) }
+                dt { (say!(self.language, "made by", "сделано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.turned/1" }
             }
             p.muted { (self.say(&both!(
                 "The tip counts as a point; the surface is what the lathe's model turns, not what was measured.",

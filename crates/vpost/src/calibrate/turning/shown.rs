@@ -5,14 +5,14 @@ use diagnostic::{Language, Text, both};
 use machine_model::Unusable;
 use maud::{Markup, html};
 use report::chart::{Fitted, Points, fitted};
-use report::page::{Section, figure, table};
-use report::text::{number, number_of_digits, shown};
+use report::page::{Section, figure, table_of};
+use report::text::{Numbers, number, number_of_digits, shown};
 use serde_json::Value;
 
 use super::super::page::{Facts, Found};
 use super::{Outcome, named, owner};
 use crate::file;
-use crate::turned::judged::{Form, Lead};
+use crate::turned::judged::{Form, Lead, mm, um};
 
 /// Places of the fitted curve.
 const PLACES: usize = 61;
@@ -59,12 +59,7 @@ impl<'a> Pieces<'a> {
     }
 
     fn say(&self, text: &Text) -> String {
-        text.in_language(self.language).to_owned()
-    }
-
-    fn table(&self, header: &[Text], numbers: &[usize], rows: &[Vec<String>]) -> Markup {
-        let header: Vec<&str> = header.iter().map(|text| text.in_language(self.language)).collect();
-        table(self.language, &header, numbers, rows)
+        self.language.prose(text)
     }
 
     /// The cone and the barrel that were found, of the curve.
@@ -201,7 +196,7 @@ impl<'a> Pieces<'a> {
             both!("from the curve", "от кривой"),
             Text::EMPTY,
         ];
-        self.table(&header, &[1, 2, 3, 4], &rows)
+        table_of(self.language, &header, &[1, 2, 3, 4], &rows)
     }
 
     fn terms(&self) -> Markup {
@@ -239,7 +234,7 @@ impl<'a> Pieces<'a> {
         ];
         let pairs = self.not_told_apart();
         html! {
-            (self.table(&header, &[2, 3, 4, 5], &rows))
+            (table_of(self.language, &header, &[2, 3, 4, 5], &rows))
             p.muted { (self.say(&both!(
                 "Values in the unit of the name, the base included. Written is what an F test at {} % shows.",
                 "Значения в единице имени, вместе с исходным профилем. Записывается то, что значимо по критерию Фишера на уровне {} %.",
@@ -281,7 +276,7 @@ impl<'a> Pieces<'a> {
             .collect();
         let numbers: Vec<usize> = (1..header.len()).collect();
         html! {
-            (self.table(&header, &numbers, &rows))
+            (table_of(self.language, &header, &numbers, &rows))
             p.muted { (self.say(&both!(
                 "Above the diagonal correlations, on it and below covariances.",
                 "Над диагональю — корреляции, на ней и под ней — ковариации."
@@ -318,7 +313,7 @@ impl<'a> Pieces<'a> {
             ),
         };
         html! {
-            (self.table(&header, &[1, 2, 3], &rows))
+            (table_of(self.language, &header, &[1, 2, 3], &rows))
             p.muted { (self.say(&both!(
                 "The size of a tool is no geometry: enter it at the control, with the profile that was written in use.",
                 "Размер инструмента — не геометрия: введите его на стойке, когда записанный профиль в работе."
@@ -472,14 +467,4 @@ impl Found for Pieces<'_> {
     fn csv(&self) -> String {
         String::new()
     }
-}
-
-/// A length, µm.
-fn um(value: f64) -> String {
-    number(value)
-}
-
-/// A place, mm.
-fn mm(value: f64) -> String {
-    crate::number::short(value, 3).replacen('-', "\u{2212}", 1)
 }

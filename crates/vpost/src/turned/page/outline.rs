@@ -3,11 +3,11 @@
 use diagnostic::both;
 use maud::{Markup, html};
 use report::chart::{Curves, curves_with};
-use report::page::figure;
+use report::page::{figure, table_of};
 use report::scale::nice;
 
-use super::super::judged::Outline;
-use super::{Shown, mm, um};
+use super::super::judged::{Outline, mm, um};
+use super::Shown;
 
 /// Places that are drawn, at most: of more that lie between two, the worst.
 const MOST_DRAWN: usize = 1500;
@@ -119,7 +119,7 @@ impl Shown<'_> {
             header.push(both!("after the correction", "после исправления"));
         }
         let numbers: Vec<usize> = (0..header.len()).collect();
-        self.table(&header, &numbers, &rows)
+        table_of(self.language, &header, &numbers, &rows)
     }
 }
 

@@ -5,13 +5,13 @@ use machine_model::Vector;
 use maud::Markup;
 use report::chart::{Magnification, Polar, Round, polar};
 use report::page::figure;
-use report::text::number_of_digits;
+use report::text::{Numbers, number_of_digits};
 use serde::Serialize;
 use turning::Lathe;
 use units::math;
 
+use super::super::judged::{mm, um};
 use super::super::surface::{ANGLES, HIGHEST_WAVE, Place, Stretch, Turned};
-use super::{mm, um};
 use crate::figures::round;
 use crate::message::Failure;
 
@@ -153,7 +153,7 @@ impl Drawn {
         let unit = both!("\u{b5}m", "мкм");
         let caption = both!("Z {z} mm: {described}", "Z {z} мм: {described:#}");
         let [title, described, unit, caption] =
-            [title, described, unit, caption].map(|text| text.in_language(language).to_owned());
+            [title, described, unit, caption].map(|text| language.prose(&text));
         figure(language, &polar(language, &title, &described, &drawn, m, &unit), &caption, None)
     }
 }
