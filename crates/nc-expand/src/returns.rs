@@ -14,7 +14,7 @@ use nc_syntax::{Block, Dialect, ItemKind, Letters, Reader, Span, Value};
 
 use crate::codes;
 use crate::output::{Output, Segment};
-use crate::shorthand::{AXES, Fault, Motion, State, Words, from, number, rounded, shown};
+use crate::shorthand::{AXES, Fault, State, Words, from, number, shown};
 
 /// Pecks of one hole; more are a wrong depth.
 const MOST_PECKS: f64 = 2_000.0;
@@ -81,7 +81,9 @@ impl Writer<'_> {
         if begins {
             return self.begin(&words);
         }
-        if self.cycle.is_some() && !ends && moves {
+        // A code between its holes would change what its numbers mean.
+        let codes_between = words.actions().next().is_some();
+        if self.cycle.is_some() && !ends && (moves || codes_between) {
             return self.again(&words);
         }
         let cancels = words.actions().any(|(action, _)| *action == Action::CycleCancel);
@@ -107,9 +109,9 @@ impl Writer<'_> {
         if let Some((_, span)) = words.actions().find(|(action, _)| **action == Action::ReturnLevel) {
             self.level = Some(self.level_of(&words, span)?);
         } else {
-            self.state.step(&words);
-            if self.state.motion == Motion::Cycle {
-                self.state.motion = Motion::None;
+            self.state.codes(&words);
+            if words.actions().any(|(action, _)| moves_levels(action)) {
+                self.level = None;
             }
         }
         self.out.copy(block.bytes, from(block));
@@ -273,11 +275,10 @@ impl Writer<'_> {
         let Some(Cycle { bottom, near, peck, back }) = self.cycle else { return Ok(()) };
         let source = from(words.block);
         let mut line = head;
-        for (axis, letter) in AXES.into_iter().enumerate().take(2) {
+        for letter in AXES.into_iter().take(2) {
             if let Some(value) = self.length(words, letter) {
                 line.push(b' ');
                 number(&mut line, letter, value);
-                self.state.at[axis] = Some(rounded(value));
             }
         }
         if line.len() > 2 {
@@ -307,8 +308,6 @@ impl Writer<'_> {
             line(b"G0 ", (reached + clearance).min(near), None);
         }
         line(b"G0 ", back, None);
-        self.state.at[2] = Some(rounded(back));
-        self.state.motion = Motion::Rapid;
         Ok(())
     }
 
@@ -386,6 +385,28 @@ impl Writer<'_> {
 enum Back {
     Level(f64),
     R,
+}
+
+/// Behind it a height of before is another.
+const fn moves_levels(action: &Action) -> bool {
+    matches!(
+        action,
+        Action::Inch
+            | Action::Millimetre
+            | Action::WorkOffset(_)
+            | Action::WorkOffsetNumbered
+            | Action::WorkOffsetByH
+            | Action::WriteOffset
+            | Action::LocalShift
+            | Action::Preset
+            | Action::PresetCancel
+            | Action::PresetSuspend
+            | Action::PresetRestore
+            | Action::ScalingOn
+            | Action::ScalingOff
+            | Action::MirrorOn
+            | Action::MirrorOff
+    )
 }
 
 /// The words of the block are this code's.

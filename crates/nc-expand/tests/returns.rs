@@ -58,6 +58,13 @@ fn pecks_return_to_r() {
 #[test]
 fn what_is_not_certain_is_refused() {
     for program in [
+        // What a held cycle's numbers mean must not change between its holes, nor a level's behind it.
+        "G71 Z20.\nG81 X10. Z-5. R2. F100 M53\nG91\nX10.\n",
+        "G71 Z20.\nG81 X10. Z-5. R2. F100 M53\nG20\nX1.\n",
+        "G71 Z20.\nG81 X10. Z-5. R2. F100 M53\nG15 H2\nX1.\n",
+        "G71 Z20.\nG81 X10. Z-5. R2. F100 M53\nG18\nX1.\n",
+        "G20\nG71 Z2.\nG21\nG81 X10. Z-5. R2. F100 M53\n",
+        "G71 Z20.\nG15 H2\nG81 X10. Z-5. R2. F100 M53\n",
         "G71 Z58.\nG81 X20. Y5. Z-8. R2. F100\n",
         "G71 Z58.\nG81 X20. Y5. Z-8. R2. F100 M53 M54\n",
         "G81 X20. Y5. Z-8. R2. F100 M53\n",
