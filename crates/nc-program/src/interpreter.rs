@@ -173,6 +173,12 @@ impl<'d> Interpreter<'d> {
         &self.modal
     }
 
+    /// What is not whole where the program's text ends here, and its line.
+    #[must_use]
+    pub fn unfinished(&self) -> Option<(Diagnostic, u64)> {
+        self.modal.curve.as_ref().map(|begun| begun.at_the_end())
+    }
+
     /// Executes one block. After the end of the program it does nothing.
     ///
     /// # Errors

@@ -16,6 +16,7 @@ use nc_syntax::{Block, Envelope, Reader};
 
 use crate::chunks::{Chunk, Chunks, Unread};
 use crate::job::Job;
+use crate::notices::Warning;
 use crate::pass::Pass;
 use crate::sink::Sink;
 use crate::state::State;
@@ -41,6 +42,8 @@ pub(crate) struct Plan<'a> {
 pub(crate) enum End {
     /// A block of this chunk cannot be corrected.
     Refused(Chunk, Vec<Diagnostic>),
+    /// The text ends inside what takes several blocks.
+    Unfinished(Warning),
     /// A block computes or jumps: the program is not plain.
     Flows,
     /// The program cannot be read in chunks.
@@ -160,7 +163,10 @@ where
     let board = work.board.into_inner().unwrap_or_else(PoisonError::into_inner);
     match board.end {
         Some(end) => Err(end),
-        None => Ok(board.tally),
+        None => match board.state.interpreter.unfinished() {
+            Some(unfinished) => Err(End::Unfinished(unfinished)),
+            None => Ok(board.tally),
+        },
     }
 }
 

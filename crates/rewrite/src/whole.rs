@@ -86,6 +86,9 @@ pub(crate) fn pass<E: From<Vec<Diagnostic>>>(
         Err(Ended::Stopped) => return Ok(None),
         Err(Ended::Failed(error)) => return Err(error),
     }
+    if let Some((unfinished, _)) = pass.state.interpreter.unfinished() {
+        return Err(vec![unfinished].into());
+    }
     let Pass { out, tally: Tally { mut figures, notices, evidence }, .. } = pass;
     figures.warnings = notices.warnings(&figures.held).into_iter().map(|(warning, _)| warning).collect();
     Ok(Some(Corrected { text: out, figures, evidence }))

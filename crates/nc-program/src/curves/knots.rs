@@ -136,7 +136,8 @@ fn begin(
     }
     let line = words.block.line;
     let (points_mm, weights, knots) = (vec![], vec![], vec![]);
-    Ok(Begun { line, form, start, degree: 3, points_mm, weights, knots, axes, pointed: None })
+    let at = words.block.file_range();
+    Ok(Begun { line, at, form, start, degree: 3, points_mm, weights, knots, axes, pointed: None })
 }
 
 /// P in the first block.

@@ -10,6 +10,8 @@ mod faults;
 mod knots;
 mod points;
 
+use std::ops::Range;
+
 use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::dialect::CurveCode;
 use nc_syntax::{Letters, Span};
@@ -37,6 +39,8 @@ pub enum CurvePart {
 pub struct Begun {
     /// Line of its first block.
     pub line: u64,
+    /// Its first block in the file.
+    at: Range<u64>,
     form: CurveCode,
     /// What stays as it is until the curve is whole.
     start: Position,
@@ -286,7 +290,6 @@ pub(crate) fn check(
 
 /// The refusal of what stands inside a curve.
 pub(crate) fn open(words: &Words<'_, '_, '_>, begun: &Begun, span: Span) -> Box<Diagnostic> {
-    let message = both!("the curve of line {} is not whole", "кривая из строки {} не окончена", begun.line);
     let label = both!("{} stands inside it", "внутри неё стоит {}", words.text(span));
     let help = match begun.form {
         CurveCode::Knots | CurveCode::PlaneKnots => faults::every_knot(begun),
@@ -295,7 +298,24 @@ pub(crate) fn open(words: &Words<'_, '_, '_>, begun: &Begun, span: Span) -> Box<
             "закончите кривую функцией G5.3 до этого кадра"
         ),
     };
-    words.refuse(codes::CURVE_OPEN, message, span, label).help(help)
+    words.refuse(codes::CURVE_OPEN, begun.is_not_whole(), span, label).help(help)
+}
+
+impl Begun {
+    fn is_not_whole(&self) -> Text {
+        both!("the curve of line {} is not whole", "кривая из строки {} не окончена", self.line)
+    }
+
+    /// The refusal of a program whose text ends inside the curve, and its line.
+    pub(crate) fn at_the_end(&self) -> (Diagnostic, u64) {
+        let label = both!("the program ends inside it", "внутри неё кончается программа");
+        let help = match self.form {
+            CurveCode::Knots | CurveCode::PlaneKnots => faults::every_knot(self),
+            _ => both!("end the curve with G5.3", "закончите кривую функцией G5.3"),
+        };
+        let diagnostic = Diagnostic::error(codes::CURVE_OPEN, self.is_not_whole());
+        (diagnostic.at(self.at.clone(), label).help(help), self.line)
+    }
 }
 
 /// A curve of several blocks is whole or not at all.

@@ -36,6 +36,7 @@ pub(super) fn point(
         let form = CurveCode::Points;
         Box::new(Begun {
             line,
+            at: words.block.file_range(),
             form,
             start,
             degree: 2,

@@ -170,6 +170,9 @@ impl<'a, 'n> Program<'a, 'n> {
                 }
             }
         }
+        if !read && !self.ended {
+            self.refused = self.interpreter.unfinished().map(|(unfinished, _)| vec![unfinished]);
+        }
         self.block = block;
         read && self.refused.is_none()
     }
