@@ -191,6 +191,11 @@ fn difference(skipped: &Modal, executed: &Modal) -> Option<(Text, Text)> {
         })
     })
     .or_else(|| {
+        pair(&with.written_lengths, &without.written_lengths, |v| {
+            both!("{} tool length(s) of the program", "длин инструмента, записанных программой: {}", v.len())
+        })
+    })
+    .or_else(|| {
         pair(&with.work_offset, &without.work_offset, |v| {
             v.code.map_or_else(
                 || both!("no work offset", "смещение нуля не выбрано"),
