@@ -117,8 +117,8 @@ impl Evidence {
             match item.kind {
                 ItemKind::Word { letter, value } if letter.is_ascii_uppercase() => {
                     // A3, B3, C3 are read as U, V, W and are no increments.
-                    let own = block.text(item.span).first().map(u8::to_ascii_uppercase);
-                    let direction = matches!(letter, b'U' | b'V' | b'W') && own != Some(letter);
+                    let own = || block.text(item.span).first().map(u8::to_ascii_uppercase);
+                    let direction = matches!(letter, b'U' | b'V' | b'W') && own() != Some(letter);
                     letters = if direction { letters } else { letters.or(Letters::of(&[letter])) };
                     let word = Word { letter, value, span: item.span };
                     match (letter, value) {
@@ -135,7 +135,7 @@ impl Evidence {
             }
         }
         self.states_unit |= seen.unit;
-        if seen.polar_off && letters.any(Letters::of(b"H")) && self.other_control.is_none() {
+        if seen.polar_off && !seen.length && letters.any(Letters::of(b"H")) && self.other_control.is_none() {
             self.other_control = Some(place(block, block.file_range()));
         }
         self.acts |= !letters.without(Letters::of(b"NO")).is_empty();
@@ -459,6 +459,8 @@ struct Seen {
     scales: bool,
     /// G15, or nothing where the dialect has no polar words.
     polar_off: bool,
+    /// A code that takes H.
+    length: bool,
     /// G0 to G3.
     moves: bool,
 }
@@ -470,6 +472,13 @@ impl Seen {
         let Some(row) = dialect.code(code) else { return };
         self.unit |= matches!(row.action, Action::Inch | Action::Millimetre);
         self.polar_off |= code == POLAR_OFF && matches!(row.action, Action::PolarOff | Action::Pass { .. });
+        self.length |= matches!(
+            row.action,
+            Action::LengthOn
+                | Action::LengthOnNegative
+                | Action::TipLengthOn
+                | Action::TipLengthOnVectors
+        );
         self.scales |= row.action == Action::ScalingOn;
         self.moves |= is_motion(&row.action);
         self.arguments |= matches!(
