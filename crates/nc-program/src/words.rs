@@ -207,7 +207,9 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                 text.len() > 1 && text[1] == b'3' && text[0].to_ascii_uppercase() == letter - b'U' + b'A'
             })
         };
-        self.has(SECONDARY_LETTERS) && b"UVW".iter().any(long)
+        // A secondary axis beside them would be taken for one.
+        let mut named = b"UVW".iter().filter(|letter| self.number(**letter).is_some()).peekable();
+        self.has(SECONDARY_LETTERS) && named.peek().is_some() && named.all(long)
     }
 
     /// True in a lathe's program.
