@@ -22,6 +22,8 @@ pub(crate) struct Lexer<'d> {
     long_words: &'d [(String, u8)],
     commands: &'d [Command],
     m_codes: &'d [MCode],
+    /// No block is written out as others, which have no comments.
+    copies_blocks: bool,
     /// Statements and labels are Siemens'.
     siemens: bool,
     /// Statements are Okuma's.
@@ -73,6 +75,7 @@ impl<'d> Lexer<'d> {
             long_words: &dialect.long_words,
             commands: &dialect.commands,
             m_codes: &dialect.m_codes,
+            copies_blocks: dialect.turning.is_none() && !dialect.flow.called && !dialect.flow.return_by_m,
             siemens: dialect.flow.macros == Macros::Siemens,
             okuma: dialect.flow.macros == Macros::Okuma,
         }
@@ -366,6 +369,7 @@ impl<'d> Lexer<'d> {
     fn other(&self, line: &[u8], at: usize) -> (ItemKind, usize) {
         let byte = line[at];
         if self.skip == Some(byte)
+            && self.copies_blocks
             && let Some(end) = self.switches_only(line, at)
         {
             return (ItemKind::Comment, end);
