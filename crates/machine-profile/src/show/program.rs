@@ -1,0 +1,181 @@
+//! What a profile says of programs and of the control that runs them.
+
+use std::fmt::Write as _;
+
+use diagnostic::{Language, Text, both};
+
+use super::tell;
+use crate::profile::{AfterChange, BareLengths, FlankFrom, Profile};
+
+impl Profile {
+    /// What is said of the machine's programs, where anything is.
+    pub(super) fn write_program_rules(&self, out: &mut String, language: Language) -> std::fmt::Result {
+        let rules = &self.program;
+        match rules.bare_lengths {
+            Some(BareLengths::Increments) => tell!(
+                out,
+                language,
+                "programs     Z10 is ten increments",
+                "программы    Z10 — это десять дискрет"
+            )?,
+            Some(BareLengths::Millimetres) => {
+                tell!(out, language, "programs     Z10 is Z10.", "программы    Z10 — это Z10.")?
+            }
+            None => {}
+        }
+        if rules.tool_change != [AfterChange::Unknown; 3] {
+            let axis = |(name, change): (char, AfterChange)| match change {
+                AfterChange::Unknown => both!("{name} anywhere", "{name} где угодно"),
+                AfterChange::Stays => both!("{name} where it was", "{name} где была"),
+                AfterChange::At(place_mm) => both!("{name} at {place_mm} mm", "{name} на {place_mm} мм"),
+            };
+            let axes: Vec<Text> = "XYZ".chars().zip(rules.tool_change).map(axis).collect();
+            tell!(out, language, "tool change  {}", "смена инстр. {:#}", Text::join(&axes, ", "))?;
+        }
+        if let Some(mm) = rules.arc_tolerance_mm {
+            tell!(
+                out,
+                language,
+                "arcs         radii may differ by {mm} mm",
+                "дуги         радиусы могут различаться на {mm} мм"
+            )?;
+        }
+        self.write_cycles(out, language)?;
+        if !rules.harmless_m_codes.is_empty() {
+            let codes: Vec<String> = rules.harmless_m_codes.iter().map(|code| format!("M{code}")).collect();
+            tell!(
+                out,
+                language,
+                "M codes      {} move neither an axis nor the frame",
+                "функции M    {} не двигают ни осей, ни системы координат",
+                codes.join(", ")
+            )?;
+        }
+        Ok(())
+    }
+
+    /// What the control's cycles of lathes do.
+    fn write_cycles(&self, out: &mut String, language: Language) -> std::fmt::Result {
+        let turning = &self.program.turning;
+        let said = [
+            (
+                Text::pair("chamfer of threads", "сбег резьбы"),
+                turning.thread_chamfer_leads,
+                Text::pair(" leads", " шагов"),
+            ),
+            (
+                Text::pair("its angle", "его угол"),
+                turning.thread_chamfer_deg,
+                Text::pair(" degrees", " градусов"),
+            ),
+            (
+                Text::pair("escape of roughing", "отскок при черновой"),
+                turning.roughing_escape_mm,
+                Text::pair(" mm", " мм"),
+            ),
+            (
+                Text::pair("return of pecks", "отвод между врезаниями"),
+                turning.groove_return_mm,
+                Text::pair(" mm", " мм"),
+            ),
+            (
+                Text::pair("finishing passes of threads", "чистовых проходов резьбы"),
+                turning.thread_finishing_passes,
+                Text::pair("", ""),
+            ),
+            (
+                Text::pair("their least infeed", "их наименьшее врезание"),
+                turning.thread_least_mm,
+                Text::pair(" mm", " мм"),
+            ),
+            (
+                Text::pair("their allowance", "их припуск"),
+                turning.thread_allowance_mm,
+                Text::pair(" mm", " мм"),
+            ),
+            (
+                Text::pair("return in drilling", "отвод при сверлении"),
+                turning.drill_return_mm,
+                Text::pair(" mm", " мм"),
+            ),
+        ];
+        let mut said: Vec<Text> = said
+            .into_iter()
+            .filter_map(|(what, value, unit)| Some(both!("{what} {}{unit}", "{what:#} {}{unit:#}", value?)))
+            .collect();
+        if let Some(from) = turning.thread_flank_from {
+            said.push(match from {
+                FlankFrom::Start => {
+                    Text::pair("flanks count from the start", "боковые стороны считаются от начала")
+                }
+                FlankFrom::FirstPass => Text::pair(
+                    "flanks count from the first pass",
+                    "боковые стороны считаются от первого прохода",
+                ),
+                FlankFrom::LastPass => Text::pair(
+                    "flanks count from the last pass",
+                    "боковые стороны считаются от последнего прохода",
+                ),
+            });
+        }
+        if let Some(chips) = turning.drill_chips {
+            said.push(if chips {
+                Text::pair("pecks break the chip", "врезания ломают стружку")
+            } else {
+                Text::pair("pecks go back to R", "после врезания отвод до R")
+            });
+        }
+        if turning.nose_in_finishing {
+            said.push(Text::pair(
+                "G41 and G42 of contours in finishing alone",
+                "G41 и G42 контуров только при чистовой",
+            ));
+        }
+        if !said.is_empty() {
+            tell!(out, language, "cycles       {}", "циклы        {:#}", Text::join(&said, ", "))?;
+        }
+        Ok(())
+    }
+
+    /// What the control computes itself.
+    pub(super) fn write_kinematics(&self, out: &mut String, language: Language) -> std::fmt::Result {
+        if let Some(kinematics) = &self.kinematics {
+            let axes = self.chain().axes().filter(|axis| !axis.is_linear());
+            let centres: Vec<Text> = axes
+                .map(|axis| {
+                    let [x, y, z] = kinematics.centres_mm[axis.direction()];
+                    both!("{} about {x} {y} {z} mm", "{} вокруг {x} {y} {z} мм", axis.letter())
+                })
+                .collect();
+            tell!(out, language, "tip control  {}", "ведение вершины {:#}", Text::join(&centres, ", "))?;
+            let rule = &kinematics.tilt_rule;
+            let branch = rule.branch.map(|(axis, positive)| {
+                let side = if positive {
+                    Text::pair("above", "больше")
+                } else {
+                    Text::pair("below", "меньше")
+                };
+                both!("{} {side} 0", "{} {side:#} 0", toolpath::AXIS_NAMES[3 + axis])
+            });
+            let turns = rule.turns.map(|turns| match turns {
+                toolpath::WholeTurns::Shortest => Text::pair("the shortest way", "кратчайшим путём"),
+                toolpath::WholeTurns::Principal => {
+                    Text::pair("between -180 and 180 degrees", "между -180 и 180 градусами")
+                }
+            });
+            let rule: Vec<Text> = branch.into_iter().chain(turns).collect();
+            if !rule.is_empty() {
+                tell!(out, language, "tilted plane {}", "наклонная плоскость {:#}", Text::join(&rule, ", "))?;
+            }
+            if let Some(circle) = kinematics.great_circle {
+                let how = if circle {
+                    Text::pair("along a great circle", "по дуге большого круга")
+                } else {
+                    Text::pair("each rotary axis evenly", "каждая поворотная ось равномерно")
+                };
+                tell!(out, language, "vectors      {how}", "векторы      {how:#}")?;
+            }
+        }
+        Ok(())
+    }
+}
