@@ -46,6 +46,11 @@ const SAME_K: f64 = 1.0;
 /// Repeats must give at least this many degrees of freedom to be believed.
 const ENOUGH_REPEATS: f64 = 12.0;
 
+/// Fewer degrees of freedom say nothing of a bound.
+const ENOUGH: f64 = 4.0;
+/// Two estimates of a standard deviation differ by more than chance beyond so many standard errors of their ratio.
+const NO_CHANCE: f64 = 2.0;
+
 /// Repeats that scatter by this factor more than neighbours (standard deviations) differ by more than noise: something
 /// changed between the passes.
 const SLOW: f64 = 2.0;
@@ -72,14 +77,18 @@ pub(crate) fn estimate(
         }
         few => {
             // What comes back in every run is no noise, however much neighbouring places differ by it.
-            let returns = from_returns(rows, scalars, residuals_um).filter(|r| r.degrees >= ENOUGH_REPEATS);
-            let smaller = |found: &Noise| {
-                neighbours.is_some_and(|n| found.variance.max(floor) * SLOW * SLOW < n.variance)
+            let returns = from_returns(rows, scalars, residuals_um).filter(|r| r.degrees >= ENOUGH);
+            let below = |found: &Noise, factor: f64| {
+                neighbours.is_some_and(|n| found.variance.max(floor) * factor * factor < n.variance)
             };
-            // Rows measured in no order of place have no neighbours: a smooth form of each run shows what is no noise.
+            let by_chance = |found: &Noise| {
+                neighbours.map_or(1.0, |n| 1.0 + NO_CHANCE * (0.5 / found.degrees + 0.5 / n.degrees).sqrt())
+            };
+            // Rows measured in no order of place have no neighbours: a smooth form of each run shows what is no noise. It
+            // takes slow noise off, too, so that it must be far smaller.
             returns
-                .filter(smaller)
-                .or_else(|| from_forms(rows, scalars, residuals_um).filter(smaller))
+                .filter(|found| below(found, by_chance(found)))
+                .or_else(|| from_forms(rows, scalars, residuals_um).filter(|found| below(found, SLOW)))
                 .or(neighbours)
                 .or(few)
         }
@@ -241,7 +250,7 @@ fn from_neighbours(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], seria
     let sigma = 1.4826 * median(&mut differences)?;
     let variance = sigma * sigma / (1.0 - 4.0 / 3.0 * serial.lag(1) + serial.lag(2) / 3.0).max(0.02);
     let source = NoiseSource::Neighbours;
-    (degrees >= 4.0).then_some(Noise { variance, degrees, source, slow: 1.0 })
+    (degrees >= ENOUGH).then_some(Noise { variance, degrees, source, slow: 1.0 })
 }
 
 /// Median; sorts what it is given.

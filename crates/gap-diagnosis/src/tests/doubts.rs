@@ -249,6 +249,12 @@ fn plates_turned_against_each_other_are_set_up_and_no_gap() {
     let turns = &answer.setup.run_rotations_urad;
     let apart = turns[0].1[2] - turns[5].1[2];
     assert!((apart - 800.0).abs() < 20.0, "{turns:?}");
+    // What they have in common is the frame's, whatever the fit made of it; about X and Y nothing was read.
+    let common: f64 = turns.iter().map(|(_, turn)| turn[2]).sum();
+    assert!(common.abs() < 1e-6, "{turns:?}");
+    let said = answer.notes.iter().map(|n| n.english()).find(|n| n.contains("turned against each other"));
+    let said: f64 = said.unwrap().split_whitespace().find_map(|word| word.parse().ok()).unwrap();
+    assert!((said - apart).abs() < 1.0, "{said} {turns:?}");
     // A scale is no turn: it is found beside them.
     let stretched = |row: &Row| Vector::new(0.05 * row.command.linear_mm.x, 0.0, 0.0);
     let answer = diagnose(&plates(stretched), None, &Options::default());
@@ -283,6 +289,71 @@ fn unseen_rows_that_refute_a_name_change_the_headline() {
         Some(&measured(Plan { seed: 2, ..GOOD }, |row| 5.0 * backlash_um(row))),
         &Options::default(),
     );
+    assert_eq!(answer.verdict, Verdict::Unknown, "{}", answer.sentence);
+}
+
+/// Of the lines along X one has no play any more: what the others gain does not make up for it.
+#[test]
+fn a_run_that_gets_worse_is_told_by_name() {
+    let data = measured(GOOD, backlash_um);
+    let held = |seed: u64, mended: Option<usize>| {
+        let play = move |row: &Row| if Some(row.run) == mended { Vector::zeros() } else { backlash_um(row) };
+        diagnose(&data, Some(&measured(Plan { seed, ..GOOD }, play)), &Options::default())
+    };
+    let answer = held(2, Some(3));
+    let worse = answer.holdout.as_ref().and_then(|h| h.worse).unwrap();
+    assert!(worse.run == 3 && worse.after_um > 1.5 * worse.before_um, "{worse:?}");
+    assert!(!matches!(answer.verdict, Verdict::Named | Verdict::Ambiguous), "{}", answer.sentence);
+    for seed in 2..8 {
+        let answer = held(seed, None);
+        assert_eq!(answer.holdout.unwrap().worse, None, "{seed}");
+        assert_eq!(answer.verdict, Verdict::Named, "{seed}: {}", answer.sentence);
+    }
+}
+
+/// A reversal that loses 6 µm at one end of the axis and gains as much at the other is no play, and no value in the control
+/// mends it. One that falls from 6 µm to 1 µm is.
+#[test]
+fn play_does_not_change_its_sign() {
+    let answer = |near_um: f64, far_um: f64| {
+        let reversal = move |row: &Row| {
+            let lost_um = near_um + (far_um - near_um) * row.command.linear_mm.x / 410.0;
+            Vector::new(-0.5 * lost_um * f64::from(row.command.direction[0]), 0.0, 0.0)
+        };
+        diagnose(&measured(Plan { sigma_um: 0.5, ..GOOD }, reversal), None, &Options::default())
+    };
+    let both_ways = answer(6.0, -6.0);
+    assert!(!names(&both_ways).contains(&"backlash.X"), "{}", both_ways.sentence);
+    assert!(!matches!(both_ways.verdict, Verdict::Named | Verdict::NoGap), "{}", both_ways.sentence);
+    let falls = answer(6.0, 1.0);
+    assert_eq!(names(&falls), ["backlash.X"], "{}", falls.sentence);
+}
+
+/// Three cycles over five places, both ways, as ISO 230-2 has them: neighbouring places differ by 10 µm and more, every command
+/// reads the same each time. That is no noise of 10 µm.
+#[test]
+fn what_comes_back_in_three_runs_is_no_noise() {
+    let base = measured(SILENT, nothing);
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let mut data = Measurements { runs: Vec::new(), rows: Vec::new(), ..base.clone() };
+    for cycle in 0..3_usize {
+        data.runs.push(format!("cycle {cycle}"));
+        for way in [1, -1] {
+            for k in 0..5_usize {
+                let k = if way == 1 { k } else { 4 - k };
+                let saw = [0.0, 14.0, -9.0, 16.0, 3.0][k] + f64::from(way) * [8.0, -10.0, -9.0, 8.0, 15.0][k];
+                let mut row = base.rows[0];
+                row.run = cycle;
+                row.command.linear_mm = Vector::new(40.0, 40.0, 40.0 + 2.0 * k as f64);
+                row.command.direction = [0, 0, way];
+                row.conditions = Conditions::default();
+                row.reading = Reading::Displacement([None, None, Some(saw + 0.3 * normal(&mut random))]);
+                data.rows.push(row);
+            }
+        }
+    }
+    let answer = diagnose(&data, None, &Options::default());
+    assert!(answer.gap.noise_um < 2.0, "{:?}", answer.gap);
     assert_eq!(answer.verdict, Verdict::Unknown, "{}", answer.sentence);
 }
 
