@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use machine_model::Vector;
-use machine_model::effects::{EffectGeometry, EffectKind};
+use machine_model::effects::{EffectGeometry, EffectKind, legendre};
 
 use crate::equations::noise::median;
 use crate::equations::observation::{Measurements, Row, Scalar};
@@ -195,6 +195,22 @@ impl Bounds {
         all.iter().map(|d| (d - mean).amax()).fold(0.0, f64::max)
     }
 
+    /// True where a play that varies along its axis is lost at some places and gained at others.
+    fn changes_sign(&self, axis: usize, terms: &[(Term, f64)]) -> bool {
+        /// Noise may take a play that all but vanishes at one end to this share of the largest beyond zero.
+        const BEYOND: f64 = 0.25;
+        let lost = self.probes.iter().map(|row| {
+            let at_mm = row.command.linear_mm[axis];
+            let part = |(term, um): &(Term, f64)| match term {
+                Term::Effect { index, shape, .. } => um * legendre(*index, shape.relative(at_mm)),
+                _ => 0.0,
+            };
+            terms.iter().map(part).sum::<f64>()
+        });
+        let (low, high) = lost.fold((0.0_f64, 0.0_f64), |(low, high), um| (low.min(um), high.max(um)));
+        f64::min(-low, high) > BEYOND * f64::max(-low, high)
+    }
+
     /// What is wrong with a cause of these numbers; `None` where nothing is.
     #[must_use]
     pub(crate) fn broken_by(
@@ -205,6 +221,14 @@ impl Bounds {
     ) -> Option<Why> {
         if let Some(reason) = implausible(kind, terms) {
             return Some(reason);
+        }
+        if let EffectKind::Backlash(axis) = kind
+            && self.changes_sign(axis, terms)
+        {
+            return Some([
+                "what is lost at a reversal changes its sign along the axis, which no play does",
+                "потеря при реверсе меняет знак вдоль оси, чего с люфтом не бывает",
+            ]);
         }
         let largest_um = if is_straight(kind) { self.widest_um } else { self.largest_um };
         let harmful = self.excursion_um(terms, geometry) > LARGEST * largest_um;
@@ -262,6 +286,7 @@ const fn depends_on_place(kind: EffectKind) -> bool {
             | EffectKind::Pitch(_)
             | EffectKind::Angular { .. }
             | EffectKind::Sag(_)
+            | EffectKind::Eccentricity(_)
     )
 }
 

@@ -74,7 +74,8 @@ pub struct Shape {
 
 impl Shape {
     /// Position on -1..=1; beyond the interval the nearest end, since polynomials run away there.
-    fn relative(&self, position_mm: f64) -> f64 {
+    #[must_use]
+    pub fn relative(&self, position_mm: f64) -> f64 {
         let half = 0.5 * (self.to_mm - self.from_mm);
         if half > 0.0 {
             ((position_mm - 0.5 * (self.to_mm + self.from_mm)) / half).clamp(-1.0, 1.0)
