@@ -4,6 +4,8 @@ use diagnostic::{Text, both};
 use machine_model::Vector;
 use machine_model::effects::{EffectKind, EffectTerm};
 
+use crate::judgement::verdict::WorseRun;
+
 /// The verdicts of the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
@@ -270,6 +272,8 @@ pub struct Holdout {
     pub steps: Vec<Step>,
     /// Point by point.
     pub residuals: Vec<Residual>,
+    /// The run that the causes make worse by most, where one is made worse by more than chance.
+    pub(crate) worse: Option<WorseRun>,
 }
 
 /// What would settle it.

@@ -11,7 +11,7 @@ use crate::equations::observation::{Measurements, Reading, Scalar};
 use crate::equations::term::Term;
 use crate::judgement::answer::{Holdout, Residual, Shrinkage, Step};
 use crate::judgement::assembly::Assembly;
-use crate::judgement::verdict::Unseen;
+use crate::judgement::verdict::{Unseen, WorseRun};
 use crate::search::explain::explain;
 
 impl Assembly<'_> {
@@ -29,7 +29,9 @@ impl Assembly<'_> {
         let steps = names.zip(&sizes).map(|(added, rms_um)| Step { added, rms_um: *rms_um }).collect();
         let residuals = residuals(&scalars, &gaps[0], &gaps[self.ordered.len()]);
         let rows = row_lengths(&scalars, &gaps[0]).len();
-        finished(rows, sizes[0], sizes[self.ordered.len()], steps, residuals)
+        let last = &gaps[self.ordered.len()];
+        let worse = worse_run(holdout, &scalars, &gaps[0], last, self.model.caution.as_one());
+        Holdout { worse, ..finished(rows, sizes[0], sizes[self.ordered.len()], steps, residuals) }
     }
 
     /// Lengths alone cannot be aligned: they are taken in the measuring frame that was found, its zero first (the
@@ -90,13 +92,14 @@ impl Assembly<'_> {
             .sqrt()
             .max(1e-9);
         let promised = promised.map_or((0.0, 0.0), |s| (s.low, s.mid));
-        let left = if before_um > 0.0 { after_um / before_um } else { 1.0 };
-        // Both sizes are known to 1/√(2n), their ratio to √2 of that at worst.
+        // Both sizes are known to 1/√(2n), their ratio to √2 of that at worst: of the ratio that was promised, for a worse
+        // outcome earns no more patience.
+        let left = if before_um > 0.0 { (after_um / before_um).min(1.0 - promised.0) } else { 1.0 };
         let error = left / equations.max(1.0).sqrt();
         // Noise was estimated on the rows of the fit, and readings that hang together count as fewer.
         let few = |readings: f64| model.caution.as_one() / (2.0 * readings.max(1.0));
         let chance = (few(equations) + few(self.degrees())).sqrt();
-        Unseen { before: before_um / floor, after: after_um / floor, promised, error, chance }
+        Unseen { before: before_um / floor, after: after_um / floor, promised, error, chance, worse: None }
     }
 
     /// The forecast of this model for runs that it was not fitted to, and what became of it: in the frame that was
@@ -113,12 +116,15 @@ impl Assembly<'_> {
             fitted.filter(|(t, _)| !matches!(t, Term::RunRotation { .. })).chain(self.instrument()).collect();
         let turns: Vec<Term> = self.frame(kept).into_iter().skip(6).collect();
         let scalars = kept.scalars(None);
-        let size = |causes: &[(Term, f64)]| {
+        let left = |causes: &[(Term, f64)]| {
             let off: Vec<(Term, f64)> = frame.iter().chain(causes).copied().collect();
-            rms(&row_lengths(&scalars, &aligned(kept, &scalars, &turns, self.alignment, &off)))
+            aligned(kept, &scalars, &turns, self.alignment, &off)
         };
+        let (before, after) = (left(&[]), left(&self.taken_off(count)));
+        let size = |gap: &[f64]| rms(&row_lengths(&scalars, gap));
         let promised = self.shrink(count, Some(kept));
-        Some(self.unseen(kept, size(&[]), size(&self.taken_off(count)), Some(promised)))
+        let worse = worse_run(kept, &scalars, &before, &after, self.model.caution.as_one());
+        Some(Unseen { worse, ..self.unseen(kept, size(&before), size(&after), Some(promised)) })
     }
 
     /// Ids of the causes in order.
@@ -157,7 +163,49 @@ pub(crate) fn kept_back(data: &Measurements, without: &[EffectKind]) -> Option<U
         return None;
     }
     let model = explain(&fitted, &fitted.scalars(None), without);
-    Assembly::new(&fitted, &model).on_runs_kept_back(&kept)
+    let unseen = Assembly::new(&fitted, &model).on_runs_kept_back(&kept)?;
+    // Every fourth run, from the third one on.
+    let worse = unseen.worse.map(|worse| WorseRun { run: 4 * worse.run + 2, ..worse });
+    Some(Unseen { worse, ..unseen })
+}
+
+/// The run that the causes make worse by most: its rows' squares grow on the whole by more than their differences scatter,
+/// which needs no figure of the noise. `as_one`: so many readings that hang together count as one.
+fn worse_run(
+    data: &Measurements,
+    scalars: &[Scalar],
+    before: &[f64],
+    after: &[f64],
+    as_one: f64,
+) -> Option<WorseRun> {
+    /// Rows of a run that say something of it.
+    const ROWS: usize = 6;
+    /// Less is nothing that anyone acts on, as a share of the RMS.
+    const GROWS: f64 = 0.05;
+    /// Standard errors: any of dozens of runs may be the worst one by chance.
+    const NO_CHANCE: f64 = 3.5;
+    let rows = {
+        let mut rows: Vec<usize> = scalars.iter().map(|s| s.row).collect();
+        rows.dedup();
+        rows
+    };
+    let mut runs: Vec<Vec<(f64, f64)>> = vec![Vec::new(); data.runs.len()];
+    for ((row, before), after) in
+        rows.iter().zip(row_lengths(scalars, before)).zip(row_lengths(scalars, after))
+    {
+        runs[data.rows[*row].run].push((before * before, after * after));
+    }
+    let judged = runs.iter().enumerate().filter(|(_, rows)| rows.len() >= ROWS).filter_map(|(run, rows)| {
+        let count = rows.len() as f64;
+        let mean = |of: &dyn Fn(&(f64, f64)) -> f64| rows.iter().map(of).sum::<f64>() / count;
+        let (before, after) = (mean(&|r| r.0), mean(&|r| r.1));
+        let grown = after - before;
+        let scatter = mean(&|r| (r.1 - r.0 - grown).powi(2)) / (count - 1.0) * as_one;
+        let worse = WorseRun { run, before_um: before.sqrt(), after_um: after.sqrt() };
+        let counts = worse.after_um > (1.0 + GROWS) * worse.before_um && grown > NO_CHANCE * scatter.sqrt();
+        counts.then_some(worse)
+    });
+    judged.max_by(|a, b| (a.after_um / a.before_um).total_cmp(&(b.after_um / b.before_um)))
 }
 
 fn finished(
@@ -168,7 +216,7 @@ fn finished(
     residuals: Vec<Residual>,
 ) -> Holdout {
     let shrink = if rms_before_um > 0.0 { 1.0 - rms_after_um / rms_before_um } else { 0.0 };
-    Holdout { rows, rms_before_um, rms_after_um, shrink, steps, residuals }
+    Holdout { rows, rms_before_um, rms_after_um, shrink, steps, residuals, worse: None }
 }
 
 /// Two states of the same equations.

@@ -57,6 +57,19 @@ pub(crate) struct Unseen {
     pub error: f64,
     /// Standard error of the RMS without the causes where it is noise, in the same units.
     pub chance: f64,
+    /// The run that the causes make worse by most, where one is made worse by more than chance.
+    pub worse: Option<WorseRun>,
+}
+
+/// A run that no fit has seen, without the causes and with them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct WorseRun {
+    /// Index of the run in the file that was read.
+    pub run: usize,
+    /// RMS without the causes, µm.
+    pub before_um: f64,
+    /// RMS with them, µm.
+    pub after_um: f64,
 }
 
 impl Unseen {
@@ -64,9 +77,14 @@ impl Unseen {
         if self.before > 0.0 { 1.0 - self.after / self.before } else { 0.0 }
     }
 
+    /// The forecast does not hold, or a run speaks against the causes that the others hide.
+    pub(crate) fn refutes(&self) -> bool {
+        self.falls_short() || self.worse.is_some()
+    }
+
     /// The forecast does not hold: less than the low end of its interval, by more than chance, and what is left is no
     /// noise, or hardly anything of it came true.
-    pub(crate) fn refutes(&self) -> bool {
+    pub(crate) fn falls_short(&self) -> bool {
         let short = self.promised.0 - self.achieved();
         let little = self.achieved() < LITTLE * self.promised.1;
         short > f64::max(SHORT, 2.0 * self.error) && (self.after > NOISE_LEFT || little)
@@ -79,7 +97,7 @@ impl Unseen {
 
     /// A forecast that does not hold, and of which hardly anything came true, where noise is not all that is left.
     fn contradicts(&self) -> bool {
-        self.refutes() && self.after > NOISE_LEFT && self.achieved() < LITTLE * self.promised.1
+        self.falls_short() && self.after > NOISE_LEFT && self.achieved() < LITTLE * self.promised.1
     }
 }
 
@@ -227,7 +245,9 @@ mod tests {
     /// Forecast 50 % (40 % at least) of a gap ten times the noise.
     #[test]
     fn unseen_rows_have_the_last_word() {
-        let kept = Unseen { before: 10.0, after: 5.0, promised: (0.4, 0.5), error: 0.01, chance: 0.1 };
+        let kept =
+            Unseen { before: 10.0, after: 5.0, promised: (0.4, 0.5), error: 0.01, chance: 0.1, worse: None };
+        let worse = Some(WorseRun { run: 1, before_um: 6.6, after_um: 7.3 });
         let with = |unseen: Unseen, e: Evidence| verdict(&Evidence { unseen: Some(unseen), ..e });
         let after = |after: f64| Unseen { after, ..kept };
         let none = Evidence { causes: 0, ..CLEAR };
@@ -242,6 +262,9 @@ mod tests {
             (with(after(11.0), open), Verdict::Unknown),
             (with(after(11.0), left), Verdict::Unknown),
             (with(after(7.0), left), Verdict::Partial),
+            // One run that gets worse is not outweighed by others that get better.
+            (with(Unseen { worse, ..kept }, CLEAR), Verdict::Partial),
+            (with(Unseen { worse, ..kept }, none), Verdict::Unknown),
             // Few rows prove little, and what is left at the level of the noise refutes nothing.
             (with(Unseen { error: 0.2, ..after(7.0) }, CLEAR), Verdict::Named),
             (with(Unseen { before: 2.0, after: 1.5, ..kept }, CLEAR), Verdict::Named),

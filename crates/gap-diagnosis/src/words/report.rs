@@ -47,7 +47,8 @@ impl Assembly<'_> {
         evidence.unseen = match (holdout, &held) {
             (Some(data), Some(held)) => {
                 let promised = causes.last().map(|c| c.shrink_predicted);
-                Some(self.unseen(data, held.rms_before_um, held.rms_after_um, promised))
+                let pooled = self.unseen(data, held.rms_before_um, held.rms_after_um, promised);
+                Some(Unseen { worse: held.worse, ..pooled })
             }
             _ if believed => kept_back(),
             _ => None,
@@ -75,7 +76,7 @@ impl Assembly<'_> {
             let refuted = if causes.is_empty() {
                 unseen.and_then(|u| u.gap_note())
             } else {
-                unseen.and_then(|u| u.refutation())
+                unseen.and_then(|u| u.refutation(&holdout.unwrap_or(self.data).runs))
             };
             let mut said = sentence(verdict, &gap, &causes, &leftover);
             said.push(&refuted.unwrap_or_default());

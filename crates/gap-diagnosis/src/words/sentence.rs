@@ -3,7 +3,7 @@
 use diagnostic::{Text, both};
 
 use crate::judgement::answer::{Cause, Gap, Leftover, Verdict};
-use crate::judgement::verdict::Unseen;
+use crate::judgement::verdict::{PHI_PARTIAL, Unseen};
 
 /// One sentence for the shop floor.
 #[must_use]
@@ -36,6 +36,11 @@ pub(crate) fn sentence(verdict: Verdict, gap: &Gap, causes: &[Cause], leftover: 
                 "Расхождение {size:#} объясняет {list}, остаётся {after:.1} мкм{open:#}."
             )
         }
+        // All that these rows show is explained, and others contradict it.
+        Verdict::Partial if leftover.phi <= PHI_PARTIAL => both!(
+            "On the rows that were fitted {list} take the gap of {size} down to {after:.1} µm.",
+            "На строках подгонки {list} уменьшает расхождение {size:#} до {after:.1} мкм."
+        ),
         Verdict::Partial => both!(
             "{list} explain part of the gap of {size}; {:.0} % of what could be explained is left and is not noise.",
             "{list} объясняет часть расхождения {size:#}; {:.0} % объяснимого остаётся, и это не шум.",
@@ -86,15 +91,28 @@ impl Unseen {
     }
 
     /// What the headline says of it where causes are named.
-    pub(crate) fn refutation(&self) -> Option<Text> {
-        self.refutes().then(|| {
+    /// `runs`: names of those that were not fitted.
+    pub(crate) fn refutation(&self, runs: &[String]) -> Option<Text> {
+        let short = self.falls_short().then(|| {
             both!(
                 " Rows that were not fitted refute it: {:.0} % were promised there, {:.0} % achieved.",
                 " Строки вне подгонки это опровергают: там обещано {:.0} %, достигнуто {:.0} %.",
                 100.0 * self.promised.1,
                 100.0 * self.achieved()
             )
-        })
+        });
+        let worse = || {
+            self.worse.map(|worse| {
+                both!(
+                    " Run {}, which was not fitted, refutes it: {:.1} µm become {:.1} µm there.",
+                    " Серия {} вне подгонки это опровергает: там {:.1} мкм становятся {:.1} мкм.",
+                    runs.get(worse.run).map_or("?", String::as_str),
+                    worse.before_um,
+                    worse.after_um
+                )
+            })
+        };
+        short.or_else(worse)
     }
 
     /// What is said of runs that were kept back because there is no hold-out.
