@@ -1,12 +1,13 @@
 //! The numbers of the causes, with their uncertainty.
 
+use machine_model::Vector;
 use machine_model::effects::{EffectKind, EffectTerm, Shape};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use crate::equations::columns::Source;
 use crate::equations::linear::Products;
 use crate::equations::noise::tail_factor;
-use crate::equations::set_up::Clamping;
+use crate::equations::set_up::{Clamping, middles_mm};
 use crate::equations::term::Term;
 use crate::judgement::answer::{Detectable, Parameter, Setup};
 use crate::judgement::assembly::Assembly;
@@ -149,7 +150,7 @@ impl Assembly<'_> {
     pub(crate) fn setup(&self) -> Setup {
         let solution = &self.model.solution;
         let mut setup = Setup::default();
-        let mut turns = vec![[0.0; 3]; self.data.runs.len()];
+        let mut turns = vec![Vector::zeros(); self.data.runs.len()];
         for (term, value) in solution.terms.iter().zip(&solution.coefficients) {
             match term {
                 Term::SetupShift(axis) => setup.shift_um[*axis] = *value,
@@ -158,12 +159,51 @@ impl Assembly<'_> {
                 _ => {}
             }
         }
-        let offsets = solution.run_offsets_um.iter().map(|o| [o.x, o.y, o.z]);
+        let mut offsets = solution.run_offsets_um.clone();
         if self.model.clamping == Clamping::Turned {
-            setup.run_rotations_urad = self.data.runs.iter().cloned().zip(turns).collect();
+            let common = common_turn(&mut turns, &mut offsets, &middles_mm(self.data));
+            let rotation = Vector::from(setup.rotation_urad) + common;
+            setup.rotation_urad = rotation.into();
+            setup.run_rotations_urad =
+                self.data.runs.iter().cloned().zip(turns.into_iter().map(Into::into)).collect();
         }
         setup.instruments_um = self.instruments_um();
+        let offsets = offsets.into_iter().map(Into::into);
         setup.run_offsets_um = self.data.runs.iter().cloned().zip(offsets).collect();
         setup
+    }
+}
+
+/// Takes from the angles of the runs, µrad, what they have in common, which is the measuring frame's, and gives it back. A run
+/// turns about its own middle, mm, the frame about machine zero: the offsets of the runs, µm, take the difference.
+fn common_turn(turns: &mut [Vector], offsets: &mut [Vector], middles_mm: &[Vector]) -> Vector {
+    let common = turns.iter().sum::<Vector>() / turns.len().max(1) as f64;
+    for ((turn, offset), middle) in turns.iter_mut().zip(offsets).zip(middles_mm) {
+        *turn -= common;
+        *offset -= common.cross(middle) * 1e-3;
+    }
+    common
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_runs_turn_in_common_is_the_frames() {
+        let middles = [Vector::new(300.0, 40.0, 10.0), Vector::new(-20.0, 500.0, 0.0)];
+        let mut turns = vec![Vector::new(0.0, 0.0, 2050.0), Vector::new(7.0, 0.0, 1953.0)];
+        let mut offsets = vec![Vector::new(1.0, 2.0, 3.0), Vector::zeros()];
+        let tip = Vector::new(120.0, -70.0, 33.0);
+        let moved = |turns: &[Vector], offsets: &[Vector], frame: Vector| {
+            [0, 1].map(|run| {
+                offsets[run] + 1e-3 * (turns[run].cross(&(tip - middles[run])) + frame.cross(&tip))
+            })
+        };
+        let before = moved(&turns, &offsets, Vector::zeros());
+        let common = common_turn(&mut turns, &mut offsets, &middles);
+        let after = moved(&turns, &offsets, common);
+        assert!((0..2).all(|run| (before[run] - after[run]).norm() < 1e-9));
+        assert!((turns[0] + turns[1]).norm() < 1e-9 && (turns[0].z - 48.5).abs() < 1e-9);
     }
 }

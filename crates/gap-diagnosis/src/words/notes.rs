@@ -75,13 +75,16 @@ impl Assembly<'_> {
         let setup = self.setup();
         let mut notes = Vec::new();
         if self.model.clamping == Clamping::Turned {
-            let turns = || setup.run_rotations_urad.iter().flat_map(|(_, turn)| turn.iter().copied());
-            let (low, high) =
-                turns().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+            let apart = |about: usize| {
+                let turns = setup.run_rotations_urad.iter().map(|(_, turn)| turn[about]);
+                let (low, high) =
+                    turns.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+                high - low
+            };
             notes.push(both!(
                 "The runs are turned against each other by up to {:.0} urad: every run has a set-up of its own (clamping), and that is taken out of the gap.",
                 "Серии повёрнуты друг относительно друга до {:.0} мкрад: у каждой своя установка (закрепление), и это вычтено из расхождения.",
-                high - low
+                (0..3).map(apart).fold(0.0, f64::max)
             ));
         }
         for (instrument, zeros) in &setup.instruments_um {
