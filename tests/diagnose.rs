@@ -335,6 +335,35 @@ fn units_wrong_by_a_thousand() {
     refused(&scaled(4..7, 150.0), "2:29", "VP0913", "nanometres?");
 }
 
+/// A robot is out by millimetres: positions in the unit of the commands are no slip, and who says so is believed.
+#[test]
+fn a_machine_that_is_out_by_millimetres_may_say_so() {
+    let positions = changed(GOOD, |at, line| {
+        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+        for axis in 0..3 {
+            let number = |column: usize| fields[column].parse::<f64>();
+            fields[4 + axis] = match (number(1 + axis), number(4 + axis)) {
+                (Ok(commanded_mm), Ok(um)) => (commanded_mm + 0.15 * um).to_string(),
+                _ => ["xm_mm", "ym_mm", "zm_mm"][axis].to_owned(),
+            };
+        }
+        assert_eq!(at == 0, fields[4] == "xm_mm");
+        Some(fields.join(","))
+    });
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("robot.csv");
+    let diagnosed = |text: &str, more: &[&str]| {
+        std::fs::write(&path, text).expect("writable");
+        let file = path.to_str().expect("a plain path");
+        let ran = run(&[&["diagnose", file, "-m", GOOD_PROFILE], more].concat());
+        (ran.status.code(), messages(&ran))
+    };
+    for (text, more) in [(positions, &[][..]), (scaled(4..7, 150.0), &["--as-written"])] {
+        let (status, said) = diagnosed(&text, more);
+        assert!(status == Some(0) && !said.contains("VP0913"), "{status:?} {said}");
+    }
+}
+
 /// A crooked machine in millimetres looks like a good one in micrometres; the profile's tables know better.
 #[test]
 fn millimetres_where_the_profile_knows_better() {

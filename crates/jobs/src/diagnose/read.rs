@@ -93,7 +93,7 @@ pub fn of_one_machine(name: &str, measured: &Measured, held: &Measured) -> Resul
 pub fn readable(bytes: &[u8], profile: &Profile) -> Result<(), Failure> {
     let (data, sheet) =
         measurements::read("measurements", bytes, setup_tool(profile), &[], &geometry(profile))?;
-    measurements::commands_and_frames(&sheet, &data, profile)
+    measurements::commands_and_frames(&sheet, &data, profile, Books::Checked)
 }
 
 /// Reads a file and predicts its rows; columns in `ignore` are passed over.
@@ -109,7 +109,7 @@ pub fn read(
 ) -> Result<Measured, Failure> {
     let tool_mm = setup_tool(&model.profile);
     let (mut data, sheet) = measurements::read(name, bytes, tool_mm, ignore, &model.geometry)?;
-    measurements::commands_and_frames(&sheet, &data, &model.profile)?;
+    measurements::commands_and_frames(&sheet, &data, &model.profile, books)?;
     let rigid = model.profile.rigid_body_without_effects();
     let predict = |row: &mut Row| -> Result<(), Failure> {
         row.predicted_mm = match model.engine.as_deref().and_then(|e| e.path_model()) {

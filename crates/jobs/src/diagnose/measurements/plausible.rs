@@ -10,6 +10,7 @@ use measurement_files::Sheet;
 use measurement_files::codes::UNIT;
 
 use super::columns::READINGS;
+use crate::diagnose::read::Books;
 use crate::message::Failure;
 
 /// Rows of different frames in one file.
@@ -40,11 +41,13 @@ fn refuse(sheet: &Sheet, code: Code, row: usize, column: &str, message: Text, he
     }
 }
 
-/// Units and frames that the file alone shows; nothing has been predicted yet.
+/// Units and frames that the file alone shows; nothing has been predicted yet. Where somebody says that the columns are
+/// as they are named, or positions were measured beside the commands in the same unit, nobody asks for that of scatter.
 pub(in crate::diagnose) fn commands_and_frames(
     sheet: &Sheet,
     data: &Measurements,
     profile: &Profile,
+    books: Books,
 ) -> Result<(), Failure> {
     let widest = (0..3).map(|a| data.range_mm(a).1 - data.range_mm(a).0).fold(0.0, f64::max);
     if widest > 0.0 && widest < SMALLEST_SPAN_MM && data.rows.len() > 3 {
@@ -63,6 +66,10 @@ pub(in crate::diagnose) fn commands_and_frames(
     }
     travel(sheet, data, profile)?;
     sizes(sheet, data, widest)?;
+    let positions = ["xm_mm", "ym_mm", "zm_mm"].into_iter().any(|column| sheet.has(column));
+    if books == Books::Checked && !positions {
+        scatter(sheet, data)?;
+    }
     frames(sheet, data, FAR_UM + TURNED_UM_PER_MM * widest)
 }
 
@@ -109,6 +116,15 @@ fn sizes(sheet: &Sheet, data: &Measurements, widest_mm: f64) -> Result<(), Failu
         );
         return Err(refuse(sheet, UNIT, 0, reading_column(sheet), message, help));
     }
+    Ok(())
+}
+
+/// Readings that scatter by more than those of any instrument for machine tools.
+fn scatter(sheet: &Sheet, data: &Measurements) -> Result<(), Failure> {
+    let help = both!(
+        "deviations are micrometres: check the unit; if it is right, add --as-written",
+        "отклонения — в микрометрах: проверьте единицу; если она верна, добавьте --as-written"
+    );
     let scatter = scatter_um(data);
     if scatter > LARGEST_SCATTER_UM {
         let message = both!(
