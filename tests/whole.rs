@@ -9,6 +9,8 @@ mod five_axis_parts;
 mod folders;
 #[path = "../xtask/src/wrap.rs"]
 mod wrap;
+#[path = "../xtask/src/zhang.rs"]
+mod zhang_table;
 
 mod arcs;
 mod batch;
@@ -62,3 +64,4 @@ mod tool_lengths;
 mod traps;
 mod turning;
 mod words;
+mod zhang;
