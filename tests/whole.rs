@@ -51,6 +51,7 @@ mod holes;
 mod identity;
 mod large;
 mod map;
+mod ms300;
 mod on_a_terminal;
 mod one_block;
 mod orientation;

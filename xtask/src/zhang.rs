@@ -265,6 +265,12 @@ impl Table {
     }
 }
 
+/// Every five degrees, over the turn; few tables tilt all the way round. 0 is where the other ball was put.
+pub(crate) fn angles_deg(mode: Mode) -> impl Iterator<Item = i32> {
+    let range = if mode.turns_a() { -90..=90 } else { 0..=360 };
+    range.step_by(5)
+}
+
 /// A table for `vpost calibrate ballbar`: the four tests and a spindle turn, a reading every five degrees, `runs` times.
 pub(crate) fn readings_csv(table: &Table, runs: usize, mut read_mm: impl FnMut(f64) -> f64) -> String {
     let mut text = String::from("run,x_mm,y_mm,z_mm,bx_mm,by_mm,bz_mm,a_deg,c_deg,spindle_deg,length_mm\n");
@@ -279,9 +285,7 @@ pub(crate) fn readings_csv(table: &Table, runs: usize, mut read_mm: impl FnMut(f
     };
     for (mode, name) in MODES.into_iter().zip(["A1", "A2", "C3", "C4"]) {
         for _ in 0..runs {
-            // Few tables tilt all the way round; 0 is where the other ball was put.
-            let range = if mode.turns_a() { -90..=90 } else { 0..=360 };
-            for degrees in range.step_by(5).map(f64::from) {
+            for degrees in angles_deg(mode).map(f64::from) {
                 let angles = if mode.turns_a() { [degrees, 0.0, 0.0] } else { [0.0, degrees, 0.0] };
                 let length = read_mm(table.length_mm(mode, degrees.to_radians()));
                 row(name, mode.tool_ball_mm(), mode.bar_mm(), angles, length);
@@ -289,7 +293,7 @@ pub(crate) fn readings_csv(table: &Table, runs: usize, mut read_mm: impl FnMut(f
         }
     }
     for _ in 0..runs {
-        for degrees in (0..=360).step_by(5).map(f64::from) {
+        for degrees in angles_deg(Mode::Three).map(f64::from) {
             let length = read_mm(table.spindle_length_mm(degrees.to_radians()));
             row("spindle", [0.0; 3], [BAR_MM, 0.0, 0.0], [0.0, 0.0, degrees], length);
         }
