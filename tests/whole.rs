@@ -7,6 +7,8 @@ mod common;
 mod five_axis_parts;
 #[path = "common/folders.rs"]
 mod folders;
+#[path = "common/tip_program.rs"]
+mod tip_program;
 #[path = "../xtask/src/wrap.rs"]
 mod wrap;
 #[path = "../xtask/src/zhang.rs"]
@@ -60,6 +62,7 @@ mod profile_new;
 mod real_machines;
 mod refusals;
 mod russian;
+mod s_wall;
 mod spreadsheets;
 mod tool_lengths;
 mod traps;

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::Output;
 
 use crate::common::{messages, root, run};
+use crate::tip_program::{Place, places};
 use crate::zhang_table::{
     NAMES, OF_THE_EXPERIMENT, OF_THE_SIMULATION, Table, Vector, distance, instrument, readings_csv,
 };
@@ -40,52 +41,6 @@ on = ["M428"]
 off = ["M429"]
 "#;
 
-/// End of a block under tool centre point control.
-struct Place {
-    tip_mm: Vector,
-    a_deg: f64,
-    c_deg: f64,
-    feeds: bool,
-    /// It has a word for X, Y or Z; a rapid without one keeps the words of before, corrected for other angles.
-    names_tip: bool,
-}
-
-/// Reads what the two programs have: G0, G1, X Y Z A C, M428. Nothing else in them moves anything.
-fn places(text: &str) -> Vec<Place> {
-    let (mut at, mut feeds, mut is_on, mut found) = ([0.0; 5], false, false, Vec::new());
-    for line in text.lines() {
-        let code: String = line.split(['(', ';']).next().unwrap_or_default().split_whitespace().collect();
-        is_on = (is_on || code.contains("M428")) && !code.contains("M429");
-        let (mut moves, mut names_tip) = (false, false);
-        for word in words(&code) {
-            match word {
-                ('G', 0.0) => feeds = false,
-                ('G', 1.0) => feeds = true,
-                (letter, value) => {
-                    if let Some(axis) = "XYZAC".find(letter) {
-                        (at[axis], moves) = (value, true);
-                        names_tip |= axis < 3;
-                    }
-                }
-            }
-        }
-        if moves && is_on {
-            found.push(Place { tip_mm: [at[0], at[1], at[2]], a_deg: at[3], c_deg: at[4], feeds, names_tip });
-        }
-    }
-    found
-}
-
-fn words(code: &str) -> impl Iterator<Item = (char, f64)> {
-    let starts: Vec<usize> =
-        code.char_indices().filter(|(_, c)| c.is_ascii_uppercase()).map(|(k, _)| k).collect();
-    let ends: Vec<usize> = starts.iter().skip(1).copied().chain([code.len()]).collect();
-    let word = move |(from, to): (usize, usize)| {
-        Some((code[from..].chars().next()?, code[from + 1..to].parse().ok()?))
-    };
-    starts.into_iter().zip(ends).filter_map(word)
-}
-
 /// Where the tip is in the workpiece: the control turns the table of the drawing, the machine has this one.
 fn real(table: &Table, tip_mm: Vector, a_deg: f64, c_deg: f64) -> Vector {
     let (a, c) = (a_deg.to_radians(), c_deg.to_radians());
@@ -106,7 +61,7 @@ fn off_block(table: &Table, [from, to]: [&Place; 2], [start, end]: [Vector; 2]) 
         let t = f64::from(k) / 16.0;
         let between = |a: f64, b: f64| a + t * (b - a);
         let tip = [0, 1, 2].map(|i| between(from.tip_mm[i], to.tip_mm[i]));
-        real(table, tip, between(from.a_deg, to.a_deg), between(from.c_deg, to.c_deg))
+        real(table, tip, between(from.tilt_deg, to.tilt_deg), between(from.c_deg, to.c_deg))
     };
     (0..=16).map(|k| off_line(at(k), start, end)).fold(0.0, f64::max)
 }
@@ -117,7 +72,8 @@ fn off_block(table: &Table, [from, to]: [&Place; 2], [start, end]: [Vector; 2]) 
 /// A place that is not reached, in order, with its own angles; or something run behind the last.
 fn ends(table: &Table, programmed: &[Place], run: &[Place]) -> Result<Vec<usize>, String> {
     if programmed.len() == run.len() {
-        let same = |(one, other): (&Place, &Place)| one.a_deg == other.a_deg && one.c_deg == other.c_deg;
+        let same =
+            |(one, other): (&Place, &Place)| one.tilt_deg == other.tilt_deg && one.c_deg == other.c_deg;
         let turned = programmed.iter().zip(run).position(|pair| !same(pair));
         return turned.map_or(Ok((0..run.len()).collect()), |k| Err(format!("angles of place {k}")));
     }
@@ -126,8 +82,8 @@ fn ends(table: &Table, programmed: &[Place], run: &[Place]) -> Result<Vec<usize>
     for (k, wanted) in programmed.iter().enumerate() {
         // A block becomes a handful of pieces at most.
         let reaches = |place: &Place| {
-            let off = distance(real(table, place.tip_mm, place.a_deg, place.c_deg), wanted.tip_mm);
-            place.a_deg == wanted.a_deg
+            let off = distance(real(table, place.tip_mm, place.tilt_deg, place.c_deg), wanted.tip_mm);
+            place.tilt_deg == wanted.tilt_deg
                 && place.c_deg == wanted.c_deg
                 && off < if wanted.names_tip { 0.02 } else { 0.5 }
         };
@@ -146,7 +102,7 @@ fn off_path_um(table: &Table, programmed: &[Place], run: &[Place]) -> Result<[f6
     let mut first = 0;
     for (k, (wanted, last)) in programmed.iter().zip(ends(table, programmed, run)?).enumerate() {
         let end = &run[last];
-        let off = distance(real(table, end.tip_mm, end.a_deg, end.c_deg), wanted.tip_mm);
+        let off = distance(real(table, end.tip_mm, end.tilt_deg, end.c_deg), wanted.tip_mm);
         if wanted.names_tip {
             worst[0] = worst[0].max(off * 1e3);
         }
