@@ -79,7 +79,7 @@ fn contributions(text: &str, b: f64, c: f64) -> BTreeMap<String, Vector> {
         );
     }
     // The table moves under the tool: the other sign. What C does is turned by B.
-    for (axis, angle, seen, back) in [('B', b, ball, 0.0), ('C', c, on_b, b)] {
+    for (axis, about, angle, seen, back) in [('B', 1, b, ball, 0.0), ('C', 2, c, on_b, b)] {
         let f = functions(axis, angle);
         for i in 0..3 {
             let (length, turn) = (["EX", "EY", "EZ"][i], ["EA", "EB", "EC"][i]);
@@ -87,7 +87,7 @@ fn contributions(text: &str, b: f64, c: f64) -> BTreeMap<String, Vector> {
             add(format!("{length}{axis}"), shift, -f[i]);
             add(format!("{turn}{axis}"), lean, -f[i + 3] * 1e-3);
             // A place along the axis and a turn about it are no location errors of it.
-            if i != if axis == 'B' { 1 } else { 2 } {
+            if i != about {
                 add(format!("{length}0{axis}"), shift, -stated(text, &format!("{length}0{axis}_um")));
                 add(format!("{turn}0{axis}"), lean, -1e-3 * stated(text, &format!("{turn}0{axis}_urad")));
             }
