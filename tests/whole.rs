@@ -7,8 +7,12 @@ mod common;
 mod five_axis_parts;
 #[path = "common/folders.rs"]
 mod folders;
+#[path = "common/tip_program.rs"]
+mod tip_program;
 #[path = "../xtask/src/wrap.rs"]
 mod wrap;
+#[path = "../xtask/src/zhang.rs"]
+mod zhang_table;
 
 mod arcs;
 mod batch;
@@ -49,6 +53,7 @@ mod holes;
 mod identity;
 mod large;
 mod map;
+mod ms300;
 mod on_a_terminal;
 mod one_block;
 mod orientation;
@@ -57,8 +62,10 @@ mod profile_new;
 mod real_machines;
 mod refusals;
 mod russian;
+mod s_wall;
 mod spreadsheets;
 mod tool_lengths;
 mod traps;
 mod turning;
 mod words;
+mod zhang;

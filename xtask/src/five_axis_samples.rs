@@ -399,6 +399,17 @@ pub(crate) fn files() -> Vec<(String, String)> {
     all
 }
 
+/// The S-shaped wall for every chain, by the name of its profile: LinuxCNC's words, tool centre point control.
+#[allow(dead_code, reason = "a test asks for them")]
+pub(crate) fn s_walls() -> [(&'static str, String); 3] {
+    let machines = [
+        ("table_table", Machine::TableTable),
+        ("head_table", Machine::HeadTable),
+        ("head_head", Machine::HeadHead),
+    ];
+    machines.map(|(name, machine)| (name, post(&Part { machine, ..s_piece() }, Dialect::Linuxcnc, true)))
+}
+
 /// The chain that a file is posted for, as its profile is named.
 pub(crate) fn chain_of(file: &str) -> &'static str {
     match file.split('_').next() {

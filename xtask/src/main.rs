@@ -15,6 +15,7 @@ mod reproduction;
 #[path = "../../crates/machine-model/tests/stan_s500/mod.rs"]
 mod stan_s500;
 mod wrap;
+mod zhang;
 
 use std::fmt::Write as _;
 use std::io::Write;

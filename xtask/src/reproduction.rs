@@ -2,6 +2,7 @@
 
 mod calibration;
 mod lathe;
+mod rotary;
 mod rotations;
 mod solutions;
 mod targets;
@@ -32,6 +33,7 @@ pub(crate) fn page() -> String {
     text += &targets::section();
     text += "\n";
     text += &calibration::section();
+    text += &rotary::section();
     text += &lathe::section();
     crate::wrap::wrapped(&text)
 }
