@@ -275,14 +275,49 @@ fn the_first_two_blocks_of_the_readme_are_the_two_commands() {
     );
 }
 
+/// The pages that exist in both languages: English, Russian.
+fn pairs() -> Vec<(String, String)> {
+    let english = |page: &String| page.strip_suffix(".ru.md").map(|name| (format!("{name}.md"), page.clone()));
+    documents().iter().filter_map(english).collect()
+}
+
+#[test]
+fn every_how_to_is_there_in_russian_and_they_lead_to_each_other() {
+    let pairs = pairs();
+    let mut wrong = Vec::new();
+    for page in documents().iter().filter(|page| page.starts_with("docs/how-to/") && !page.ends_with(".ru.md")) {
+        if !pairs.iter().any(|(english, _)| english == page) {
+            wrong.push(format!("{page} has no Russian page"));
+        }
+    }
+    let name = |page: &str| page.rsplit('/').next().unwrap_or_default().to_owned();
+    for (english, russian) in &pairs {
+        for (page, other) in [(english, russian), (russian, english)] {
+            // Behind the title, where its reader looks for it.
+            let top: String = read(page).lines().take(14).collect();
+            if !top.contains(&format!("]({})", name(other))) {
+                wrong.push(format!("{page} does not lead to {other}"));
+            }
+        }
+        // A Russian reader is led to Russian pages, where there are any.
+        let text = read(russian);
+        for (linked, twin) in &pairs {
+            let links = ["/", "]("].map(|before| format!("{before}{})", name(linked)));
+            if linked != english && links.iter().any(|link| text.contains(link)) {
+                wrong.push(format!("{russian} leads to {linked} instead of {twin}"));
+            }
+        }
+    }
+    assert!(pairs.len() > 15 && wrong.is_empty(), "{} pairs\n{}", pairs.len(), wrong.join("\n"));
+}
+
 #[test]
 fn russian_pages_have_the_same_commands_and_pictures() {
-    for (english, russian) in [
-        ("README.md", "README.ru.md"),
-        ("docs/tutorial.md", "docs/tutorial.ru.md"),
-        ("docs/how-to/turn-straight.md", "docs/how-to/turn-straight.ru.md"),
-        ("docs/how-to/correct-for-my-machine.md", "docs/how-to/correct-for-my-machine.ru.md"),
-    ] {
+    for (english, russian) in pairs() {
+        // `help::` holds the pages of messages against each other: their examples stand in the English one.
+        if english == "docs/diagnostics.md" {
+            continue;
+        }
         let blocks = |name: &str| {
             // What is printed is in the reader's language.
             let kept = |fence: &Fence| {
@@ -291,9 +326,9 @@ fn russian_pages_have_the_same_commands_and_pictures() {
             };
             fences(&read(name)).iter().map(kept).collect::<Vec<_>>()
         };
-        assert_eq!(blocks(english), blocks(russian), "{russian}");
+        assert_eq!(blocks(&english), blocks(&russian), "{russian}");
         let pictures = |name: &str| read(name).matches("img/").count();
-        assert_eq!(pictures(english), pictures(russian), "{russian}");
+        assert_eq!(pictures(&english), pictures(&russian), "{russian}");
     }
 }
 

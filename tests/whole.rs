@@ -27,6 +27,7 @@ mod calibrate_machine;
 mod calibrate_pages;
 mod calibrate_rtest;
 mod calibrate_turning;
+mod cam;
 mod closed_loop;
 mod controls;
 mod corpus;
