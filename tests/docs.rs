@@ -86,7 +86,7 @@ fn blocks_of<'f>(fences: &'f [Fence], language: &str) -> Vec<&'f Fence> {
 }
 
 /// A folder as a new user has it after a clone, without what would have to be built.
-struct Clone {
+pub(crate) struct Clone {
     folder: tempfile::TempDir,
 }
 
@@ -96,7 +96,13 @@ impl Clone {
         for name in ["samples", "machine-profiles", "grammars", "tests/profiles"] {
             copy(&root().join(name), &folder.path().join("project").join(name));
         }
-        let tools = folder.path().join("tools");
+        Self::tools(folder.path());
+        Self { folder }
+    }
+
+    /// A folder with the commands that the documents call, to stand first in `PATH`.
+    pub(crate) fn tools(folder: &Path) -> PathBuf {
+        let tools = folder.join("tools");
         std::fs::create_dir(&tools).expect("a new folder");
         let stub = "#!/bin/sh\nexec \"$VPOST_UNDER_TEST\" \"$@\"\n";
         let cargo = r#"#!/bin/sh
@@ -109,7 +115,7 @@ esac
         for (name, text) in [("vpost", stub), ("cargo", cargo)] {
             write_executable(&tools.join(name), text);
         }
-        Self { folder }
+        tools
     }
 
     /// Runs a block: standard output, with standard error where it was written.
@@ -136,7 +142,7 @@ fn write_executable(path: &Path, text: &str) {
     std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o755)).expect("our own file");
 }
 
-fn copy(from: &Path, to: &Path) {
+pub(crate) fn copy(from: &Path, to: &Path) {
     if from.is_dir() {
         std::fs::create_dir_all(to).expect("a new folder");
         for entry in std::fs::read_dir(from).expect("it is there") {

@@ -50,6 +50,7 @@ mod holes;
 mod identity;
 mod large;
 mod map;
+mod newcomer;
 mod on_a_terminal;
 mod one_block;
 mod orientation;
