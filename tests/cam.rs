@@ -58,7 +58,8 @@ impl Shop {
         );
         std::fs::write(&machine, text).expect("writable");
         // What the reader of the page changes: where vpost is, and the profile.
-        let script = std::fs::read_to_string(root().join("samples/cam/vpost_linuxcnc_post.py")).expect("text");
+        let script =
+            std::fs::read_to_string(root().join("samples/cam/vpost_linuxcnc_post.py")).expect("text");
         let own = script
             .replace("[\"vpost\",", &format!("[{:?},", env!("CARGO_BIN_EXE_vpost")))
             .replace("/etc/vpost/my-machine.toml", &machine);

@@ -283,7 +283,8 @@ fn the_first_two_blocks_of_the_readme_are_the_two_commands() {
 
 /// The pages that exist in both languages: English, Russian.
 fn pairs() -> Vec<(String, String)> {
-    let english = |page: &String| page.strip_suffix(".ru.md").map(|name| (format!("{name}.md"), page.clone()));
+    let english =
+        |page: &String| page.strip_suffix(".ru.md").map(|name| (format!("{name}.md"), page.clone()));
     documents().iter().filter_map(english).collect()
 }
 
@@ -291,7 +292,9 @@ fn pairs() -> Vec<(String, String)> {
 fn every_how_to_is_there_in_russian_and_they_lead_to_each_other() {
     let pairs = pairs();
     let mut wrong = Vec::new();
-    for page in documents().iter().filter(|page| page.starts_with("docs/how-to/") && !page.ends_with(".ru.md")) {
+    for page in
+        documents().iter().filter(|page| page.starts_with("docs/how-to/") && !page.ends_with(".ru.md"))
+    {
         if !pairs.iter().any(|(english, _)| english == page) {
             wrong.push(format!("{page} has no Russian page"));
         }
@@ -398,7 +401,7 @@ fn help(command: &[&str]) -> String {
 }
 
 /// The names below `Commands:`.
-fn subcommands(help: &str) -> Vec<String> {
+pub(crate) fn subcommands(help: &str) -> Vec<String> {
     help.lines()
         .skip_while(|line| *line != "Commands:")
         .skip(1)
@@ -411,7 +414,7 @@ fn subcommands(help: &str) -> Vec<String> {
         .collect()
 }
 
-fn options(help: &str) -> BTreeSet<String> {
+pub(crate) fn options(help: &str) -> BTreeSet<String> {
     help.lines()
         .filter(|line| line.trim_start().starts_with('-') && line.starts_with("  ") && !line.contains("- "))
         .filter_map(first_option)

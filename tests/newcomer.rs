@@ -85,7 +85,9 @@ fn every_how_to_leads_a_newcomer_to_the_end_in_both_languages() {
     let (mut wrong, mut ran, mut pages) = (Vec::new(), 0, 0);
     let mut names: Vec<String> = std::fs::read_dir(root().join("docs/how-to"))
         .expect("how-tos")
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok()?.strip_suffix(".md").map(str::to_owned))
+        .filter_map(|entry| {
+            entry.ok()?.file_name().into_string().ok()?.strip_suffix(".md").map(str::to_owned)
+        })
         .filter(|name| !name.ends_with(".ru"))
         .collect();
     names.sort();
@@ -111,11 +113,14 @@ fn every_how_to_leads_a_newcomer_to_the_end_in_both_languages() {
                 }
             }
             (english, russian) => {
-                wrong.extend([english.err(), russian.err()].into_iter().flatten().map(|e| format!("{name}: {e}")));
+                wrong.extend(
+                    [english.err(), russian.err()].into_iter().flatten().map(|e| format!("{name}: {e}")),
+                );
             }
         }
     }
-    let known: Vec<&String> = changes.keys().filter(|name| *name != "every" && !names.contains(name)).collect();
+    let known: Vec<&String> =
+        changes.keys().filter(|name| *name != "every" && !names.contains(name)).collect();
     assert!(known.is_empty(), "tests/newcomer/pages.toml has pages that are none: {known:?}");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(pages > 14 && ran > 100, "{pages} pages, {ran} blocks");
@@ -128,7 +133,10 @@ fn a_page_that_leads_astray_is_found() {
     assert!(typed(page, &none, "x").expect_err("shipped").contains("has nothing for this"));
     let stale = BTreeMap::from([("x".to_owned(), Changes::from([("G54".to_owned(), "G55".to_owned())]))]);
     assert!(typed("\n```sh\nvpost\n```\n", &stale, "x").expect_err("stale").contains("no more"));
-    let failing = vec!["vpost profile check vega/vega.toml".to_owned(), "vpost nothing.nc -m vega/vega.toml".to_owned()];
+    let failing = vec![
+        "vpost profile check vega/vega.toml".to_owned(),
+        "vpost nothing.nc -m vega/vega.toml".to_owned(),
+    ];
     assert!(played(&failing, "C").expect_err("no such file").contains("nothing.nc"));
     assert!(played(&failing[..1], "C").is_ok());
 }
@@ -138,7 +146,11 @@ fn a_page_that_leads_astray_is_found() {
 fn the_newcomers_instruments_find_what_was_hidden() {
     let found = |arguments: &[&str], names: &[(&str, f64)]| {
         let folder = root().join("tests/newcomer");
-        let ran = crate::common::vpost().current_dir(Path::new(&folder)).args(arguments).output().expect("it starts");
+        let ran = crate::common::vpost()
+            .current_dir(Path::new(&folder))
+            .args(arguments)
+            .output()
+            .expect("it starts");
         let said = String::from_utf8_lossy(&ran.stdout).into_owned();
         assert!(ran.status.success(), "{said}{}", crate::common::messages(&ran));
         for (name, hidden) in names {
@@ -153,9 +165,11 @@ fn the_newcomers_instruments_find_what_was_hidden() {
     };
     let circles = [("EC0Y", 41.0), ("EB0Z", -22.0), ("EA0Z", 17.0), ("backlash X", 5.2), ("backlash Z", 7.4)];
     found(&["calibrate", "ballbar", "measured/circles.csv"], &circles);
-    let table = [("EZ0A", -61.0), ("EB0A", 118.0), ("EX0C", 87.0), ("EY0C", -42.0), ("EA0C", 55.0), ("EB0C", -71.0)];
+    let table =
+        [("EZ0A", -61.0), ("EB0A", 118.0), ("EX0C", 87.0), ("EY0C", -42.0), ("EA0C", 55.0), ("EB0C", -71.0)];
     let chain = ["--chain", "[w C A b X Y Z t]", "--crossing", "410,-220,-380"];
     found(&[&["calibrate", "ballbar", "measured/bar.csv"], &chain[..]].concat(), &table);
-    let rtest = [("EX0C", 31.0), ("EY0C", -12.0), ("EA0C", 77.0), ("EY0A", 18.0), ("EZ0A", -23.0), ("EC0A", -44.0)];
+    let rtest =
+        [("EX0C", 31.0), ("EY0C", -12.0), ("EA0C", 77.0), ("EY0A", 18.0), ("EZ0A", -23.0), ("EC0A", -44.0)];
     found(&["calibrate", "rtest", "table/rtest.csv", "-m", "table/table.toml"], &rtest);
 }

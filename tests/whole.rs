@@ -53,6 +53,7 @@ mod map;
 mod newcomer;
 mod on_a_terminal;
 mod one_block;
+mod options;
 mod orientation;
 mod points;
 mod profile_new;
