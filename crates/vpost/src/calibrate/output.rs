@@ -71,8 +71,10 @@ pub(super) struct Output {
 fn agrees(base: &Profile, target: &Target, shared: &Shared) -> Result<(), Failure> {
     let squeezed = |text: &str| text.split_whitespace().collect::<String>();
     let chain = base.chain().to_string();
-    let control = base.control.clone().unwrap_or_default();
-    let asked = [("--chain", target.chain.as_deref(), chain), ("--dialect", shared.job.dialect.as_deref(), control)];
+    // Where the base names no control the new profile takes the one that is said.
+    let control = base.control.clone().or_else(|| shared.job.dialect.clone()).unwrap_or_default();
+    let asked =
+        [("--chain", target.chain.as_deref(), chain), ("--dialect", shared.job.dialect.as_deref(), control)];
     for (option, said, known) in asked {
         if let Some(said) = said.filter(|said| squeezed(said) != squeezed(&known)) {
             return Err(question(
@@ -136,6 +138,9 @@ impl Output {
             }
             if let Some(name) = &target.name {
                 text.set_text(&["name"], name);
+            }
+            if let (None, Some(dialect)) = (&base.control, &shared.job.dialect) {
+                text.set_text(&["control"], dialect);
             }
             return Ok(Self { text, base: Some(base), tables, folder });
         }
