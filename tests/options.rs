@@ -106,7 +106,9 @@ fn every_option_that_is_listed_acts() {
         let shown = acting.get(command.as_str()).unwrap_or(&none);
         let untried: Vec<String> = options(&page).difference(shown).cloned().collect();
         if !untried.is_empty() {
-            wrong.push(format!("`vpost {command}` lists {untried:?}; in which call of tests/options.toml do they act?"));
+            wrong.push(format!(
+                "`vpost {command}` lists {untried:?}; in which call of tests/options.toml do they act?"
+            ));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
