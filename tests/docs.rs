@@ -86,7 +86,7 @@ fn blocks_of<'f>(fences: &'f [Fence], language: &str) -> Vec<&'f Fence> {
 }
 
 /// A folder as a new user has it after a clone, without what would have to be built.
-struct Clone {
+pub(crate) struct Clone {
     folder: tempfile::TempDir,
 }
 
@@ -96,7 +96,13 @@ impl Clone {
         for name in ["samples", "machine-profiles", "grammars", "tests/profiles"] {
             copy(&root().join(name), &folder.path().join("project").join(name));
         }
-        let tools = folder.path().join("tools");
+        Self::tools(folder.path());
+        Self { folder }
+    }
+
+    /// A folder with the commands that the documents call, to stand first in `PATH`.
+    pub(crate) fn tools(folder: &Path) -> PathBuf {
+        let tools = folder.join("tools");
         std::fs::create_dir(&tools).expect("a new folder");
         let stub = "#!/bin/sh\nexec \"$VPOST_UNDER_TEST\" \"$@\"\n";
         let cargo = r#"#!/bin/sh
@@ -109,7 +115,7 @@ esac
         for (name, text) in [("vpost", stub), ("cargo", cargo)] {
             write_executable(&tools.join(name), text);
         }
-        Self { folder }
+        tools
     }
 
     /// Runs a block: standard output, with standard error where it was written.
@@ -136,7 +142,7 @@ fn write_executable(path: &Path, text: &str) {
     std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o755)).expect("our own file");
 }
 
-fn copy(from: &Path, to: &Path) {
+pub(crate) fn copy(from: &Path, to: &Path) {
     if from.is_dir() {
         std::fs::create_dir_all(to).expect("a new folder");
         for entry in std::fs::read_dir(from).expect("it is there") {
@@ -275,14 +281,52 @@ fn the_first_two_blocks_of_the_readme_are_the_two_commands() {
     );
 }
 
+/// The pages that exist in both languages: English, Russian.
+fn pairs() -> Vec<(String, String)> {
+    let english =
+        |page: &String| page.strip_suffix(".ru.md").map(|name| (format!("{name}.md"), page.clone()));
+    documents().iter().filter_map(english).collect()
+}
+
+#[test]
+fn every_how_to_is_there_in_russian_and_they_lead_to_each_other() {
+    let pairs = pairs();
+    let mut wrong = Vec::new();
+    for page in
+        documents().iter().filter(|page| page.starts_with("docs/how-to/") && !page.ends_with(".ru.md"))
+    {
+        if !pairs.iter().any(|(english, _)| english == page) {
+            wrong.push(format!("{page} has no Russian page"));
+        }
+    }
+    let name = |page: &str| page.rsplit('/').next().unwrap_or_default().to_owned();
+    for (english, russian) in &pairs {
+        for (page, other) in [(english, russian), (russian, english)] {
+            // Behind the title, where its reader looks for it.
+            let top: String = read(page).lines().take(14).collect();
+            if !top.contains(&format!("]({})", name(other))) {
+                wrong.push(format!("{page} does not lead to {other}"));
+            }
+        }
+        // A Russian reader is led to Russian pages, where there are any.
+        let text = read(russian);
+        for (linked, twin) in &pairs {
+            let links = ["/", "]("].map(|before| format!("{before}{})", name(linked)));
+            if linked != english && links.iter().any(|link| text.contains(link)) {
+                wrong.push(format!("{russian} leads to {linked} instead of {twin}"));
+            }
+        }
+    }
+    assert!(pairs.len() > 15 && wrong.is_empty(), "{} pairs\n{}", pairs.len(), wrong.join("\n"));
+}
+
 #[test]
 fn russian_pages_have_the_same_commands_and_pictures() {
-    for (english, russian) in [
-        ("README.md", "README.ru.md"),
-        ("docs/tutorial.md", "docs/tutorial.ru.md"),
-        ("docs/how-to/turn-straight.md", "docs/how-to/turn-straight.ru.md"),
-        ("docs/how-to/correct-for-my-machine.md", "docs/how-to/correct-for-my-machine.ru.md"),
-    ] {
+    for (english, russian) in pairs() {
+        // `help::` holds the pages of messages against each other: their examples stand in the English one.
+        if english == "docs/diagnostics.md" {
+            continue;
+        }
         let blocks = |name: &str| {
             // What is printed is in the reader's language.
             let kept = |fence: &Fence| {
@@ -291,9 +335,9 @@ fn russian_pages_have_the_same_commands_and_pictures() {
             };
             fences(&read(name)).iter().map(kept).collect::<Vec<_>>()
         };
-        assert_eq!(blocks(english), blocks(russian), "{russian}");
+        assert_eq!(blocks(&english), blocks(&russian), "{russian}");
         let pictures = |name: &str| read(name).matches("img/").count();
-        assert_eq!(pictures(english), pictures(russian), "{russian}");
+        assert_eq!(pictures(&english), pictures(&russian), "{russian}");
     }
 }
 
@@ -357,7 +401,7 @@ fn help(command: &[&str]) -> String {
 }
 
 /// The names below `Commands:`.
-fn subcommands(help: &str) -> Vec<String> {
+pub(crate) fn subcommands(help: &str) -> Vec<String> {
     help.lines()
         .skip_while(|line| *line != "Commands:")
         .skip(1)
@@ -370,7 +414,7 @@ fn subcommands(help: &str) -> Vec<String> {
         .collect()
 }
 
-fn options(help: &str) -> BTreeSet<String> {
+pub(crate) fn options(help: &str) -> BTreeSet<String> {
     help.lines()
         .filter(|line| line.trim_start().starts_with('-') && line.starts_with("  ") && !line.contains("- "))
         .filter_map(first_option)

@@ -2,9 +2,6 @@
 
 use crate::common::{messages, run};
 
-/// Those that read so many options of their own that one screen of 80 by 50 does not hold them.
-const LONG: [&str; 2] = ["calibrate tracker", "calibrate interferometer"];
-
 const COMMANDS: [&str; 23] = [
     "",
     "correct",
@@ -38,12 +35,40 @@ fn help(command: &str) -> String {
     String::from_utf8(ran.stdout).expect("text")
 }
 
+/// All commands, those below others too.
+pub(crate) fn every_command() -> Vec<String> {
+    let mut all = vec![String::new()];
+    let mut at = 0;
+    while at < all.len() {
+        let above = all[at].clone();
+        all.extend(
+            crate::docs::subcommands(&help(&above))
+                .iter()
+                .map(|name| format!("{above} {name}").trim().to_owned()),
+        );
+        at += 1;
+    }
+    all
+}
+
+/// 80 characters by 50 lines, in both languages.
 #[test]
 fn it_fits_a_screen() {
-    for command in COMMANDS.into_iter().filter(|command| !LONG.contains(command)) {
-        let lines = help(command).lines().count();
-        assert!(lines <= 50, "{command}: {lines} lines");
+    let commands = every_command();
+    assert!(COMMANDS.iter().all(|known| commands.iter().any(|command| command == known)), "{commands:?}");
+    let mut wrong = Vec::new();
+    for command in &commands {
+        for language in ["en", "ru"] {
+            let words: Vec<&str> = command.split_whitespace().chain(["--help", "--lang", language]).collect();
+            let page = String::from_utf8(run(&words).stdout).expect("text");
+            let (lines, width) =
+                (page.lines().count(), page.lines().map(|line| line.chars().count()).max().unwrap_or(0));
+            if lines > 50 || width > 80 || lines < 3 {
+                wrong.push(format!("{command} ({language}): {width} by {lines}"));
+            }
+        }
     }
+    assert!(commands.len() > 28 && wrong.is_empty(), "{} commands: {wrong:#?}", commands.len());
 }
 
 /// What a command does not read it neither lists nor takes.
@@ -78,6 +103,27 @@ fn no_option_is_ignored() {
         }
     }
     assert!(ignored > 20, "only {ignored} cases");
+}
+
+/// Points and rows are no programs: what is said of programs is refused there, with what would make it of use.
+#[test]
+fn what_is_read_only_elsewhere_is_refused() {
+    for (command, needs) in
+        [("predict samples/points/table_4_9_targets.csv", "--lathe"), ("diagnose", "--plan program")]
+    {
+        let place = if command == "diagnose" { "diagnose samples/diagnosis/backlash.csv" } else { command };
+        for option in ["--dialect=fanuc", "--work-offset=G54=1,2,3"] {
+            let words: Vec<&str> =
+                place.split(' ').chain(["-m", "machine-profiles/stan_s500.toml", option]).collect();
+            let ran = run(&words);
+            let said = messages(&ran);
+            assert_eq!(ran.status.code(), Some(2), "{words:?}: {said}");
+            let name = option.split('=').next().unwrap_or_default();
+            assert!(said.contains(&format!("does not read `{name}` without `{needs}`")), "{said}");
+            let russian = messages(&run(&[&words[..], &["--lang", "ru"]].concat()));
+            assert!(russian.contains(&format!("не читает `{name}` без `{needs}`")), "{russian}");
+        }
+    }
 }
 
 #[test]

@@ -164,6 +164,7 @@ pub enum ProfileCommand {
     /// Write a profile to begin with, its sections explained.
     New(crate::profile_new::New),
     /// Write the model in a form that a control takes.
+    #[command(override_usage = "vpost profile export [OPTIONS] --format <FORMAT> -O <DIR> <PROFILE.toml>")]
     Export(crate::export::Export),
     /// Print the JSON Schema of profiles.
     Schema,

@@ -8,7 +8,7 @@ use crate::arguments::{Check, Completions, Correct, Grammar, Manual, Predict, Pr
 use crate::batch::Batch;
 use crate::budget::Budget;
 use crate::calibrate::Calibrate;
-use crate::diagnose::Diagnose;
+use crate::diagnose::{Diagnose, Form};
 use crate::explain::Explain;
 use crate::map::Map;
 use crate::{language, russian};
@@ -70,7 +70,7 @@ pub enum Command {
 
 /// Ids of the options in [`Shared`] that say something of the machine or the program: who reads which.
 const OF_MACHINE: [&str; 3] = ["machine", "engine", "at"];
-const OF_PROGRAM: [&str; 13] = [
+const OF_PROGRAM: [&str; 12] = [
     "dialect",
     "tolerance",
     "work_offset",
@@ -81,12 +81,14 @@ const OF_PROGRAM: [&str; 13] = [
     "set",
     "include",
     "decimal",
-    "strict",
     "orientation",
     "outside",
 ];
 /// Of the corrections alone.
-const OF_OUTPUT: [&str; 2] = ["guard", "verbose"];
+const OF_OUTPUT: [&str; 3] = ["guard", "strict", "verbose"];
+
+/// Of a plan that is written as a program.
+const OF_WRITTEN_PLAN: [&str; 4] = ["dialect", "work_offset", "linuxcnc_ini", "at"];
 
 /// Whether a command, by its names from the first on, reads an option of [`Shared`].
 fn reads(command: &[&str], option: &str) -> bool {
@@ -95,15 +97,44 @@ fn reads(command: &[&str], option: &str) -> bool {
         // The manifest says which profile and options hold.
         ["batch", "run" | "merge"] => false,
         ["correct" | "batch", ..] => true,
-        // A plan may be written as a program.
-        ["check" | "predict" | "diagnose", ..] => !OF_OUTPUT.contains(&option),
+        ["check", ..] => option != "outside" && !OF_OUTPUT.contains(&option),
+        // A lathe's program, or points.
+        ["predict", ..] => option != "orientation" && !OF_OUTPUT.contains(&option),
+        ["diagnose", ..] => {
+            ["machine", "engine", "tolerance"].contains(&option) || OF_WRITTEN_PLAN.contains(&option)
+        }
         ["solve", ..] => machine,
         ["map" | "budget", ..] => machine || ["outside", "tool"].contains(&option),
         ["calibrate"] => ["machine", "dialect", "at"].contains(&option),
+        // Their rows say at which temperature they were read.
+        ["calibrate", "rtest" | "turning"] => ["machine", "dialect"].contains(&option),
         ["calibrate", which, ..] => {
             ["machine", "dialect", "at"].contains(&option) || (option == "engine" && *which == "tracker")
         }
         _ => false,
+    }
+}
+
+/// Options that a command does not list, since they change nothing there, and takes all the same: who checks gives what the
+/// correction was given.
+fn accepts(command: &[&str], option: &str) -> bool {
+    command == ["check"] && ["outside", "strict"].contains(&option)
+}
+
+/// What a command that reads an option somewhere lacks to read it in this call: what there is no program for is not read.
+fn lacks(command: &[&str], option: &str, called: &clap::ArgMatches) -> Option<&'static str> {
+    let programmed = |id| called.get_one::<Form>(id) == Some(&Form::Program);
+    match command {
+        ["predict"] => {
+            let of_points = OF_MACHINE.contains(&option) || option == "outside";
+            (!of_points && !called.get_flag("lathe")).then_some("--lathe")
+        }
+        ["diagnose"] => {
+            let needs_program =
+                OF_WRITTEN_PLAN.contains(&option) && !programmed("plan") && !programmed("next");
+            needs_program.then_some("--plan program")
+        }
+        _ => None,
     }
 }
 
@@ -181,17 +212,25 @@ impl Arguments {
         if let Some((first, _)) = matches.subcommand() {
             let of_main = Correct::augment_args(clap::Command::new("correct"));
             let stray = of_main.get_arguments().find(|argument| given(&matches, argument.get_id().as_str()));
-            let ignored = shared_options().find(|option| !reads(&names, option) && given(at, option));
+            let unread = |option: &&str| {
+                !(reads(&names, option) || accepts(&names, option)) || lacks(&names, option, at).is_some()
+            };
+            let ignored = shared_options().find(|option| given(at, option) && unread(option));
+            let without = ignored.and_then(|option| lacks(&names, option, at));
             let ignored = ignored
                 .and_then(|option| command.get_arguments().find(|argument| argument.get_id() == option));
             if let Some(argument) = stray.or(ignored) {
+                let without = without.filter(|_| stray.is_none());
                 let message = format!(
-                    "`vpost {}` does not read `{}`\n\nSee `vpost {} --help`",
+                    "`vpost {}` does not read `{}`{}\n\nSee `vpost {} --help`",
                     names.join(" "),
                     option(argument),
+                    without.map_or_else(String::new, |other| format!(" without `{other}`")),
                     if stray.is_some() { first.to_owned() } else { names.join(" ") },
                 );
-                let russian = format!("`vpost {}` не читает `{}`", names.join(" "), option(argument));
+                let without = without.map_or_else(String::new, |other| format!(" без `{other}`"));
+                let russian =
+                    format!("`vpost {}` не читает `{}`{without}", names.join(" "), option(argument));
                 let mut error = command.error(clap::error::ErrorKind::ArgumentConflict, message);
                 error.insert(ContextKind::Custom, ContextValue::String(russian));
                 return Err(error);

@@ -64,6 +64,7 @@ pub struct Work {
 #[derive(Debug, Subcommand)]
 pub enum BatchCommand {
     /// Write down which programs are to be corrected, and how: the manifest.
+    #[command(override_usage = "vpost batch plan [OPTIONS] -O <OUTDIR> --manifest <FILE> <DIR|FILES>...")]
     Plan(Plan),
     /// Correct one share of a manifest's programs.
     Run(Run),

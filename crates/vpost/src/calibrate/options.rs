@@ -17,38 +17,52 @@ pub struct Interferometer {
     pub files: Vec<String>,
     #[command(flatten)]
     pub target: Target,
-    /// What the numbers of a control's table are.
-    #[arg(long, value_parser = values())]
+    /// Of a control: positions, errors, corrections.
+    ///
+    /// What the numbers of its table are.
+    #[arg(long, value_name = "WHAT", value_parser = values(), hide_possible_values = true, help_heading = "Tables")]
     pub values: Option<Values>,
-    /// Squareness as the instrument gave it, µrad: XY=12,ZX=-3,YZ=5; what is left out stays as it is.
-    #[arg(long, value_name = "XY=…,ZX=…,YZ=…", allow_hyphen_values = true)]
+    /// As the instrument gave it, µrad.
+    ///
+    /// XY=12,ZX=-3,YZ=5; what is left out stays as it is.
+    #[arg(long, value_name = "XY=…,ZX=…,YZ=…", allow_hyphen_values = true, help_heading = "Squareness")]
     pub squareness: Option<Given<SquarenessReadings>>,
+    /// Plus is right-handed or larger-than90.
+    ///
     /// What a positive squareness means to the instrument.
-    #[arg(long, value_enum)]
+    #[arg(long, value_name = "HOW", value_enum, hide_possible_values = true, help_heading = "Squareness")]
     pub squareness_convention: Option<Convention>,
-    /// Slopes of the straightness curves: part of what was read as squareness (they are taken off), or not.
-    #[arg(long, value_enum)]
+    /// Slopes of the curves: remove or keep.
+    ///
+    /// Whether slopes of the straightness curves are part of what was read as squareness, and are taken off.
+    #[arg(long, value_name = "HOW", value_enum, hide_possible_values = true, help_heading = "Squareness")]
     pub straightness_slopes: Option<Slopes>,
-    /// Two directions: a table for each, or the mean and one reversal value.
-    #[arg(long, value_enum, default_value_t = Directions::Tables)]
+    /// Two directions: tables or mean.
+    ///
+    /// A table for each, or the mean and one reversal value.
+    #[arg(long, value_name = "HOW", value_enum, default_value_t = Directions::Tables, hide_possible_values = true, help_heading = "Tables")]
     pub directions: Directions,
+    /// ISG, axes under the part: line or carriage.
+    ///
     /// Where the tables of axes that carry the workpiece were defined (ISG CSV).
-    #[arg(long, value_enum)]
+    #[arg(long, value_name = "WHERE", value_enum, hide_possible_values = true, help_heading = "Tables")]
     pub reference: Option<Reference>,
-    /// Machine position through which the measured lines ran, mm.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    /// Machine position on the measured lines, mm.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, help_heading = "Tables")]
     pub through: Option<Given<Point3>>,
-    /// From the gauge point to the optics that moved, mm.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    /// From the gauge point to the moving optics, mm.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, help_heading = "Tables")]
     pub optics: Option<Given<Point3>>,
     /// Write finer tables, with this step.
-    #[arg(long, value_name = "MM", value_parser = crate::arguments::size)]
+    #[arg(long, value_name = "MM", value_parser = crate::arguments::size, help_heading = "Tables")]
     pub refine: Option<f64>,
-    /// How finer tables, and the profile, go between the targets.
-    #[arg(long, value_enum, default_value_t = Between::Linear)]
+    /// Between targets: linear, monotone.
+    ///
+    /// How finer tables, and the profile, go there.
+    #[arg(long, value_name = "HOW", value_enum, default_value_t = Between::Linear, hide_possible_values = true, hide_default_value = true, help_heading = "Tables")]
     pub interpolation: Between,
-    /// Relative standard uncertainty of the instrument, µm/m.
-    #[arg(long, value_name = "UM_PER_M", default_value_t = 0.5, value_parser = crate::arguments::size_or_zero)]
+    /// Standard uncertainty of the instrument, µm/m; 0.5.
+    #[arg(long, value_name = "U", default_value_t = 0.5, value_parser = crate::arguments::size_or_zero, hide_default_value = true, help_heading = "Tables")]
     pub u_um_per_m: f64,
     #[command(flatten)]
     pub shown: Shown,

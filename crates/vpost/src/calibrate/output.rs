@@ -23,29 +23,35 @@ pub(super) const SHORTEST_MM: f64 = 1e-3;
 /// What every calibration is told about the profile it makes.
 #[derive(Debug, Clone, Args)]
 pub struct Target {
-    /// Write this profile, its tables in a folder of the same name beside it. With -m: that profile with what was
-    /// measured in place of what it says. Without: the report only.
+    /// Write this profile; without: the report only.
+    ///
+    /// Its tables go to a folder of the same name beside it. With -m: that profile, with what was measured in place of
+    /// what it says.
     #[arg(short, long, value_name = "PROFILE.toml")]
     pub output: Option<PathBuf>,
     /// Name of the machine, for a new profile.
     #[arg(long, value_name = "TEXT")]
     pub name: Option<String>,
-    /// Axes from workpiece to tool, for a new profile: "[w X Y b Z t]".
+    /// Axes of a new profile: "[w X Y b Z t]".
+    ///
+    /// From the workpiece to the tool, b the bed.
     #[arg(long, value_name = "CHAIN")]
     pub chain: Option<String>,
     /// Day of the measurement: year-month-day.
     #[arg(long, value_name = "DATE")]
     pub date: Option<String>,
-    /// Temperature of the machine during the measurement, °C; default: the mean of the files' temp_c.
+    /// Temperature of the machine, °C; else temp_c.
+    ///
+    /// During the measurement; default: the mean of the files' temp_c.
     #[arg(long, value_name = "C", value_parser = crate::arguments::finite)]
     pub temperature: Option<f64>,
     /// What it was measured with.
     #[arg(long, value_name = "TEXT")]
     pub instrument: Option<String>,
-    /// Say whether the machine has changed since this profile was made.
+    /// Has the machine changed since this profile?
     #[arg(long, value_name = "OLD.toml")]
     pub against: Option<PathBuf>,
-    /// Column of the measurements to pass over (repeatable).
+    /// Column to pass over (repeatable).
     #[arg(long, value_name = "NAME")]
     pub ignore_column: Vec<String>,
 }
@@ -59,6 +65,31 @@ pub(super) struct Output {
     /// Tables: name inside the profile's folder, bytes.
     tables: Vec<(String, Vec<u8>)>,
     folder: String,
+}
+
+/// What is said of a new profile must not contradict the base: the base's would hold without a word.
+fn agrees(base: &Profile, target: &Target, shared: &Shared) -> Result<(), Failure> {
+    let squeezed = |text: &str| text.split_whitespace().collect::<String>();
+    let chain = base.chain().to_string();
+    // Where the base names no control the new profile takes the one that is said.
+    let control = base.control.clone().or_else(|| shared.job.dialect.clone()).unwrap_or_default();
+    let asked =
+        [("--chain", target.chain.as_deref(), chain), ("--dialect", shared.job.dialect.as_deref(), control)];
+    for (option, said, known) in asked {
+        if let Some(said) = said.filter(|said| squeezed(said) != squeezed(&known)) {
+            return Err(question(
+                both!(
+                    "`{option} {said}`, and the base profile says `{known}`",
+                    "`{option} {said}`, а в исходном профиле `{known}`"
+                ),
+                both!(
+                    "leave out `{option}`: it is for a new profile, without `-m`",
+                    "уберите `{option}`: этот ключ — для нового профиля, без `-m`"
+                ),
+            ));
+        }
+    }
+    Ok(())
 }
 
 impl Output {
@@ -81,6 +112,7 @@ impl Output {
         let folder = stem.map_or_else(|| "calibrated".to_owned(), |s| s.to_string_lossy().into_owned());
         if let Some(path) = &shared.job.machine {
             let base = load(path)?.profile;
+            agrees(&base, target, shared)?;
             let text = String::from_utf8_lossy(&file::read(path)?).into_owned();
             let Some(mut text) = ProfileText::parse(&text) else {
                 return Err(question(
@@ -106,6 +138,9 @@ impl Output {
             }
             if let Some(name) = &target.name {
                 text.set_text(&["name"], name);
+            }
+            if let (None, Some(dialect)) = (&base.control, &shared.job.dialect) {
+                text.set_text(&["control"], dialect);
             }
             return Ok(Self { text, base: Some(base), tables, folder });
         }

@@ -24,7 +24,7 @@ use crate::number::short;
 #[derive(Debug, Args)]
 pub struct Tracker {
     /// Traverses of X, of Y and of Z (CSV), in this order.
-    #[arg(value_name = "TRAVERSE.csv", num_args = 3, required = true)]
+    #[arg(value_names = ["X.csv", "Y.csv", "Z.csv"], num_args = 3, required = true)]
     pub traverses: Vec<PathBuf>,
     #[command(flatten)]
     pub target: Target,

@@ -30,7 +30,9 @@ use crate::{file, language};
 /// Where what was found is shown.
 #[derive(Debug, Clone, Default, Args)]
 pub struct Shown {
-    /// Write what was found as one page for a browser: drawings, their numbers, no network, no script.
+    /// Write a page for a browser: drawings, numbers.
+    ///
+    /// One file; no network, no script.
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
     /// Write what was found as JSON.
