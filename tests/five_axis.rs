@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 
 use crate::common::{messages, run};
 
-const PROFILE: &str = "tests/profiles/five_axis.toml";
+pub(crate) const PROFILE: &str = "tests/profiles/five_axis.toml";
 /// As the profile has it: where the program's zero is, the tool's length, the control's centres.
-const ZERO_MM: [f64; 3] = [10.0, 145.0, 180.0];
+pub(crate) const ZERO_MM: [f64; 3] = [10.0, 145.0, 180.0];
 const LENGTH_MM: f64 = 120.0;
-const CONTROL_MM: [[f64; 3]; 2] = [[5.0, 150.02, 119.98], [5.01, 150.0, 160.0]];
+pub(crate) const CONTROL_MM: [[f64; 3]; 2] = [[5.0, 150.02, 119.98], [5.01, 150.0, 160.0]];
 const MACHINE_MM: [[f64; 3]; 2] = [[5.0, 150.0, 120.0], [5.0, 150.0, 160.0]];
 
 /// X, Y, Z, A, C of the tip at the end of each block.
@@ -50,16 +50,16 @@ fn program(dialect: &str) -> String {
     text + off + "\nM30\n"
 }
 
-struct Place(tempfile::TempDir);
+pub(crate) struct Place(tempfile::TempDir);
 
 impl Place {
-    fn new(text: &str) -> Self {
+    pub(crate) fn new(text: &str) -> Self {
         let place = Self(tempfile::tempdir().expect("a temporary folder"));
         std::fs::write(place.path("in.nc"), text).expect("writable");
         place
     }
 
-    fn path(&self, name: &str) -> String {
+    pub(crate) fn path(&self, name: &str) -> String {
         self.0.path().join(name).to_str().expect("a plain path").to_owned()
     }
 }
@@ -74,7 +74,7 @@ fn dialect_of(name: &str) -> &str {
 }
 
 /// Where a word with this letter leads.
-fn word(line: &str, letter: char) -> Option<f64> {
+pub(crate) fn word(line: &str, letter: char) -> Option<f64> {
     let at = line.find(letter)?;
     let rest = line[at + 1..].trim_start_matches('=');
     let end = rest.find(|c: char| !matches!(c, '0'..='9' | '.' | '-')).unwrap_or(rest.len());
@@ -83,7 +83,11 @@ fn word(line: &str, letter: char) -> Option<f64> {
 
 /// What a control with these centres makes of a tip: LinuxCNC's xyzac-trt, the inverse of
 /// `p = c_C + Rz(-C) (c_A + Rx(-A) (q - c_A) - c_C)`.
-fn axis_command([x, y, z, a, c]: [f64; 5], length_mm: f64, [about_a, about_c]: [[f64; 3]; 2]) -> [f64; 3] {
+pub(crate) fn axis_command(
+    [x, y, z, a, c]: [f64; 5],
+    length_mm: f64,
+    [about_a, about_c]: [[f64; 3]; 2],
+) -> [f64; 3] {
     let (sin, cos) = units::math::sin_cos(c.to_radians());
     let (u, v) = (x - about_c[0], y - about_c[1]);
     let turned = [about_c[0] + cos * u - sin * v, about_c[1] + sin * u + cos * v, z];
@@ -93,7 +97,7 @@ fn axis_command([x, y, z, a, c]: [f64; 5], length_mm: f64, [about_a, about_c]: [
 }
 
 /// The machine brings the tip of each row of points to its place, within `allowed_um`.
-fn tips_are_there(points: &str, wanted: &[[f64; 3]], allowed_um: f64, what: &str) {
+pub(crate) fn tips_are_there(points: &str, wanted: &[[f64; 3]], allowed_um: f64, what: &str) {
     let predicted = run(&["predict", points, "-m", PROFILE]);
     assert!(predicted.status.success(), "{}", messages(&predicted));
     let rows = String::from_utf8(predicted.stdout).expect("text");
@@ -371,7 +375,7 @@ fn a_plane_that_lies_elsewhere_is_found_whichever_of_its_blocks_says_so() {
 }
 
 /// The machine with a rule by which the control turns its table.
-fn with_rule(place: &Place, rule: &str) -> String {
+pub(crate) fn with_rule(place: &Place, rule: &str) -> String {
     let profile = std::fs::read_to_string(crate::common::root().join(PROFILE)).expect("readable");
     let tables = crate::common::root().join("tests/profiles");
     let text = profile.replace("\"wavy_", &format!("\"{}/wavy_", tables.to_str().expect("a plain path")));

@@ -58,6 +58,7 @@ mod real_machines;
 mod refusals;
 mod russian;
 mod spreadsheets;
+mod swivel;
 mod tool_lengths;
 mod traps;
 mod turning;
