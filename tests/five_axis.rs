@@ -256,6 +256,53 @@ fn what_does_not_go_together_is_refused_by_name() {
     }
 }
 
+/// A travels from -100 to 30: beyond it nothing is corrected, and no other turn or way is taken instead.
+#[test]
+fn a_turn_beyond_travel_is_refused() {
+    for middle in ["G1 X5. A31. F100.", "G1 A-101. F100.", "G0 A35."] {
+        let place = Place::new(&format!(
+            "G21 G90 G94 G54 G0 A0. C0.\nG43.4 H1\nG0 X0. Y0. Z50. A-10. C20.\n{middle}\nG49\nM30\n"
+        ));
+        let ran = run(&[&place.path("in.nc"), "-m", PROFILE]);
+        let said = messages(&ran);
+        assert_eq!(ran.status.code(), Some(1), "{middle}: {said}");
+        assert!(said.contains("error[VP0501]") && said.contains("`travel_deg` of A"), "{middle}: {said}");
+    }
+}
+
+/// `C=DC(90)` is the angle where the way to it does not cross 0, and stays as it is written.
+#[test]
+fn direct_angles_are_angles_within_a_turn() {
+    let plain = program("sinumerik");
+    let mut direct = String::new();
+    for line in plain.lines() {
+        match line.split_once(" C=") {
+            Some((before, angle)) => {
+                let (angle, rest) = angle.split_once(' ').unwrap_or((angle, ""));
+                writeln!(direct, "{before} C=DC({angle}) {rest}").expect("a string takes all");
+            }
+            None => writeln!(direct, "{line}").expect("a string takes all"),
+        }
+    }
+    let corrected = |text: &str| {
+        let place = Place::new(text);
+        let ran = run(&[&place.path("in.nc"), "-m", PROFILE, "-d", "sinumerik"]);
+        (ran.status.success(), String::from_utf8_lossy(&ran.stdout).into_owned(), messages(&ran))
+    };
+    let (done, made, said) = corrected(&direct);
+    assert!(done && made.contains("C=DC(75)"), "{said}\n{made}");
+    let words = |text: &str| -> Vec<String> {
+        text.lines().map(|line| line.replace("DC(", "").replace(')', "").trim_end().to_owned()).collect()
+    };
+    let (_, wanted, _) = corrected(&plain);
+    assert_eq!(words(&made), words(&wanted));
+    // Half a turn and more, across 0, out of the turn.
+    for (wrong, right) in [("C=DC(250)", "C=DC(42)"), ("C=DC(-10)", "C=DC(42)"), ("C=DC(360)", "C=DC(210)")] {
+        let (done, _, said) = corrected(&direct.replacen(right, wrong, 1));
+        assert!(!done && said.contains("between 0 and 360") && said.contains("help:"), "{wrong}: {said}");
+    }
+}
+
 #[test]
 fn without_a_model_it_is_refused() {
     let profile = std::fs::read_to_string(crate::common::root().join(PROFILE)).expect("readable");
