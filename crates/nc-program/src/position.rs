@@ -145,13 +145,7 @@ pub(crate) fn end(words: &Words<'_, '_, '_>, state: &Modal, frame: &Frame) -> Ou
 ///
 /// Across 0 nobody could write the angle without DC so that it is the same; from where nobody knows only a rapid goes, whose
 /// way does not matter.
-fn direct(
-    words: &Words<'_, '_, '_>,
-    span: Span,
-    value_deg: f64,
-    axis: usize,
-    state: &Modal,
-) -> Outcome<f64> {
+fn direct(words: &Words<'_, '_, '_>, span: Span, value_deg: f64, axis: usize, state: &Modal) -> Outcome<f64> {
     let in_turn = |deg: f64| (0.0..360.0).contains(&deg);
     let stays_in_turn = match state.axes.rotary[axis] {
         Axis::At(stands_deg) => in_turn(stands_deg) && (stands_deg - value_deg).abs() < 180.0,
