@@ -214,9 +214,14 @@ impl Call<'_, '_, '_, '_> {
         if self.number(WAY_BACK)? < 0.0 {
             return Err(self.unknown(WAY_BACK, &both!("a way back below 0", "отвод меньше 0")));
         }
-        if self.whole(DISPLAY)? > 1 || state.plane != Plane::Xy {
-            let why = both!("the tool does not stand along Z then", "инструмент тогда стоит не вдоль Z");
-            return Err(self.unknown(DISPLAY, &why));
+        let along = || both!("the tool does not stand along Z then", "инструмент тогда стоит не вдоль Z");
+        if self.whole(DISPLAY)? > 1 {
+            return Err(self.unknown(DISPLAY, &along()));
+        }
+        if state.plane != Plane::Xy {
+            let what = both!("under G18 or G19", "при G18 или G19");
+            let help = both!("write G17 before it", "напишите перед ней G17");
+            return Err(self.refuse(&what, along(), help));
         }
         let direction = match self.arguments.get(DIRECTION).copied().unwrap_or_default() {
             "-1" => -1,

@@ -117,7 +117,7 @@ fn what_the_arguments_leave_open_is_refused() {
         ("CYCLE800(0,\"\",0,57,0,0,0,1E1,0,0,0,0,0,-1)", 231, "not a plain number"),
         ("CYCLE800(0,\"\",0,57,0,0,0,20,0,0,0,0,0,-1,,2)", 231, "_DMODE"),
         ("CYCLE800(0,\"\",0,57,0,0,0,20,0,0,0,0,0,-1,,0,7)", 231, "a seventeenth argument"),
-        ("G18\nCYCLE800(0,\"\",0,57,0,0,0,20,0,0,0,0,0,-1)", 231, "not along Z"),
+        ("G18\nCYCLE800(0,\"\",0,57,0,0,0,20,0,0,0,0,0,-1)", 231, "under G18 or G19"),
         ("G70\nCYCLE800(0,\"\",0,57,1,0,0,20,0,0,0,0,0,-1)", 231, "lengths under inches"),
         ("TRAORI\nCYCLE800(0,\"\",0,57,0,0,0,20,0,0,0,0,0,-1)", 231, "tool centre point control"),
         ("TRANS X5\nCYCLE800(0,\"\",0,57,0,0,0,20,0,0,0,0,0,-1)", 227, "a frame of the program"),
