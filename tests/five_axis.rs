@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 
 use crate::common::{messages, run};
 
-const PROFILE: &str = "tests/profiles/five_axis.toml";
+pub(crate) const PROFILE: &str = "tests/profiles/five_axis.toml";
 /// As the profile has it: where the program's zero is, the tool's length, the control's centres.
-const ZERO_MM: [f64; 3] = [10.0, 145.0, 180.0];
+pub(crate) const ZERO_MM: [f64; 3] = [10.0, 145.0, 180.0];
 const LENGTH_MM: f64 = 120.0;
-const CONTROL_MM: [[f64; 3]; 2] = [[5.0, 150.02, 119.98], [5.01, 150.0, 160.0]];
+pub(crate) const CONTROL_MM: [[f64; 3]; 2] = [[5.0, 150.02, 119.98], [5.01, 150.0, 160.0]];
 const MACHINE_MM: [[f64; 3]; 2] = [[5.0, 150.0, 120.0], [5.0, 150.0, 160.0]];
 
 /// X, Y, Z, A, C of the tip at the end of each block.
@@ -50,16 +50,16 @@ fn program(dialect: &str) -> String {
     text + off + "\nM30\n"
 }
 
-struct Place(tempfile::TempDir);
+pub(crate) struct Place(tempfile::TempDir);
 
 impl Place {
-    fn new(text: &str) -> Self {
+    pub(crate) fn new(text: &str) -> Self {
         let place = Self(tempfile::tempdir().expect("a temporary folder"));
         std::fs::write(place.path("in.nc"), text).expect("writable");
         place
     }
 
-    fn path(&self, name: &str) -> String {
+    pub(crate) fn path(&self, name: &str) -> String {
         self.0.path().join(name).to_str().expect("a plain path").to_owned()
     }
 }
@@ -74,7 +74,7 @@ fn dialect_of(name: &str) -> &str {
 }
 
 /// Where a word with this letter leads.
-fn word(line: &str, letter: char) -> Option<f64> {
+pub(crate) fn word(line: &str, letter: char) -> Option<f64> {
     let at = line.find(letter)?;
     let rest = line[at + 1..].trim_start_matches('=');
     let end = rest.find(|c: char| !matches!(c, '0'..='9' | '.' | '-')).unwrap_or(rest.len());
@@ -83,7 +83,11 @@ fn word(line: &str, letter: char) -> Option<f64> {
 
 /// What a control with these centres makes of a tip: LinuxCNC's xyzac-trt, the inverse of
 /// `p = c_C + Rz(-C) (c_A + Rx(-A) (q - c_A) - c_C)`.
-fn axis_command([x, y, z, a, c]: [f64; 5], length_mm: f64, [about_a, about_c]: [[f64; 3]; 2]) -> [f64; 3] {
+pub(crate) fn axis_command(
+    [x, y, z, a, c]: [f64; 5],
+    length_mm: f64,
+    [about_a, about_c]: [[f64; 3]; 2],
+) -> [f64; 3] {
     let (sin, cos) = units::math::sin_cos(c.to_radians());
     let (u, v) = (x - about_c[0], y - about_c[1]);
     let turned = [about_c[0] + cos * u - sin * v, about_c[1] + sin * u + cos * v, z];
@@ -93,7 +97,7 @@ fn axis_command([x, y, z, a, c]: [f64; 5], length_mm: f64, [about_a, about_c]: [
 }
 
 /// The machine brings the tip of each row of points to its place, within `allowed_um`.
-fn tips_are_there(points: &str, wanted: &[[f64; 3]], allowed_um: f64, what: &str) {
+pub(crate) fn tips_are_there(points: &str, wanted: &[[f64; 3]], allowed_um: f64, what: &str) {
     let predicted = run(&["predict", points, "-m", PROFILE]);
     assert!(predicted.status.success(), "{}", messages(&predicted));
     let rows = String::from_utf8(predicted.stdout).expect("text");
@@ -252,6 +256,53 @@ fn what_does_not_go_together_is_refused_by_name() {
     }
 }
 
+/// A travels from -100 to 30: beyond it nothing is corrected, and no other turn or way is taken instead.
+#[test]
+fn a_turn_beyond_travel_is_refused() {
+    for middle in ["G1 X5. A31. F100.", "G1 A-101. F100.", "G0 A35."] {
+        let place = Place::new(&format!(
+            "G21 G90 G94 G54 G0 A0. C0.\nG43.4 H1\nG0 X0. Y0. Z50. A-10. C20.\n{middle}\nG49\nM30\n"
+        ));
+        let ran = run(&[&place.path("in.nc"), "-m", PROFILE]);
+        let said = messages(&ran);
+        assert_eq!(ran.status.code(), Some(1), "{middle}: {said}");
+        assert!(said.contains("error[VP0501]") && said.contains("`travel_deg` of A"), "{middle}: {said}");
+    }
+}
+
+/// `C=DC(90)` is the angle where the way to it does not cross 0, and stays as it is written.
+#[test]
+fn direct_angles_are_angles_within_a_turn() {
+    let plain = program("sinumerik");
+    let mut direct = String::new();
+    for line in plain.lines() {
+        match line.split_once(" C=") {
+            Some((before, angle)) => {
+                let (angle, rest) = angle.split_once(' ').unwrap_or((angle, ""));
+                writeln!(direct, "{before} C=DC({angle}) {rest}").expect("a string takes all");
+            }
+            None => writeln!(direct, "{line}").expect("a string takes all"),
+        }
+    }
+    let corrected = |text: &str| {
+        let place = Place::new(text);
+        let ran = run(&[&place.path("in.nc"), "-m", PROFILE, "-d", "sinumerik"]);
+        (ran.status.success(), String::from_utf8_lossy(&ran.stdout).into_owned(), messages(&ran))
+    };
+    let (done, made, said) = corrected(&direct);
+    assert!(done && made.contains("C=DC(75)"), "{said}\n{made}");
+    let words = |text: &str| -> Vec<String> {
+        text.lines().map(|line| line.replace("DC(", "").replace(')', "").trim_end().to_owned()).collect()
+    };
+    let (_, wanted, _) = corrected(&plain);
+    assert_eq!(words(&made), words(&wanted));
+    // Half a turn and more, across 0, out of the turn.
+    for (wrong, right) in [("C=DC(250)", "C=DC(42)"), ("C=DC(-10)", "C=DC(42)"), ("C=DC(360)", "C=DC(210)")] {
+        let (done, _, said) = corrected(&direct.replacen(right, wrong, 1));
+        assert!(!done && said.contains("between 0 and 360") && said.contains("help:"), "{wrong}: {said}");
+    }
+}
+
 #[test]
 fn without_a_model_it_is_refused() {
     let profile = std::fs::read_to_string(crate::common::root().join(PROFILE)).expect("readable");
@@ -371,7 +422,7 @@ fn a_plane_that_lies_elsewhere_is_found_whichever_of_its_blocks_says_so() {
 }
 
 /// The machine with a rule by which the control turns its table.
-fn with_rule(place: &Place, rule: &str) -> String {
+pub(crate) fn with_rule(place: &Place, rule: &str) -> String {
     let profile = std::fs::read_to_string(crate::common::root().join(PROFILE)).expect("readable");
     let tables = crate::common::root().join("tests/profiles");
     let text = profile.replace("\"wavy_", &format!("\"{}/wavy_", tables.to_str().expect("a plain path")));

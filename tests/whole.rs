@@ -67,6 +67,7 @@ mod refusals;
 mod russian;
 mod s_wall;
 mod spreadsheets;
+mod swivel;
 mod tool_lengths;
 mod traps;
 mod turning;

@@ -619,6 +619,9 @@ pub(crate) struct Kinematics {
     /// Which of the angles that differ by whole turns: "shortest" from where the axis stands, or "principal", above -180 and
     /// up to 180 degrees.
     pub(crate) turn: Option<TurnName>,
+    /// The rotary axis whose higher or lower angle `_DIR` of CYCLE800 takes, as the swivel data of the control have it, like "A".
+    #[schemars(with = "Option<String>")]
+    pub(crate) direction_reference: Option<Spanned<String>>,
     /// How the control turns the tool between directions that are given as vectors (G43.5; A3, B3, C3): "axes", each rotary axis
     /// running evenly, or "great-circle".
     pub(crate) vectors: Option<VectorsName>,

@@ -323,9 +323,25 @@ impl Loader<'_> {
             format::TurnName::Shortest => WholeTurns::Shortest,
             format::TurnName::Principal => WholeTurns::Principal,
         });
+        let reference = section.direction_reference.as_ref().and_then(|written| {
+            let named = axes.iter().find(|axis| written.get_ref().chars().eq([axis.letter()]));
+            if named.is_none() {
+                let message = both!(
+                    "`{}` is no rotary axis of the chain",
+                    "`{}` — не поворотная ось цепи",
+                    written.get_ref()
+                );
+                let diagnostic = Diagnostic::error(VALUE, message).help(both!(
+                    "name the axis whose angle `_DIR` of CYCLE800 asks for, like \"A\"",
+                    "назовите ось, об угле которой говорит `_DIR` функции CYCLE800, например \"A\""
+                ));
+                self.refuse(written, diagnostic, both!("this axis", "эта ось"));
+            }
+            named.map(|axis| axis.direction())
+        });
         Some(Kinematics {
             centres_mm: centres_mm.map(Option::unwrap_or_default),
-            tilt_rule: TiltRule { branch, turns },
+            tilt_rule: TiltRule { branch, turns, reference },
             great_circle: section.vectors.map(|vectors| matches!(vectors, format::VectorsName::GreatCircle)),
             at_start: section.at_start,
             on,

@@ -190,7 +190,9 @@ fn note(action: &Action) -> String {
             let which = if *adds { "on top of the program's frame" } else { "in place of the program's frame" };
             format!("{what}, {which}")
         }
-        Action::PlaneReset => "refused while a frame of the program is in force".to_owned(),
+        Action::Swivel => "a tilted plane by angles axis by axis, to which the rotary axes turn by `_DIR`; without \
+             arguments it ends; refused while a frame of the program is in force"
+            .to_owned(),
         Action::BaseFrame => "`G500` in the profile; without it nothing may move in it".to_owned(),
         Action::Tip(_) => String::new(),
         Action::Cycle(CycleCode::Synchronised) => "hole by hole; never written as moves".to_owned(),

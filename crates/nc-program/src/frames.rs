@@ -12,13 +12,13 @@ use crate::codes;
 use crate::modal::{Compensation, Distance, Modal, Units, WorkOffset};
 use crate::position::{increment_base, require_frame};
 use crate::settings::{BASE_FRAME, Demand, Environment};
-use crate::tilted;
 use crate::tool_length;
 use crate::transform::Transform;
 use crate::words::{
     ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, ROTARY_LETTERS, Refusal,
     SECONDARY_LETTERS, Words,
 };
+use crate::{swivel, tilted};
 use nc_syntax::Letters;
 
 const P: Letters = Letters::of(b"P");
@@ -190,6 +190,7 @@ pub(crate) fn execute(
         Action::ProgramFrame { part, adds } => program_frame(words, span, *part, *adds, state)?,
         Action::TiltedPlane => tilted::define(env, words, span, state)?,
         Action::AlignTool => tilted::align(env, words, span, state)?,
+        Action::Swivel => swivel::execute(env, words, span, state)?,
         _ => {}
     }
     refresh(state);

@@ -289,7 +289,7 @@ fn run<'d>(
     motion::execute(env, words, &demand, before, state, moved)?;
     let nowhere =
         |axis: &Axis| matches!(axis, Axis::Unknown(Lost { why: Why::Kinematics | Why::TiltedPlane, .. }));
-    let turned = before.kinematics != state.kinematics || before.axes.rotary != state.axes.rotary;
+    let turned = before.kinematics != state.kinematics || before.axes != state.axes;
     let switched = turned && state.axes.linear.iter().all(nowhere);
     if switched && moved.motions.is_empty() {
         // The axes stand, in coordinates that nobody knows.

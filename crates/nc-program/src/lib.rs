@@ -54,6 +54,7 @@ mod position;
 pub mod process;
 mod settings;
 mod setup;
+mod swivel;
 mod tilted;
 mod tip;
 mod tool_length;

@@ -5,7 +5,7 @@ use nc_syntax::Span;
 use nc_syntax::dialect::Action;
 use toolpath::{AXIS_NAMES, Frame, Position};
 
-use crate::modal::{Axes, Axis, Distance, Lost, Modal, Units, Why};
+use crate::modal::{Axes, Axis, Distance, Lost, Modal, MotionMode, Units, Why};
 use crate::settings::{BASE_FRAME, Environment, missing_offset};
 use crate::words::{AXIS_LETTERS, LINEAR, Outcome, ROTARY, ROTARY_LETTERS, Words};
 use crate::{codes, frames};
@@ -129,7 +129,9 @@ pub(crate) fn end(words: &Words<'_, '_, '_>, state: &Modal, frame: &Frame) -> Ou
     if words.has(ROTARY_LETTERS) {
         for (i, letter) in ROTARY.into_iter().enumerate() {
             if let Some(value) = words.coordinate(letter, false) {
+                let span = words.span(Letters::of(&[letter]));
                 end.rotary[i] = Axis::At(match state.distance {
+                    _ if words.block.text(span).ends_with(b")") => direct(words, span, value, i, state)?,
                     Distance::Absolute => value,
                     Distance::Incremental => increment_base(words, state.axes.rotary[i], 3 + i)? + value,
                 });
@@ -137,6 +139,36 @@ pub(crate) fn end(words: &Words<'_, '_, '_>, state: &Modal, frame: &Frame) -> Ou
         }
     }
     Ok(end)
+}
+
+/// Where `C=DC(90)` leads, degrees: the shortest way, in the turn from 0 to 360 that a control shows.
+///
+/// Across 0 nobody could write the angle without DC so that it is the same; from where nobody knows only a rapid goes, whose
+/// way does not matter.
+fn direct(words: &Words<'_, '_, '_>, span: Span, value_deg: f64, axis: usize, state: &Modal) -> Outcome<f64> {
+    let in_turn = |deg: f64| (0.0..360.0).contains(&deg);
+    let stays_in_turn = match state.axes.rotary[axis] {
+        Axis::At(stands_deg) => in_turn(stands_deg) && (stands_deg - value_deg).abs() < 180.0,
+        Axis::Unknown(_) => matches!(state.motion, MotionMode::Rapid(_)),
+    };
+    if in_turn(value_deg) && stays_in_turn {
+        return Ok(value_deg);
+    }
+    let message = both!(
+        "{} does not stay between 0 and 360 degrees on its way",
+        "{} по пути не остаётся между 0 и 360 градусами",
+        words.text(span)
+    );
+    let label = match state.axes.rotary[axis] {
+        Axis::At(stands_deg) => both!("the axis comes from {stands_deg}", "ось идёт от {stands_deg}"),
+        Axis::Unknown(_) => {
+            both!("where the axis comes from is not known", "откуда идёт ось, неизвестно")
+        }
+    };
+    Err(words.refuse(codes::BAD_NUMBER, message, span, label).help(both!(
+        "write the angle without DC, counted on over whole turns, or turn the axis by a rapid of its own before",
+        "напишите угол без DC, со счётом полных оборотов, или поверните ось раньше отдельным быстрым ходом"
+    )))
 }
 
 /// The linear axes after the words of the block where a rotation, scaling or mirror is in force.

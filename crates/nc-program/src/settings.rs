@@ -13,7 +13,7 @@ use crate::modal::{
 use crate::setup::Setup;
 use crate::tool_length::{self, Length};
 use crate::words::{LINEAR_LETTERS, Outcome, Words};
-use crate::{frames, tilted, tip, transform::Transform};
+use crate::{frames, swivel, tilted, tip, transform::Transform};
 use nc_syntax::Letters;
 
 /// What a program is read against.
@@ -131,6 +131,8 @@ pub(crate) fn apply<'d>(
                 wanted.shift = Some((action, span));
                 Owner::Motion
             }
+            // Without arguments it moves nothing.
+            (Action::Swivel, _) if !swivel::is_reset(&words.text(span)) => Owner::Frame,
             _ => set(action, code, group, span, state, &mut wanted),
         };
         match owner {
@@ -181,8 +183,7 @@ pub(crate) fn apply<'d>(
             let message = both!("{} was not written out", "{} не расписана движениями", words.text(span));
             return Err(words.refuse(codes::REFUSED_CODE, message, span, label).help(help));
         }
-        if *action == Action::PlaneReset && (state.shifts.local_mm != [0.0; 3] || !state.transform.is_none())
-        {
+        if *action == Action::Swivel && (state.shifts.local_mm != [0.0; 3] || !state.transform.is_none()) {
             let message = both!(
                 "{} while a frame of the program is in force",
                 "{} при действующей системе координат программы",
@@ -570,7 +571,7 @@ fn set<'d>(
         // Switched behind the tool length.
         Action::Tip(_) => {}
         // Asked below whether there is anything that it may end.
-        Action::PlaneReset => {}
+        Action::Swivel => {}
         // Written out before; where they are not, refused below.
         Action::PolarOn | Action::Turning(_) | Action::Called(_) => {}
         // Read before, since X words of the same block are of the new kind.

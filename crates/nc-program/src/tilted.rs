@@ -1,4 +1,5 @@
 //! Tilted working planes: G68.2 says where the plane lies in the workpiece, G53.1 turns the tool upright on it, G69 ends it.
+//! Sinumerik's CYCLE800 does all three ([`crate::swivel`]).
 //!
 //! X, Y and Z are coordinates of the plane in between, and the control brings the tip to that place of the workpiece. That
 //! it does so wherever the rotary axes stand no manual promises; so nothing moves in a plane on which the tool does not
@@ -16,6 +17,7 @@ use crate::modal::{Axis, Lost, Modal, Units, Why};
 use crate::naming;
 use crate::position::{require_frame, require_rotary};
 use crate::settings::{Demand, Environment, Owner};
+use crate::swivel;
 use crate::words::{
     ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, Refusal, Words,
 };
@@ -44,8 +46,37 @@ pub struct Begun {
     directions: [Option<Three>; 4],
 }
 
-fn refuse(words: &Words<'_, '_, '_>, span: Span, message: Text, label: Text) -> Refusal {
+pub(crate) fn refuse(words: &Words<'_, '_, '_>, span: Span, message: Text, label: Text) -> Refusal {
     words.refuse(codes::TILTED_PLANE, message, span, label)
+}
+
+/// What ends a plane in this dialect.
+fn ending(env: &Environment<'_>) -> &'static str {
+    let swivels = env.dialect.commands.iter().any(|row| row.action == Some(Action::Swivel));
+    if swivels { "CYCLE800()" } else { "G69" }
+}
+
+/// Whether a code ends the plane that is in force.
+fn ends(words: &Words<'_, '_, '_>) -> bool {
+    let by_command =
+        |(action, span): &(&Action, Span)| **action == Action::Swivel && swivel::is_reset(&words.text(*span));
+    words.codes.iter().any(|code| code.entry.action == Action::RotationOff)
+        || words.commands.iter().any(by_command)
+}
+
+/// Refuses what tilts the plane where the profile does not say what the control computes with.
+pub(crate) fn declared(env: &Environment<'_>, words: &Words<'_, '_, '_>, span: Span) -> Outcome<()> {
+    let unknown = env
+        .setup
+        .tip_control
+        .unknown(&both!("no path in it", "в ней"), &both!("tilted planes", "наклонных плоскостей"));
+    let Some((label, help)) = unknown else { return Ok(()) };
+    let code = words.text(span);
+    let message = both!(
+        "{code} is refused: it tilts the working plane",
+        "{code} не принимается: она наклоняет рабочую плоскость"
+    );
+    Err(refuse(words, span, message, label).help(help))
 }
 
 /// G68.2.
@@ -61,17 +92,7 @@ pub(crate) fn define(
     state: &mut Modal,
 ) -> Outcome<()> {
     let code = words.text(span);
-    let unknown = env
-        .setup
-        .tip_control
-        .unknown(&both!("no path in it", "в ней"), &both!("tilted planes", "наклонных плоскостей"));
-    if let Some((label, help)) = unknown {
-        let message = both!(
-            "{code} is refused: it tilts the working plane",
-            "{code} не принимается: она наклоняет рабочую плоскость"
-        );
-        return Err(refuse(words, span, message, label).help(help));
-    }
+    declared(env, words, span)?;
     match state.kinematics {
         Kinematics::Axes => {}
         Kinematics::Tip => {
@@ -168,7 +189,7 @@ pub(crate) fn define(
 }
 
 /// From here on nobody knows where the axes stand in the coordinates in force.
-fn lose(words: &Words<'_, '_, '_>, state: &mut Modal) {
+pub(crate) fn lose(words: &Words<'_, '_, '_>, state: &mut Modal) {
     state.axes.linear = [Axis::Unknown(Lost { why: Why::TiltedPlane, line: words.block.line }); 3];
     naming::forget_all(words, state, Why::TiltedPlane);
 }
@@ -435,37 +456,7 @@ pub(crate) fn align(
     };
     let stand = state.axes.rotary.map(Axis::known);
     let angles = env.setup.rotary_chain.angles_for(plane.normal(), &env.setup.tilt_rule, stand);
-    let name = |axis: usize| AXIS_NAMES[3 + axis];
-    let angles = angles.map_err(|why| {
-        let (label, help) = match why {
-            NoAngles::NotTwoAxes => (
-                both!("this machine has not two rotary axes that tilt the tool", "у этого станка нет двух поворотных осей, наклоняющих инструмент"),
-                both!("turn the axes by their own words before G68.2, and leave the code out", "поверните оси их собственными словами до G68.2 и не пишите эту функцию"),
-            ),
-            NoAngles::OutOfReach => (
-                both!("no angles within travel stand the tool upright on the plane, or none of the profile's branch", "в пределах хода нет углов, при которых инструмент перпендикулярен плоскости, или нет таких на ветви, названной в профиле"),
-                both!("check the plane, `travel_deg` of the rotary axes and `branch` under `[kinematics]`", "проверьте плоскость, `travel_deg` поворотных осей и `branch` в разделе `[kinematics]`"),
-            ),
-            NoAngles::TwoWays => (
-                both!("two pairs of angles stand the tool upright on the plane", "инструмент перпендикулярен плоскости при двух парах углов"),
-                both!("say which one the control takes: `branch = \"A+\"` under `[kinematics]` in the profile, where A is above 0 then", "скажите, какую берёт стойка: `branch = \"A+\"` в разделе `[kinematics]` профиля, если тогда A больше 0"),
-            ),
-            NoAngles::Free(axis) | NoAngles::Start(axis, _) => (
-                both!("the tool stands along {}, which may stand anywhere then", "инструмент стоит вдоль {}, и эта ось может быть где угодно", name(axis)),
-                both!("turn {} by its own word before G68.2, with `turn = \"shortest\"` under `[kinematics]` where the control then leaves it there", "поверните {} её собственным словом до G68.2; если стойка там её и оставит, впишите `turn = \"shortest\"` в раздел `[kinematics]`", name(axis)),
-            ),
-            NoAngles::Turns(axis) => (
-                both!("{} has travel for several turns", "ход {} — несколько оборотов", name(axis)),
-                both!("say which one the control takes: `turn = \"shortest\"` or `turn = \"principal\"` under `[kinematics]` in the profile", "скажите, какой берёт стойка: `turn = \"shortest\"` или `turn = \"principal\"` в разделе `[kinematics]` профиля"),
-            ),
-            NoAngles::Unknown(axis) => (
-                both!("where {} stands before is not known", "где до этого стоит {}, неизвестно", name(axis)),
-                both!("write a rapid that names {} before G68.2", "напишите до G68.2 быстрый ход, в котором названа {}", name(axis)),
-            ),
-        };
-        let message = both!("where {code} turns the rotary axes is not certain", "куда {code} повернёт поворотные оси, неясно");
-        words.refuse(codes::PLANE_ANGLES, message, span, label).help(help)
-    })?;
+    let angles = angles.map_err(|why| not_certain(words, span, why, false))?;
     for axis in (0..3).filter(|axis| env.setup.has_rotary[*axis]) {
         state.axes.rotary[axis] = Axis::At(angles[axis]);
     }
@@ -473,10 +464,102 @@ pub(crate) fn align(
     Ok(())
 }
 
-/// G69 ends the plane, before the motion of its block.
+/// Why the angles are not certain to which a code turns the rotary axes; `by_value`: it chooses the higher or lower one.
+pub(crate) fn not_certain(
+    words: &Words<'_, '_, '_>,
+    span: Span,
+    why: NoAngles,
+    by_value: bool,
+) -> Box<Diagnostic> {
+    let code = if by_value { "CYCLE800".to_owned() } else { words.text(span) };
+    let before = if by_value { "CYCLE800" } else { "G68.2" };
+    let name = |axis: usize| AXIS_NAMES[3 + axis];
+    let (label, help) = match why {
+        NoAngles::NotTwoAxes => (
+            both!(
+                "this machine has not two rotary axes that tilt the tool",
+                "у этого станка нет двух поворотных осей, наклоняющих инструмент"
+            ),
+            if by_value {
+                both!(
+                    "name both under `chain` in the profile, or post without tilted planes",
+                    "назовите обе в ключе `chain` профиля или выводите программу без наклонных плоскостей"
+                )
+            } else {
+                both!(
+                    "turn the axes by their own words before G68.2, and leave the code out",
+                    "поверните оси их собственными словами до G68.2 и не пишите эту функцию"
+                )
+            },
+        ),
+        NoAngles::OutOfReach => (
+            both!(
+                "no angles within travel stand the tool upright on the plane, or none of the profile's branch",
+                "в пределах хода нет углов, при которых инструмент перпендикулярен плоскости, или нет таких на ветви, названной в профиле"
+            ),
+            both!(
+                "check the plane, `travel_deg` of the rotary axes and `branch` under `[kinematics]`",
+                "проверьте плоскость, `travel_deg` поворотных осей и `branch` в разделе `[kinematics]`"
+            ),
+        ),
+        NoAngles::TwoWays if by_value => (
+            both!(
+                "two pairs of angles stand the tool upright on the plane, and no axis tells them apart",
+                "инструмент перпендикулярен плоскости при двух парах углов, и ни одна ось их не различает"
+            ),
+            both!(
+                "say on which axis `_DIR` takes the higher or lower angle, as set up with the swivel data: `direction_reference = \"A\"` under `[kinematics]` in the profile",
+                "скажите, на какой оси `_DIR` выбирает больший или меньший угол (опорная ось в данных поворота): `direction_reference = \"A\"` в разделе `[kinematics]` профиля"
+            ),
+        ),
+        NoAngles::TwoWays => (
+            both!(
+                "two pairs of angles stand the tool upright on the plane",
+                "инструмент перпендикулярен плоскости при двух парах углов"
+            ),
+            both!(
+                "say which one the control takes: `branch = \"A+\"` under `[kinematics]` in the profile, where A is above 0 then",
+                "скажите, какую берёт стойка: `branch = \"A+\"` в разделе `[kinematics]` профиля, если тогда A больше 0"
+            ),
+        ),
+        NoAngles::Free(axis) | NoAngles::Start(axis, _) => (
+            both!(
+                "the tool stands along {}, which may stand anywhere then",
+                "инструмент стоит вдоль {}, и эта ось может быть где угодно",
+                name(axis)
+            ),
+            both!(
+                "turn {} by its own word before {before}, with `turn = \"shortest\"` under `[kinematics]` where the control then leaves it there",
+                "поверните {} её собственным словом до {before}; если стойка там её и оставит, впишите `turn = \"shortest\"` в раздел `[kinematics]`",
+                name(axis)
+            ),
+        ),
+        NoAngles::Turns(axis) => (
+            both!("{} has travel for several turns", "ход {} — несколько оборотов", name(axis)),
+            both!(
+                "say which one the control takes: `turn = \"shortest\"` or `turn = \"principal\"` under `[kinematics]` in the profile",
+                "скажите, какой берёт стойка: `turn = \"shortest\"` или `turn = \"principal\"` в разделе `[kinematics]` профиля"
+            ),
+        ),
+        NoAngles::Unknown(axis) => (
+            both!("where {} stands before is not known", "где до этого стоит {}, неизвестно", name(axis)),
+            both!(
+                "write a rapid that names {} before {before}",
+                "напишите до {before} быстрый ход, в котором названа {}",
+                name(axis)
+            ),
+        ),
+    };
+    let message = both!(
+        "where {code} turns the rotary axes is not certain",
+        "куда {code} повернёт поворотные оси, неясно"
+    );
+    words.refuse(codes::PLANE_ANGLES, message, span, label).help(help)
+}
+
+/// G69 and CYCLE800() end the plane, before the motion of their block.
 pub(crate) fn end(words: &Words<'_, '_, '_>, before: &Modal, state: &mut Modal) {
-    let ends = words.codes.iter().any(|code| code.entry.action == Action::RotationOff);
-    if ends && matches!(before.kinematics, Kinematics::Plane(_)) {
+    if ends(words) && matches!(before.kinematics, Kinematics::Plane(_)) {
         state.kinematics = Kinematics::Axes;
         lose(words, state);
     }
@@ -495,17 +578,20 @@ pub(crate) fn check(
             words.codes.first().map_or_else(|| words.span(words.letters), |code| code.span)
         })
     };
-    let defines = matches!(demand.frame, Some(Action::TiltedPlane));
+    let defines = matches!(demand.frame, Some(Action::TiltedPlane | Action::Swivel));
     if before.plane_begun.is_some() && !defines {
         return Err(unfinished(words, span()));
     }
     let Kinematics::Plane(_) = before.kinematics else { return Ok(()) };
     let aligns = matches!(demand.frame, Some(Action::AlignTool));
-    let ends = words.codes.iter().any(|code| code.entry.action == Action::RotationOff);
+    let (ends, ending) = (ends(words), ending(env));
     let (what, help) = match demand.owner {
         Owner::Frame if !defines && !aligns => (
             both!("moves the frame", "смещает систему координат"),
-            both!("cancel the plane with G69 before it", "отмените перед ней плоскость функцией G69"),
+            both!(
+                "cancel the plane with {ending} before it",
+                "отмените перед ней плоскость функцией {ending}"
+            ),
         ),
         Owner::Reference | Owner::MachineCoordinates | Owner::Probe
             if !ends || demand.owner == Owner::Probe =>
@@ -513,21 +599,21 @@ pub(crate) fn check(
             (
                 both!("moves axes of the machine, or of the plane", "двигает оси станка или оси плоскости"),
                 both!(
-                    "cancel the plane with G69 in a block before it",
-                    "отмените плоскость функцией G69 в кадре перед ней"
+                    "cancel the plane with {ending} in a block before it",
+                    "отмените плоскость функцией {ending} в кадре перед ней"
                 ),
             )
         }
         _ if before.work_offset != state.work_offset => (
             both!("chooses another work offset", "выбирает другое смещение нуля"),
             both!(
-                "cancel the plane with G69 before it, and write it again afterwards",
-                "отмените перед ней плоскость функцией G69, а после задайте её снова"
+                "cancel the plane with {ending} before it, and write it again afterwards",
+                "отмените перед ней плоскость функцией {ending}, а после задайте её снова"
             ),
         ),
         _ if !ends && words.codes.iter().any(|code| is_rival(env, code.entry.group, &code.entry.action)) => (
             both!("may end the plane on some controls", "на некоторых стойках может отменить плоскость"),
-            both!("cancel the plane with G69", "отмените плоскость функцией G69"),
+            both!("cancel the plane with {ending}", "отмените плоскость функцией {ending}"),
         ),
         _ => return Ok(()),
     };
@@ -582,10 +668,17 @@ pub(crate) fn check_motions(
                     "на одних стойках плоскость поворачивается вместе с ней, на других нет"
                 ),
             )
-            .help(both!(
-                "turn the axis before G68.2, or let G53.1 do it",
-                "поверните ось до G68.2 или предоставьте это G53.1"
-            )));
+            .help(if ending(env) == "G69" {
+                both!(
+                    "turn the axis before G68.2, or let G53.1 do it",
+                    "поверните ось до G68.2 или предоставьте это G53.1"
+                )
+            } else {
+                both!(
+                    "end the plane with CYCLE800() before it, or let CYCLE800 turn the axis",
+                    "отмените перед этим плоскость: CYCLE800() — или предоставьте поворот CYCLE800"
+                )
+            }));
     }
     if motions.iter().all(|motion| matches!(motion, Motion::Uncorrected { .. })) {
         return Ok(());

@@ -213,8 +213,9 @@ pub enum Action {
         /// On top of the one in force (ATRANS); else in its place, and without words in place of all of them.
         adds: bool,
     },
-    /// CYCLE800(): ends a tilted plane. What else of the frame it ends is not certain.
-    PlaneReset,
+    /// CYCLE800: a tilted working plane by its arguments, to which the rotary axes turn; without any it ends the plane. What
+    /// else of the frame it ends is not certain.
+    Swivel,
     /// G500: no work offset but the base frame, `G500` in the profile.
     BaseFrame,
     /// Calls of cycles and what else is written out before anything else, or refused.

@@ -6,7 +6,7 @@ use crate::value::{
     angle_name, assigned, brackets, expression, flat_comment, is_flow_word, is_function, is_siemens_word,
     nested_comment, o_statement,
 };
-use crate::{Dialect, Invalid, Item, ItemKind, Span, Value};
+use crate::{Dialect, Invalid, Item, ItemKind, Number, Span, Value};
 
 /// The facts of a dialect that reading a block needs, ready to be asked a million times a second.
 pub(crate) struct Lexer<'d> {
@@ -194,6 +194,10 @@ impl<'d> Lexer<'d> {
         }
         let numbered = self.numbered(line, at).unwrap_or(at + 1);
         match self.value(line, numbered) {
+            (Ok(Value::Expression), end) if matches!(letter, b'A' | b'B' | b'C') => {
+                let value = direct(&line[numbered..end]).map_or(Value::Expression, Value::Number);
+                (ItemKind::Word { letter, value }, end)
+            }
             (Ok(value), end) => (ItemKind::Word { letter, value }, end),
             (Err(why), end) => (ItemKind::Invalid(why), end),
         }
@@ -509,6 +513,15 @@ fn identifier(text: &[u8]) -> usize {
         return 0;
     }
     1 + text[1..].iter().take_while(|byte| byte.is_ascii_alphanumeric() || **byte == b'_').count()
+}
+
+/// `=DC(90)` of a rotary axis: its angle.
+fn direct(text: &[u8]) -> Option<Number> {
+    let inside = text.trim_ascii_start().strip_prefix(b"=")?.trim_ascii();
+    let (name, inside) = inside.split_at_checked(2)?;
+    let inside = inside.trim_ascii_start().strip_prefix(b"(")?.strip_suffix(b")")?.trim_ascii();
+    let (plain, end) = number(inside, 0, false);
+    plain.ok().filter(|_| name.eq_ignore_ascii_case(b"DC") && end == inside.len())
 }
 
 /// How many ASCII letters stand at the start.

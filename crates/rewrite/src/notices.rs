@@ -205,6 +205,11 @@ pub(crate) fn refusal(
                 .at(whole, both!("here", "здесь"))
                 .help(both!("an error table with steps this steep is no machine: run `vpost profile check`", "таблицы погрешностей с такими крутыми ступенями у станка не бывает: запустите `vpost profile check`"))
         }
+        CorrectionError::Solve(error @ SolveError::OutsideRotaryRange { axis, .. }) => {
+            Diagnostic::error(OUTSIDE, error.text())
+                .at(word(*axis as u8).unwrap_or(whole), both!("beyond `travel_deg`, or its tables", "за пределами `travel_deg` или таблиц"))
+                .help(both!("turn {axis} back by whole turns before it, or write the angle within its travel; where the machine goes farther, say so as `travel_deg` of {axis} in the profile", "поверните {axis} до этого назад на полные обороты или напишите угол в пределах хода; если станок ходит дальше, скажите об этом ключом `travel_deg` оси {axis} в профиле"))
+        }
         CorrectionError::Solve(error) => Diagnostic::error(NOT_CONVERGED, error.text())
             .at(whole, both!("here", "здесь"))
             .help(both!("choose another engine with `--engine`", "выберите другой метод ключом `--engine`")),

@@ -44,6 +44,26 @@ impl TiltedPlane {
         product(turn, Self::turn_about(2, third))
     }
 
+    /// The turn of angles one after the other, degrees, each about that axis of the coordinates as they then lie: X, Y, Z by
+    /// index.
+    #[must_use]
+    pub fn turn_by_axes(axes: [usize; 3], angles_deg: [f64; 3]) -> [[f64; 3]; 3] {
+        let [first, second, third] = [0, 1, 2].map(|i| Self::turn_about(axes[i], angles_deg[i]));
+        product(product(first, second), third)
+    }
+
+    /// A plane that is given in the coordinates of this one: its zero goes to `before_mm`, turns there, and goes on to
+    /// `behind_mm` along the axes that lie turned then.
+    #[must_use]
+    pub fn then(&self, before_mm: [f64; 3], turn: [[f64; 3]; 3], behind_mm: [f64; 3]) -> Self {
+        let on = |turn: [[f64; 3]; 3], from: [f64; 3], by: [f64; 3]| {
+            let by = turn.map(|row| dot(row, by));
+            plus(from, 1.0, by)
+        };
+        let turned = product(self.turn, turn);
+        Self { turn: turned, zero_mm: on(turned, on(self.turn, self.zero_mm, before_mm), behind_mm) }
+    }
+
     /// The turn about X, Y or Z by index, degrees.
     #[must_use]
     pub fn turn_about(axis: usize, angle_deg: f64) -> [[f64; 3]; 3] {
@@ -134,6 +154,8 @@ pub struct TiltRule {
     pub branch: Option<(usize, bool)>,
     /// Which of the angles that differ by whole turns; `None`: not said.
     pub turns: Option<WholeTurns>,
+    /// The axis, by index, whose higher or lower angle a swivel cycle asks for (CYCLE800); `None`: not said.
+    pub reference: Option<usize>,
 }
 
 /// Which of several angles that differ by whole turns.
@@ -164,6 +186,8 @@ pub enum NoAngles {
     Start(usize, i32),
 }
 
+/// Angles of a search are not exact, degrees.
+const SLACK_DEG: f64 = 1e-9;
 /// Whether two ways are told apart by how far they are, degrees.
 const NEARER_DEG: f64 = 1e-3;
 /// A tool nearer to an axis than this stands along it, rad.
@@ -227,6 +251,14 @@ impl RotaryLink {
         if self.carries_workpiece { -1.0 } else { 1.0 }
     }
 
+    /// Whether the axis could stand whole turns away from this angle, degrees, and point alike.
+    fn has_other_turns(&self, angle_deg: f64) -> bool {
+        let [low, high] = self.travel_deg;
+        [angle_deg - 360.0, angle_deg + 360.0]
+            .into_iter()
+            .any(|deg| low - SLACK_DEG <= deg && deg <= high + SLACK_DEG)
+    }
+
     /// The angle of whole turns that the rule chooses, degrees.
     fn choose(
         &self,
@@ -234,14 +266,11 @@ impl RotaryLink {
         rule: &TiltRule,
         stands_deg: Option<f64>,
     ) -> Result<Option<f64>, NoAngles> {
-        /// Angles of a search are not exact.
-        const SLACK_DEG: f64 = 1e-9;
         let [low, high] = self.travel_deg;
         let fits = |deg: f64| low - SLACK_DEG <= deg && deg <= high + SLACK_DEG;
         let principal = if angle_deg <= -180.0 + SLACK_DEG { angle_deg + 360.0 } else { angle_deg };
-        let others = [principal - 360.0, principal + 360.0].into_iter().any(fits);
         match rule.turns {
-            _ if !others => Ok(Some(principal).filter(|deg| fits(*deg))),
+            _ if !self.has_other_turns(principal) => Ok(Some(principal).filter(|deg| fits(*deg))),
             Some(WholeTurns::Principal) => Ok(Some(principal).filter(|deg| fits(*deg))),
             Some(WholeTurns::Shortest) => {
                 let stands_deg = stands_deg.ok_or(NoAngles::Unknown(self.axis))?;
@@ -292,7 +321,7 @@ impl RotaryChain {
         let mut found: Vec<[f64; 3]> = Vec::new();
         for positive in [true, false] {
             let branch = Some((second.axis, positive));
-            let one = TiltRule { branch, turns: Some(WholeTurns::Shortest) };
+            let one = TiltRule { branch, turns: Some(WholeTurns::Shortest), ..TiltRule::default() };
             match self.angles_for(direction, &one, stand_deg.map(Some)) {
                 Ok(angles) => found.push(angles),
                 Err(NoAngles::OutOfReach) => {}
@@ -327,23 +356,13 @@ impl RotaryChain {
         Ok(chosen)
     }
 
-    /// A, B, C, degrees, that bring the tool to a direction in the workpiece; axes that the chain does not have at 0.
+    /// Both ways to a direction in the workpiece, one where they are the same: the angle of the first axis, `None` where it may
+    /// be anything, and of the second, degrees, whole turns aside.
     ///
     /// With the axes' unit vectors a and b, from the workpiece on, the direction is `Rot(a, α) Rot(b, β) z`. The vector
     /// `v = Rot(b, β) z` has `v·b = z·b` and `v·a = n·a`, and so lies in one of two places beside the plane of a and b
     /// (Paden 1986, second subproblem).
-    ///
-    /// * `direction` – unit vector, workpiece
-    /// * `stand_deg` – where the axes stand, where known
-    ///
-    /// # Errors
-    /// [`NoAngles`] where not one pair is certain.
-    pub fn angles_for(
-        &self,
-        direction: [f64; 3],
-        rule: &TiltRule,
-        stand_deg: [Option<f64>; 3],
-    ) -> Result<[f64; 3], NoAngles> {
+    fn ways(&self, direction: [f64; 3]) -> Result<Vec<(Option<f64>, f64)>, NoAngles> {
         let [first, second] = self.0.as_slice() else { return Err(NoAngles::NotTwoAxes) };
         let (a, b) = (first.direction, second.direction);
         let normal = cross(a, b);
@@ -361,30 +380,53 @@ impl RotaryChain {
         let beside = beside.max(0.0).sqrt();
         // Nearer to each other than anybody turns, the two are one.
         let sides: &[f64] = if beside < 1e-7 { &[0.0] } else { &[beside, -beside] };
-        let mut found: Option<[f64; 3]> = None;
-        for side in sides {
+        let way = |side: &f64| {
             let between = plus(middle, *side, normal);
-            let Some(second_turn) = turn_deg(UP, between, b) else { return Err(NoAngles::Free(second.axis)) };
-            let second_deg = second.sense() * second_turn;
-            let on_branch = |axis: usize, deg: f64| match rule.branch {
-                Some((one, positive)) if one == axis => deg.abs() < 1e-7 || (deg > 0.0) == positive,
-                _ => true,
-            };
-            if !on_branch(second.axis, second_deg) {
+            let second_turn = turn_deg(UP, between, b).ok_or(NoAngles::Free(second.axis))?;
+            let first_deg = turn_deg(between, direction, a).map(|turn| first.sense() * turn);
+            Ok((first_deg, second.sense() * second_turn))
+        };
+        sides.iter().map(way).collect()
+    }
+
+    /// The angle of the first axis where the tool stands along it, degrees: where it stands the way is shortest.
+    fn free(&self, rule: &TiltRule, stand_deg: [Option<f64>; 3]) -> Result<f64, NoAngles> {
+        let first = &self.0[0];
+        match (rule.turns, stand_deg[first.axis]) {
+            (Some(WholeTurns::Shortest), Some(stands_deg)) => Ok(stands_deg),
+            _ => Err(NoAngles::Free(first.axis)),
+        }
+    }
+
+    /// A, B, C, degrees, that bring the tool to a direction in the workpiece; axes that the chain does not have at 0.
+    ///
+    /// * `direction` – unit vector, workpiece
+    /// * `stand_deg` – where the axes stand, where known
+    ///
+    /// # Errors
+    /// [`NoAngles`] where not one pair is certain.
+    pub fn angles_for(
+        &self,
+        direction: [f64; 3],
+        rule: &TiltRule,
+        stand_deg: [Option<f64>; 3],
+    ) -> Result<[f64; 3], NoAngles> {
+        let ways = self.ways(direction)?;
+        let (first, second) = (&self.0[0], &self.0[1]);
+        let on_branch = |axis: usize, deg: f64| match rule.branch {
+            Some((one, positive)) if one == axis => deg.abs() < 1e-7 || (deg > 0.0) == positive,
+            _ => true,
+        };
+        let mut found: Option<[f64; 3]> = None;
+        for (first_deg, second_deg) in &ways {
+            if !on_branch(second.axis, *second_deg) {
                 continue;
             }
-            let first_deg = match turn_deg(between, direction, a) {
-                Some(turn) => first.sense() * turn,
-                // It may stand anywhere: where it stands the way is shortest.
-                None => match (rule.turns, stand_deg[first.axis]) {
-                    (Some(WholeTurns::Shortest), Some(stands_deg)) => stands_deg,
-                    _ => return Err(NoAngles::Free(first.axis)),
-                },
-            };
+            let first_deg = first_deg.map_or_else(|| self.free(rule, stand_deg), Ok)?;
             if !on_branch(first.axis, first_deg) {
                 continue;
             }
-            let chosen = [(first, first_deg), (second, second_deg)]
+            let chosen = [(first, first_deg), (second, *second_deg)]
                 .map(|(link, deg)| link.choose(deg, rule, stand_deg[link.axis]));
             let [Some(first_deg), Some(second_deg)] = [chosen[0]?, chosen[1]?] else { continue };
             let mut angles = [0.0; 3];
@@ -394,9 +436,71 @@ impl RotaryChain {
             }
         }
         match (found, rule.branch) {
-            (Some(_), None) if sides.len() > 1 => Err(NoAngles::TwoWays),
+            (Some(_), None) if ways.len() > 1 => Err(NoAngles::TwoWays),
             (Some(angles), _) => Ok(angles),
             (None, _) => Err(NoAngles::OutOfReach),
+        }
+    }
+
+    /// A, B, C, degrees, as a swivel cycle chooses them: of both ways within travel that one on which the rule's reference axis
+    /// has the higher angle, or the lower; the only one where the other is beyond travel.
+    ///
+    /// ```
+    /// use toolpath::{RotaryChain, RotaryLink, TiltRule, WholeTurns};
+    ///
+    /// let link = |axis: usize, most_deg: f64| {
+    ///     let direction = [0, 1, 2].map(|k| f64::from(u8::from(k == axis)));
+    ///     RotaryLink { axis, direction, carries_workpiece: true, travel_deg: [-most_deg, most_deg] }
+    /// };
+    /// let table = RotaryChain(vec![link(2, 200.0), link(0, 110.0)]);
+    /// let rule = TiltRule { reference: Some(0), turns: Some(WholeTurns::Principal), ..TiltRule::default() };
+    /// let ask = |higher: bool| table.angles_by_value([0.0, 1.0, 0.0], higher, &rule, [None; 3]).unwrap();
+    /// assert!((ask(true)[0] - 90.0).abs() < 1e-12 && (ask(false)[0] + 90.0).abs() < 1e-12);
+    /// ```
+    ///
+    /// # Errors
+    /// [`NoAngles`] where not one pair is certain: also where the reference axis could stand at several whole turns, of which
+    /// either value may be the higher.
+    pub fn angles_by_value(
+        &self,
+        direction: [f64; 3],
+        higher: bool,
+        rule: &TiltRule,
+        stand_deg: [Option<f64>; 3],
+    ) -> Result<[f64; 3], NoAngles> {
+        let ways = self.ways(direction)?;
+        let (first, second) = (&self.0[0], &self.0[1]);
+        let (mut reachable, mut open): (Vec<[f64; 3]>, Option<NoAngles>) = (Vec::new(), None);
+        for (first_deg, second_deg) in ways {
+            let first_deg = first_deg.map_or_else(|| self.free(rule, stand_deg), Ok)?;
+            let chosen = [(first, first_deg), (second, second_deg)]
+                .map(|(link, deg)| link.choose(deg, rule, stand_deg[link.axis]));
+            match chosen {
+                [Ok(Some(first_deg)), Ok(Some(second_deg))] => {
+                    let mut angles = [0.0; 3];
+                    (angles[first.axis], angles[second.axis]) = (first_deg, second_deg);
+                    reachable.push(angles);
+                }
+                [Ok(None), _] | [_, Ok(None)] => {}
+                [Err(why), _] | [_, Err(why)] => open = Some(why),
+            }
+        }
+        match (open, reachable.as_slice()) {
+            (Some(why), _) => Err(why),
+            (None, []) => Err(NoAngles::OutOfReach),
+            (None, [only]) => Ok(*only),
+            (None, [one, other, ..]) => {
+                let reference = rule.reference.ok_or(NoAngles::TwoWays)?;
+                let link = self.0.iter().find(|link| link.axis == reference).ok_or(NoAngles::TwoWays)?;
+                let (one_deg, other_deg) = (one[reference], other[reference]);
+                if [one_deg, other_deg].into_iter().any(|deg| link.has_other_turns(deg)) {
+                    return Err(NoAngles::Turns(reference));
+                }
+                if (one_deg - other_deg).abs() < NEARER_DEG {
+                    return Err(NoAngles::TwoWays);
+                }
+                Ok(if (one_deg > other_deg) == higher { *one } else { *other })
+            }
         }
     }
 }
@@ -446,8 +550,11 @@ mod tests {
                     continue;
                 }
                 for positive in [true, false] {
-                    let rule =
-                        TiltRule { branch: Some((tilting, positive)), turns: Some(WholeTurns::Principal) };
+                    let rule = TiltRule {
+                        branch: Some((tilting, positive)),
+                        turns: Some(WholeTurns::Principal),
+                        reference: None,
+                    };
                     let Ok(angles) = chain.angles_for(direction, &rule, [None; 3]) else { continue };
                     met += 1;
                     assert_eq!(angles[tilting] > 0.0, positive, "{chain:?} {wanted:?}");
@@ -466,10 +573,15 @@ mod tests {
     fn what_the_rule_leaves_open_is_not_guessed() {
         let chain = RotaryChain(vec![link(2, UP, true, 1000.0), link(0, X, true, 110.0)]);
         let tilted = chain.tool_direction([30.0, 0.0, 40.0]);
-        let rule = TiltRule { branch: Some((0, true)), turns: Some(WholeTurns::Shortest) };
+        let rule =
+            TiltRule { branch: Some((0, true)), turns: Some(WholeTurns::Shortest), ..TiltRule::default() };
         let ask = |direction, rule: TiltRule, stand| chain.angles_for(direction, &rule, stand);
         assert_eq!(
-            ask(tilted, TiltRule { branch: None, turns: Some(WholeTurns::Principal) }, [None; 3]),
+            ask(
+                tilted,
+                TiltRule { branch: None, turns: Some(WholeTurns::Principal), reference: None },
+                [None; 3]
+            ),
             Err(NoAngles::TwoWays)
         );
         assert_eq!(ask(tilted, TiltRule { turns: None, ..rule }, [None; 3]), Err(NoAngles::Turns(2)));
@@ -484,5 +596,44 @@ mod tests {
         assert_eq!(ask(UP, rule, [Some(0.0), None, Some(7.0)]), Ok([0.0, 0.0, 7.0]));
         let one = RotaryChain(vec![link(0, X, true, 110.0)]);
         assert_eq!(one.angles_for(UP, &rule, [Some(0.0); 3]), Err(NoAngles::NotTwoAxes));
+    }
+
+    #[test]
+    fn a_swivel_cycle_takes_the_higher_or_lower_angle_of_its_reference_axis() {
+        let chain = RotaryChain(vec![link(2, UP, true, 200.0), link(0, X, true, 110.0)]);
+        let tilted = chain.tool_direction([30.0, 0.0, 40.0]);
+        let rule = TiltRule { reference: Some(0), turns: Some(WholeTurns::Principal), branch: None };
+        let ask = |chain: &RotaryChain, higher: bool, rule: TiltRule| {
+            chain.angles_by_value(tilted, higher, &rule, [None; 3])
+        };
+        let near = |angles: [f64; 3], a: f64, c: f64| {
+            assert!((angles[0] - a).abs() < 1e-9 && (angles[2] - c).abs() < 1e-9, "{angles:?}");
+        };
+        near(ask(&chain, true, rule).unwrap(), 30.0, 40.0);
+        near(ask(&chain, false, rule).unwrap(), -30.0, -140.0);
+        assert_eq!(ask(&chain, true, TiltRule { reference: None, ..rule }), Err(NoAngles::TwoWays));
+        // C could stand at -140 and at 220: which of its angles is the higher one nobody says.
+        assert_eq!(
+            ask(
+                &RotaryChain(vec![link(2, UP, true, 300.0), link(0, X, true, 110.0)]),
+                true,
+                TiltRule { reference: Some(2), ..rule }
+            ),
+            Err(NoAngles::Turns(2))
+        );
+        // Where only one way is within travel it is taken, whichever was asked for.
+        let mut short = chain;
+        short.0[1].travel_deg = [-5.0, 110.0];
+        near(ask(&short, false, TiltRule { reference: None, ..rule }).unwrap(), 30.0, 40.0);
+    }
+
+    #[test]
+    fn turns_follow_each_other_about_axes_that_turn() {
+        // A quarter turn about Z, then about the X that lies along Y now: Z ends along X.
+        let turn = TiltedPlane::turn_by_axes([2, 0, 1], [90.0, 90.0, 0.0]);
+        let base = TiltedPlane { turn: TiltedPlane::turn_about(2, 0.0), zero_mm: [100.0, 0.0, 0.0] };
+        let plane = base.then([10.0, 20.0, 30.0], turn, [0.0, 0.0, 5.0]);
+        assert_eq!(plane.normal().map(f64::round), [1.0, 0.0, 0.0]);
+        assert_eq!(plane.zero_mm.map(f64::round), [115.0, 20.0, 30.0]);
     }
 }

@@ -163,7 +163,11 @@ impl Profile {
                     Text::pair("between -180 and 180 degrees", "между -180 и 180 градусами")
                 }
             });
-            let rule: Vec<Text> = branch.into_iter().chain(turns).collect();
+            let reference = rule.reference.map(|axis| {
+                let axis = toolpath::AXIS_NAMES[3 + axis];
+                both!("CYCLE800 by the angle of {axis}", "CYCLE800 по углу {axis}")
+            });
+            let rule: Vec<Text> = branch.into_iter().chain(turns).chain(reference).collect();
             if !rule.is_empty() {
                 tell!(out, language, "tilted plane {}", "наклонная плоскость {:#}", Text::join(&rule, ", "))?;
             }

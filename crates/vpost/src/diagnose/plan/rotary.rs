@@ -107,7 +107,8 @@ fn around_a_cone(profile: &Profile) -> Option<Swing> {
     let [first, second] = chain.0.as_slice() else { return None };
     let branches = [(second.axis, true), (second.axis, false), (first.axis, true), (first.axis, false)];
     let stops_deg = branches.into_iter().find_map(|branch| {
-        let rule = TiltRule { branch: Some(branch), turns: Some(WholeTurns::Shortest) };
+        let rule =
+            TiltRule { branch: Some(branch), turns: Some(WholeTurns::Shortest), ..TiltRule::default() };
         let mut stands = [0.0; 3];
         let all = places.iter().map(|degrees| {
             stands = chain.angles_for(direction(*degrees), &rule, stands.map(Some)).ok()?;
