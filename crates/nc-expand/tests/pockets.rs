@@ -25,7 +25,7 @@ fn lines(program: &str) -> Result<Vec<String>, (u16, String)> {
     Ok(blocks(flat).into_iter().map(str::to_owned).collect())
 }
 
-/// A move in radius and Z, as points so near to each other that nothing lies between them.
+/// A move in radius and Z, as chords.
 struct Move {
     is_rapid: bool,
     points: Vec<[f64; 2]>,
@@ -48,7 +48,7 @@ fn moves(lines: &[String]) -> Vec<Move> {
         let value = |letter: &str| words.get(letter).copied();
         let to = [value("X").map_or(at[0], |x| x / 2.0), value("Z").unwrap_or(at[1])];
         let points = match code {
-            0 | 1 => line_points(at, to),
+            0 | 1 => vec![at, to],
             _ => {
                 let centre = match value("R") {
                     Some(radius) => by_radius(at, to, radius, code == 2),
@@ -61,12 +61,6 @@ fn moves(lines: &[String]) -> Vec<Move> {
         at = to;
     }
     moves
-}
-
-fn line_points(from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
-    let steps = (500.0 * (to[1] - from[1]).abs().max((to[0] - from[0]).abs())).ceil().max(1.0) as usize;
-    let at = |k: usize| [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * k as f64 / steps as f64);
-    (0..=steps).map(at).collect()
 }
 
 /// Left of its way lies the centre of G3, less than half a turn.
@@ -101,6 +95,8 @@ struct Heights {
 }
 
 const STEP: f64 = 0.01;
+/// Before this place, on the way to the contour, nothing stands.
+const FIRST: usize = 202;
 
 impl Heights {
     /// The deepest place of a path between two neighbours, at both of them.
@@ -112,11 +108,17 @@ impl Heights {
 
     fn cut(&mut self, a: [f64; 2], b: [f64; 2]) {
         let (low, high) = if a[0] < b[0] { (a, b) } else { (b, a) };
-        let (first, last) = ((low[0] / STEP).ceil() as i64, (high[0] / STEP).floor() as i64);
+        // Walls stand on places up to the last digits.
+        let (first, last) = ((low[0] / STEP - 1e-4).ceil() as i64, (high[0] / STEP + 1e-4).floor() as i64);
         for k in first.max(0)..=last.min(self.depths.len() as i64 - 1) {
             let place = k as f64 * STEP;
             let share = if high[0] > low[0] { (place - low[0]) / (high[0] - low[0]) } else { 0.0 };
-            let depth = low[1] + share * (high[1] - low[1]);
+            let is_wall = high[0] - low[0] < 1e-6;
+            let depth = if is_wall {
+                low[1].max(high[1])
+            } else {
+                low[1] + share.clamp(0.0, 1.0) * (high[1] - low[1])
+            };
             let here = &mut self.depths[k as usize];
             *here = here.max(depth);
         }
@@ -179,12 +181,12 @@ fn passes_leave_the_contour_whole_and_cut_one_depth_each() {
         let (cut, escape) = (dice.between(0.4, 3.0), dice.between(0.1, 1.0));
         let allowance = if case % 2 == 0 { 0.4 } else { 0.0 };
         let (first, second, cycle) = if faces {
-            (format!("W{cut}"), format!("U0. W{allowance:.3}"), "G72")
+            (format!("W{cut:.3}"), format!("U0. W{allowance:.3}"), "G72")
         } else {
-            (format!("U{cut}"), format!("U{:.3} W0.", 2.0 * allowance), "G71")
+            (format!("U{cut:.3}"), format!("U{:.3} W0.", 2.0 * allowance), "G71")
         };
         let program = format!(
-            "G0 X60. Z2.\n{cycle} {first} R{escape}\n{cycle} P10 Q20 {second} F0.2\n{text}G70 P10 Q20 F0.1\n"
+            "G0 X60. Z2.\n{cycle} {first} R{escape:.3}\n{cycle} P10 Q20 {second} F0.2\n{text}G70 P10 Q20 F0.1\n"
         );
         let written = lines(&program).unwrap_or_else(|refusal| panic!("{refusal:?}\n{program}"));
         let feeds: Vec<String> = written
@@ -205,34 +207,31 @@ fn passes_leave_the_contour_whole_and_cut_one_depth_each() {
         let places = (end / STEP) as usize + 1;
         let wanted = Heights::of(&finished, places);
         all.truncate(finishing);
-        // Before the way to the contour, 2 mm from the start, nothing stands.
         let mut stock = Heights { depths: vec![0.0; places] };
-        (0..=(2.0 / STEP) as usize).for_each(|k| stock.depths[k] = 40.0);
+        stock.depths[..FIRST].fill(40.0);
         let context = |what: &str, p: [f64; 2]| {
             format!("case {case}: {what} at {p:?}\n{program}\n{}", written.join("\n"))
         };
         for one in &all[1..] {
             let points: Vec<[f64; 2]> = one.points.iter().copied().map(seen).collect();
             let before = stock.depths.clone();
-            for p in &points {
-                let k = (p[0] / STEP).round();
-                if k < 0.0 || k >= places as f64 || (p[0] - k * STEP).abs() > 1e-7 || k * STEP < 2.0 + STEP {
+            let own = Heights::of(&points, places);
+            for k in FIRST..places - 1 {
+                let (depth, p) = (own.depths[k], [k as f64 * STEP, own.depths[k]]);
+                if depth == f64::NEG_INFINITY {
                     continue;
                 }
-                let k = k as usize;
                 // Finest printed digits, and chords of the own arcs.
-                assert!(p[1] <= wanted.depths[k] - allowance + 2e-5, "{}", context("below the contour", *p));
-                if one.is_rapid {
-                    assert!(p[1] <= before[k] + 1e-4, "{}", context("a rapid through stock", *p));
-                } else {
-                    assert!(p[1] - before[k] <= cut + 1e-4, "{}", context("too deep a cut", *p));
-                }
+                let lowest = wanted.depths[k] - allowance + 2e-5;
+                assert!(depth <= lowest, "{}", context("below the contour", p));
+                let most = if one.is_rapid { 0.0 } else { cut };
+                assert!(depth <= before[k] + most + 1e-4, "{}", context("through what stands", p));
             }
             points.windows(2).for_each(|ends| stock.cut(ends[0], ends[1]));
         }
         for (k, (have, want)) in stock.depths.iter().zip(&wanted.depths).enumerate() {
             let place = k as f64 * STEP;
-            if place > 2.0 + STEP && place < end - 2.0 * STEP {
+            if k >= FIRST && place < end - 2.0 * STEP {
                 let off = (have + allowance - want).abs();
                 assert!(
                     off < 2e-3 || walls(&wanted, k),
@@ -250,4 +249,58 @@ fn passes_leave_the_contour_whole_and_cut_one_depth_each() {
 fn walls(heights: &Heights, k: usize) -> bool {
     let near = |k: usize| heights.depths.get(k).copied().unwrap_or_default();
     (near(k) - near(k - 1)).abs() > 0.02 || (near(k) - near(k + 1)).abs() > 0.02
+}
+
+fn refused(cycle: &str, contour: &str) -> String {
+    let program = format!("G0 X60. Z2.\nG71 U1. R0.5\n{cycle}\n{contour}G70 P10 Q20\n");
+    lines(&program).expect_err(&program).1
+}
+
+#[test]
+fn what_would_cut_into_the_contour_is_refused() {
+    let pocket = "N10 G0 X40. W0.\nG1 Z-5. F0.1\nX30. Z-10.\nX40. Z-15.\nN20 X60.\n";
+    let cycle = |words: &str| format!("G71 P10 Q20 {words} F0.2");
+    let said = refused(&cycle("U0.4 W0.1"), pocket);
+    assert!(said.contains("an allowance W on a contour with pockets"), "{said}");
+    let said = refused(&cycle("U-0.4 W0."), pocket);
+    assert!(said.contains("an allowance U that leads into the workpiece"), "{said}");
+    // Type I has no pockets; along Z neither of them turns back.
+    let said = refused(&cycle("U0.4 W0."), &pocket.replace(" W0.", ""));
+    assert!(said.contains("turns back along X"), "{said}");
+    let said = refused(&cycle("U0.4 W0."), &pocket.replace("Z-15.", "Z-8."));
+    assert!(said.contains("turns back along Z"), "{said}");
+    // A collar above the start, with a pocket behind it.
+    let collar = "N10 G0 X40. W0.\nG1 Z-5. F0.1\nX64. Z-10.\nX40. Z-15.\nN20 X60.\n";
+    let said = refused(&cycle("U0.4 W0."), collar);
+    assert!(said.contains("rises beyond the start"), "{said}");
+}
+
+#[test]
+fn a_pocket_is_cut_along_its_flank() {
+    let program = "G0 X60. Z2.\nG71 U5. R0.5\nG71 P10 Q20 U0. W0. F0.2\nN10 G0 X50. W0.\nG1 Z-5. F0.1\nX30. Z-15.\nX50. Z-25.\n\
+        N20 X60.\nG70 P10 Q20\n";
+    let wanted = [
+        "G0 X60. Z2.",
+        "F0.2 G0 X50. Z2.",
+        "G1 Z-5.",
+        // At 50 from where the pocket begins to where it ends, back in the slot, and down its flank.
+        "G1 Z-25.",
+        "G0 X51. Z-24.5",
+        "G0 X51. Z-5.5",
+        "G1 X50. Z-5.",
+        "G1 X40. Z-10.",
+        "G1 Z-20.",
+        "G0 X41. Z-19.5",
+        // Straight out, and along the contour.
+        "G0 X60. Z-19.5",
+        "G0 X60. Z2.",
+        "G0 X50. Z2.",
+        "G1 Z-5.",
+        "G1 X30. Z-15.",
+        "G1 X50. Z-25.",
+        "G1 X60.",
+        "G0 X60. Z2.",
+    ];
+    let written = lines(program).expect("written");
+    assert_eq!(written[..wanted.len()], wanted);
 }

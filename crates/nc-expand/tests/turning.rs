@@ -5,7 +5,7 @@ mod common;
 use common::blocks;
 use nc_expand::{Environment, Expanded, Limits, Refusal, expand};
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{DrillPecks, FlankFrom, TurningParameters};
+use nc_syntax::dialect::{DrillPecks, DrillR, FlankFrom, TurningParameters};
 
 const START: &str = "G0 X60. Z2.\n";
 
@@ -448,5 +448,38 @@ fn places_lead_back_to_the_source() {
         let number = 1 + flat[..at as usize].lines().count() as u64;
         let wanted = 1 + text.lines().position(|found| found.starts_with(line)).unwrap() as u64;
         assert_eq!(expanded.source_line(number), (0, wanted), "{what}\n{flat}");
+    }
+}
+
+#[test]
+fn a_bored_hole_is_left_in_a_feed() {
+    let mut lathe = dialect("A");
+    let program = "G0 X0. Z5.\nG85 Z-20. R-3. F0.1\nG0 Z8.\n";
+    let (code, message) = refused(&lathe, program);
+    assert!(code == 145 && message.contains("bore_return_percent"), "{message}");
+    lathe.turning.as_mut().unwrap().cycles.bore_return_percent = Some(200.0);
+    let wanted = ["G0 X0. Z5.", "F0.1 G0 X0. Z2.", "G1 Z-20.", "G1 Z2. F0.2", "F0.1", "G0 X0. Z5.", "G0 Z8."];
+    assert_eq!(lines(&lathe, program), wanted);
+    // A feed whose point nobody wrote counts increments: half of five is none.
+    lathe.turning.as_mut().unwrap().cycles.bore_return_percent = Some(50.0);
+    assert_eq!(refused(&lathe, &program.replace("F0.1", "F5")).0, 143);
+}
+
+#[test]
+fn r_of_a_hole_is_a_place_or_a_way_in_systems_b_and_c() {
+    for system in ["B", "C"] {
+        let mut lathe = dialect(system);
+        let program = "G0 X0. Z5.\nG83 Z-20. R2. F0.1\n";
+        let (code, message) = refused(&lathe, program);
+        assert!(code == 145 && message.contains("drill_r"), "{message}");
+        let set = |lathe: &mut Dialect, r| lathe.turning.as_mut().unwrap().cycles.drill_r = Some(r);
+        set(&mut lathe, DrillR::Place);
+        let wanted = ["G0 X0. Z5.", "F0.1 G0 X0. Z2.", "G1 Z-20.", "G0 X0. Z2.", "G0 X0. Z5."];
+        assert_eq!(lines(&lathe, program), wanted, "{system}");
+        // G99 leaves the tool at R.
+        let at_r = ["G0 X0. Z5.", "G99 F0.1 G0 X0. Z2.", "G1 Z-20.", "G0 X0. Z2."];
+        assert_eq!(lines(&lathe, &program.replace("G83", "G99 G83")), at_r, "{system}");
+        set(&mut lathe, DrillR::Way);
+        assert_eq!(lines(&lathe, &program.replace("R2.", "R-3.")), wanted, "{system}");
     }
 }
