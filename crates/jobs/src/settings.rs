@@ -8,7 +8,9 @@ use machine_model::{Command, Engine, EngineId, Models, PathModel, TipControl, Ve
 use machine_profile::{BareLengths, Profile, TurningRules};
 use nc_program::{AfterChange, BetweenVectors, Questions, Setup};
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{DrillPecks, DrillR, FlankFrom, MCode, Macros, PointFree, TipSwitch, TurningParameters};
+use nc_syntax::dialect::{
+    DrillPecks, DrillR, FlankFrom, MCode, Macros, PointFree, TipSwitch, TurningParameters,
+};
 use rewrite::{Guards, Job};
 
 use crate::flow::Flow;

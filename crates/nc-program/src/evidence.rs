@@ -474,10 +474,7 @@ impl Seen {
         self.polar_off |= code == POLAR_OFF && matches!(row.action, Action::PolarOff | Action::Pass { .. });
         self.length |= matches!(
             row.action,
-            Action::LengthOn
-                | Action::LengthOnNegative
-                | Action::TipLengthOn
-                | Action::TipLengthOnVectors
+            Action::LengthOn | Action::LengthOnNegative | Action::TipLengthOn | Action::TipLengthOnVectors
         );
         self.scales |= row.action == Action::ScalingOn;
         self.moves |= is_motion(&row.action);

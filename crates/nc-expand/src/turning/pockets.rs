@@ -20,13 +20,10 @@ use diagnostic::both;
 
 use super::contour::{Axis, Contour, Point, Way};
 use super::emit::{Code, Moves};
-use super::rough::{MOST_PASSES, Passes};
+use super::rough::{MOST_PASSES, Passes, SAME};
 use super::{Fault, Writer};
 use crate::output::{Style, word};
 use crate::shorthand::Words;
-
-/// Depths nearer than this are one, mm or inches: a millionth is the step of written places.
-const SAME: f64 = 1e-6;
 
 /// A piece of the contour that turns back along neither axis.
 #[derive(Clone, Copy, Debug)]

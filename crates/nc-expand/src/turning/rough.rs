@@ -15,7 +15,7 @@ use diagnostic::both;
 use nc_syntax::dialect::TurningCycle;
 use nc_syntax::{ItemKind, Span};
 
-use super::contour::{Axis, Contour, Piece};
+use super::contour::{Axis, Contour, Piece, Point};
 use super::emit::{Code, Moves};
 use super::state::Motion;
 use super::{Fault, MILLION, Spot, Writer, cycle_of};
@@ -25,6 +25,9 @@ use crate::shorthand::{Words, from, shown};
 pub(super) const MOST_PASSES: i64 = 10_000;
 /// Cuts of G73.
 const MOST_CUTS: i64 = 999;
+
+/// Depths nearer than this are one, mm or inches: a millionth is the step of written places.
+pub(super) const SAME: f64 = 1e-6;
 
 /// How the passes of G71 and G72 lie.
 #[derive(Clone, Copy, Debug)]
@@ -284,10 +287,15 @@ impl Writer<'_, '_> {
         self.go(moves, Code::Rapid, corner);
         for pass in 1..=count {
             let level = from_corner[down] + sign * depth * pass as f64;
-            let stop = pieces
-                .iter()
-                .find_map(|piece| piece.way.crossing(down, level))
-                .map_or(b[along] + off[along], |point| point[along]);
+            // The first piece that comes up to the level ends the pass, also where it only touches it.
+            let apart = |point: Point| (point[down] - level) * sign;
+            let stop = pieces.iter().map(|piece| piece.way).find(|way| apart(way.to) <= SAME).map_or(
+                b[along] + off[along],
+                |way| {
+                    let nearer = if apart(way.from).abs() < apart(way.to).abs() { way.from } else { way.to };
+                    way.crossing(down, level).unwrap_or(nearer)[along]
+                },
+            );
             if (stop - from_corner[along]) * forwards <= 0.0 {
                 continue;
             }
