@@ -107,6 +107,11 @@ def floor_of(spec, lathe):
 def from_start(got, wanted, limit):
     """`got` without its way from where a rapid ended, by no more than a rapid may be off and on the feed's own line, to the start
     of `wanted`."""
+    # A short way of its own to the start, in the air: from where a rapid of one axis left the other.
+    away = np.linalg.norm(got - wanted[0], axis=1)
+    near = int(np.argmax(away <= limit))
+    if 0 < near and away[near] <= limit and (away[: near + 1] <= RAPID_FACTOR * limit).all():
+        return got[near:]
     head = wanted[1] - wanted[0]
     head = head / max(float(np.linalg.norm(head)), 1e-12)
     k, beside = 0, None
