@@ -181,6 +181,15 @@ fn what_a_lathe_does_not_do_is_refused_by_name() {
         let said = bench.refused(&block(text), PROFILE);
         assert!(said.contains(code), "{text}: {said}");
     }
+    for (text, words) in [
+        ("!2", "waits for another turret or channel"),
+        ("G68", "mirrors X for the second turret"),
+        ("G84 Z-20. R-3. F1.5", "taps a face"),
+        ("G87 X20. R-3. F0.1", "drills a side"),
+    ] {
+        let said = bench.refused(&block(text), PROFILE);
+        assert!(said.contains(words), "{text}: {said}");
+    }
     let unlimited = bench.refused("G21 G99\nT0101\nG96 S180 M3\nM30\n", PROFILE);
     assert!(unlimited.contains("VP0253"), "{unlimited}");
     let unsaid = bench.profile(&[("x             = \"diameter\"", "")]);

@@ -8,7 +8,9 @@ use machine_model::{Command, Engine, EngineId, Models, PathModel, TipControl, Ve
 use machine_profile::{BareLengths, Profile, TurningRules};
 use nc_program::{AfterChange, BetweenVectors, Questions, Setup};
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{DrillPecks, FlankFrom, MCode, Macros, PointFree, TipSwitch, TurningParameters};
+use nc_syntax::dialect::{
+    DrillPecks, DrillR, FlankFrom, MCode, Macros, PointFree, TipSwitch, TurningParameters,
+};
 use rewrite::{Guards, Job};
 
 use crate::flow::Flow;
@@ -292,6 +294,8 @@ fn declare_cycles(profile: &Profile, dialect: &mut Dialect) {
         thread_flank_from,
         drill_chips,
         drill_return_mm,
+        drill_r_is_place,
+        bore_return_percent,
         nose_in_finishing,
     } = profile.program.turning;
     turning.diameters = profile.program.diameters;
@@ -310,6 +314,8 @@ fn declare_cycles(profile: &Profile, dialect: &mut Dialect) {
         }),
         drill_pecks: drill_chips.map(|chips| if chips { DrillPecks::Chip } else { DrillPecks::Full }),
         drill_return_mm,
+        drill_r: drill_r_is_place.map(|is_place| if is_place { DrillR::Place } else { DrillR::Way }),
+        bore_return_percent,
         nose_in_finishing,
     };
 }

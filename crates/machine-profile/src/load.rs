@@ -15,8 +15,8 @@ use units::{Angle, Length};
 use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, span};
 use crate::field::Around;
 use crate::format::{
-    self, ChangePlace, ContourCompensation, DecimalName, Document, Finite, FlankName, InterpolationName,
-    OutsideName, PecksName, ToolChange, XName,
+    self, ChangePlace, ContourCompensation, DecimalName, Document, DrillRName, Finite, FlankName,
+    InterpolationName, OutsideName, PecksName, ToolChange, XName,
 };
 use crate::profile::{
     AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics,
@@ -65,6 +65,8 @@ const MOST_CHAMFER_LEADS: f64 = 12.7;
 const MOST_CHAMFER_DEG: f64 = 89.0;
 /// Parameters 5133 and 5139 are clearances; more is a slip of the unit.
 const MOST_ESCAPE_MM: f64 = 50.0;
+/// Parameter 5121 ends there.
+const MOST_RETURN_PERCENT: f64 = 2000.0;
 static MM: Text = Text::pair("mm", "мм");
 /// Finishing passes of a thread: P of the first block has two digits for them.
 const MOST_FINISHING_PASSES: f64 = 99.0;
@@ -448,6 +450,13 @@ impl Loader<'_> {
             }),
             drill_chips: program.drill_pecks.map(|name| matches!(name, PecksName::Chip)),
             drill_return_mm: number(&program.drill_return_mm, "drill_return_mm", MOST_ESCAPE_MM, &MM),
+            drill_r_is_place: program.drill_r.map(|name| matches!(name, DrillRName::Place)),
+            bore_return_percent: number(
+                &program.bore_return_percent,
+                "bore_return_percent",
+                MOST_RETURN_PERCENT,
+                &Text::pair("per cent", "процентов"),
+            ),
             nose_in_finishing: matches!(program.contour_compensation, Some(ContourCompensation::Finishing)),
         }
     }

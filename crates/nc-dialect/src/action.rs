@@ -6,7 +6,7 @@ use nc_syntax::dialect::{
 };
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 114] = [
+pub const ACTION_NAMES: [&str; 115] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -91,6 +91,7 @@ pub const ACTION_NAMES: [&str; 114] = [
     "peck-groove",
     "thread-passes",
     "drill-face",
+    "bore-face",
     "finish-routine",
     "rough-turn-routine",
     "rough-turn-routine-no-pockets",
@@ -211,6 +212,7 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "peck-groove" => Action::Turning(TurningCycle::PeckGroove),
         "thread-passes" => Action::Turning(TurningCycle::ThreadPasses),
         "drill-face" => Action::Turning(TurningCycle::DrillFace),
+        "bore-face" => Action::Turning(TurningCycle::BoreFace),
         "finish-routine" => Action::Turning(TurningCycle::FinishRoutine),
         "rough-turn-routine" => Action::Turning(TurningCycle::RoughTurnRoutine(Pockets::All)),
         "rough-turn-routine-no-pockets" => Action::Turning(TurningCycle::RoughTurnRoutine(Pockets::Leave)),

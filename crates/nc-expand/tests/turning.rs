@@ -5,7 +5,7 @@ mod common;
 use common::blocks;
 use nc_expand::{Environment, Expanded, Limits, Refusal, expand};
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{DrillPecks, FlankFrom, TurningParameters};
+use nc_syntax::dialect::{DrillPecks, DrillR, FlankFrom, TurningParameters};
 
 const START: &str = "G0 X60. Z2.\n";
 
@@ -282,13 +282,6 @@ fn a_hole_is_drilled_on_the_axis() {
     ] {
         assert_eq!(refused(&lathe, program).0, 143, "{program}");
     }
-    // Whether R is a place there, a parameter says.
-    assert!(
-        expanded(&dialect("B"), "G0 X0 Z2.\nG83 Z-28. R-3. F0.1\n")
-            .expect("as it is")
-            .text()
-            .ends_with(b"G83 Z-28. R-3. F0.1\n")
-    );
 }
 
 #[test]
@@ -413,8 +406,8 @@ fn what_is_not_certain_is_refused() {
         (rough("N10 G0 X20.\nM8\nN20 G1 Z-10.\n"), 144),
         (rough("N10 G0 X20.\nG0 Z-10.\nN20 G1 X60.\n"), 144),
         (rough("N10 G0 X20.\nG1 Z-10.\nG4 X1.\nN20 G1 X60.\n"), 144),
-        // Pockets.
-        (rough("N10 G0 X20. Z1.\nG1 Z-10.\nN20 X60.\n"), 143),
+        // Aside of the start, and the block of P does not say so.
+        (rough("N10 G0 W-1.\nX20.\nG1 Z-10.\nN20 X60.\n"), 144),
         (rough("N10 G0 X20.\nG1 Z-10.\nN20 X60.\nX70.\n"), 143),
         ("G70 P10 Q20\nN10 G0 X20.\nN20 G1 Z-10.\n".to_owned(), 144),
         // Nowhere.
@@ -449,4 +442,66 @@ fn places_lead_back_to_the_source() {
         let wanted = 1 + text.lines().position(|found| found.starts_with(line)).unwrap() as u64;
         assert_eq!(expanded.source_line(number), (0, wanted), "{what}\n{flat}");
     }
+}
+
+#[test]
+fn a_bored_hole_is_left_in_a_feed() {
+    let mut lathe = dialect("A");
+    let program = "G0 X0. Z5.\nG85 Z-20. R-3. F0.1\nG0 Z8.\n";
+    let (code, message) = refused(&lathe, program);
+    assert!(code == 145 && message.contains("at which feed G85"), "{message}");
+    lathe.turning.as_mut().unwrap().cycles.bore_return_percent = Some(200.0);
+    let wanted = ["G0 X0. Z5.", "F0.1 G0 X0. Z2.", "G1 Z-20.", "G1 Z2. F0.2", "F0.1", "G0 X0. Z5.", "G0 Z8."];
+    assert_eq!(lines(&lathe, program), wanted);
+    // A feed whose point nobody wrote counts increments: half of five is none.
+    lathe.turning.as_mut().unwrap().cycles.bore_return_percent = Some(50.0);
+    assert_eq!(refused(&lathe, &program.replace("F0.1", "F5")).0, 143);
+}
+
+#[test]
+fn r_of_a_hole_is_a_place_or_a_way_in_systems_b_and_c() {
+    for system in ["B", "C"] {
+        let mut lathe = dialect(system);
+        let program = "G0 X0. Z5.\nG83 Z-20. R2. F0.1\n";
+        let (code, message) = refused(&lathe, program);
+        assert!(code == 145 && message.contains("whether R of a hole"), "{message}");
+        let set = |lathe: &mut Dialect, r| lathe.turning.as_mut().unwrap().cycles.drill_r = Some(r);
+        set(&mut lathe, DrillR::Place);
+        let wanted = ["G0 X0. Z5.", "F0.1 G0 X0. Z2.", "G1 Z-20.", "G0 X0. Z2.", "G0 X0. Z5."];
+        assert_eq!(lines(&lathe, program), wanted, "{system}");
+        // G99 leaves the tool at R.
+        let at_r = ["G0 X0. Z5.", "G99 F0.1 G0 X0. Z2.", "G1 Z-20.", "G0 X0. Z2."];
+        assert_eq!(lines(&lathe, &program.replace("G83", "G99 G83")), at_r, "{system}");
+        set(&mut lathe, DrillR::Way);
+        assert_eq!(lines(&lathe, &program.replace("R2.", "R-3.")), wanted, "{system}");
+    }
+}
+
+/// A level that only touches a cylinder between two rounds, whose centre has three decimals: the pass ran through the collar
+/// behind it.
+#[test]
+fn a_pass_on_the_level_of_a_cylinder_ends_before_the_collar() {
+    let mut on_the_level = 0;
+    for k in 0..50 {
+        let start = 60.0 + 0.1 * f64::from(k);
+        // Nine depths of 2.4 below the start, both off by 0.2.
+        let x = start - 21.6;
+        let program = format!(
+            "G0 X{start:.3} Z0.6\nG71 U1.2 R1.\nG71 P10 Q20 U0.2 W0.1 F0.3\nN10 G0 X{:.3}\nG1 Z-14.\nX{:.3} Z-17.897\n\
+             G3 X{x:.3} Z-18.33 I-0.25 K-0.433\nG1 Z-29.\nG2 X{:.3} Z-37. I8.\nG1 X{start:.3}\nN20 Z-55.8\nG70 P10 Q20 F0.1\n",
+            x - 8.0,
+            x - 0.5,
+            x + 16.0
+        );
+        let written = lines(&dialect("A"), &program);
+        let level = |line: &&String| {
+            let x_word = line.strip_prefix("G0 X").and_then(|rest| rest.strip_suffix(" Z0.7"));
+            x_word.is_some_and(|word| (word.parse::<f64>().expect("a number") - x - 0.2).abs() < 1e-6)
+        };
+        let Some(at) = written.iter().position(|line| level(&line)) else { continue };
+        let end: f64 = written[at + 1].trim_start_matches("G1 Z").parse().expect("a pass along Z");
+        assert!(end >= -28.9 - 1e-6, "{end}\n{program}");
+        on_the_level += 1;
+    }
+    assert_eq!(on_the_level, 50);
 }

@@ -511,8 +511,10 @@ pub enum TurningCycle {
     PeckGroove,
     /// G76 (A, B), G78 (C): a thread in several passes.
     ThreadPasses,
-    /// G83 (A): a hole on the axis.
+    /// G83: a hole on the axis.
     DrillFace,
+    /// G85: the same, out again in a feed.
+    BoreFace,
     /// G70 of LinuxCNC: along the contour of a subroutine.
     FinishRoutine,
     /// G71, G71.1, G71.2 of LinuxCNC: passes along Z down to the contour of a subroutine.
@@ -972,6 +974,15 @@ pub enum DrillPecks {
     Chip,
 }
 
+/// What R of a lathe's drilling cycle is in systems B and C.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DrillR {
+    /// A place under G90, a way under G91.
+    Place,
+    /// A way from the start, always.
+    Way,
+}
+
 /// Parameters of a lathe's control that decide how its cycles move; what is not said is not guessed.
 ///
 /// ```
@@ -1001,6 +1012,10 @@ pub struct TurningParameters {
     pub drill_pecks: Option<DrillPecks>,
     /// By how much it does, or stays off what is drilled, mm (parameter 5114).
     pub drill_return_mm: Option<f64>,
+    /// What R of drilling cycles is in systems B and C (parameter 5102.6).
+    pub drill_r: Option<DrillR>,
+    /// Feed out of a hole that G85 bores, in per cent of F (parameter 5121; 0 there is 200).
+    pub bore_return_percent: Option<f64>,
     /// G41 and G42 between P and Q hold in finishing alone: roughing leaves its allowance at the tip as programmed.
     pub nose_in_finishing: bool,
 }

@@ -62,6 +62,23 @@ impl Block<'_> {
                     "добавьте недостающую скобку или уберите эту"
                 ),
             ),
+            Invalid::Text if waits(&shown) => (
+                105,
+                both!(
+                    "`{shown}` waits for another turret or channel",
+                    "`{shown}` ждёт другой суппорт или канал"
+                ),
+                both!(
+                    "this program is one of several that run together",
+                    "эта программа — одна из нескольких, идущих вместе"
+                ),
+                both!(
+                    "correct the program of each turret apart, each with its own profile, without the waits, and put \
+                     them back where they stood",
+                    "исправьте программу каждого суппорта отдельно, со своим профилем и без ожиданий, \
+                     а затем верните их на место"
+                ),
+            ),
             Invalid::Text => match cyrillic_twin(&shown) {
                 Some((cyrillic, latin)) => (
                     105,
@@ -107,6 +124,12 @@ impl Block<'_> {
             .at(self.file_span(Span { start: span.start, end }), label)
             .help(help)
     }
+}
+
+/// A mark at which controls with several channels wait for one another: `!1`, `WAITM(1,1,2)`.
+fn waits(text: &str) -> bool {
+    let upper = text.to_ascii_uppercase();
+    text.starts_with('!') || ["WAITM", "WAITE", "WAITMC"].iter().any(|name| upper.starts_with(name))
 }
 
 /// The Latin letter that the text's first letter looks like, where that is Cyrillic (UTF-8).

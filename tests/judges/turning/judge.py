@@ -107,6 +107,11 @@ def floor_of(spec, lathe):
 def from_start(got, wanted, limit):
     """`got` without its way from where a rapid ended, by no more than a rapid may be off and on the feed's own line, to the start
     of `wanted`."""
+    # A short way of its own to the start, in the air: from where a rapid of one axis left the other.
+    away = np.linalg.norm(got - wanted[0], axis=1)
+    near = int(np.argmax(away <= limit))
+    if 0 < near and away[near] <= limit and (away[: near + 1] <= RAPID_FACTOR * limit).all():
+        return got[near:]
     head = wanted[1] - wanted[0]
     head = head / max(float(np.linalg.norm(head)), 1e-12)
     k, beside = 0, None
@@ -118,6 +123,13 @@ def from_start(got, wanted, limit):
             break
         k, beside = k + 1, across
     return got if beside is None else np.vstack([wanted[0] + beside, got[k:]])
+
+
+def moved(m):
+    """Which of r and z a rapid is asked for: the axes that it moves. A positioning block has its own axes only (contract), so the
+    other one stays where the correction of an earlier place put it."""
+    axes = np.abs(np.array(m.b) - np.array(m.a)) > 1e-9
+    return axes if axes.any() else np.array([True, True])
 
 
 def compare(spec, motions_in, motions_out):
@@ -134,10 +146,11 @@ def compare(spec, motions_in, motions_out):
         if ns[0].tool != tool:
             raise ValueError("another tool")
         if kind == "rapid":
-            wanted = ideal(spec, np.array([ms[-1].b]), tool)
-            got = real(lathe, spec, np.array([ns[-1].b]), tool)
-            if wanted[0, 0] > floor:
-                rapid = max(rapid, float(np.linalg.norm(wanted - got)) / limit)
+            for m, n in zip(ms, ns) if len(ms) == len(ns) else [(ms[-1], ns[-1])]:
+                wanted = ideal(spec, np.array([m.b]), tool)
+                got = real(lathe, spec, np.array([n.b]), tool)
+                if wanted[0, 0] > floor:
+                    rapid = max(rapid, float(np.linalg.norm((wanted - got) * moved(m))) / limit)
             continue
         wanted = folded(ideal(spec, samples(ms), tool), floor)
         got = folded(real(lathe, spec, samples(ns), tool), floor)

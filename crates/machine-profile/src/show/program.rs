@@ -98,6 +98,11 @@ impl Profile {
                 turning.drill_return_mm,
                 Text::pair(" mm", " мм"),
             ),
+            (
+                Text::pair("feed out of bored holes", "подача на выходе из расточки"),
+                turning.bore_return_percent,
+                Text::pair(" % of F", " % от F"),
+            ),
         ];
         let mut said: Vec<Text> = said
             .into_iter()
@@ -123,6 +128,13 @@ impl Profile {
                 Text::pair("pecks break the chip", "врезания ломают стружку")
             } else {
                 Text::pair("pecks go back to R", "после врезания отвод до R")
+            });
+        }
+        if let Some(is_place) = turning.drill_r_is_place {
+            said.push(if is_place {
+                Text::pair("R of holes is a place", "R отверстий — координата")
+            } else {
+                Text::pair("R of holes is a way", "R отверстий — расстояние")
             });
         }
         if turning.nose_in_finishing {

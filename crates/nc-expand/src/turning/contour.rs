@@ -160,6 +160,17 @@ impl Way {
         Some(point)
     }
 
+    /// The part of the way between two of its points.
+    pub(super) fn between(&self, from: Point, to: Point) -> Self {
+        let arc = self.arc.map(|arc| {
+            let turn = std::f64::consts::TAU;
+            let by = self.angle(arc.centre, to) - self.angle(arc.centre, from);
+            let sweep_rad = if arc.sweep_rad > 0.0 { by.rem_euclid(turn) } else { -((-by).rem_euclid(turn)) };
+            Arc { sweep_rad, ..arc }
+        });
+        Self { from, to, arc }
+    }
+
     pub(super) fn shifted(&self, by: Point) -> Self {
         let shift = |p: Point| [p[0] + by[0], p[1] + by[1]];
         let arc = self.arc.map(|arc| Arc { centre: shift(arc.centre), ..arc });

@@ -1,26 +1,143 @@
-//! A hole on the axis: G83 of system A.
+//! Holes on the axis: G83 and G85.
 //!
-//! B-64304EN-1, "Front drilling cycle": along X to the hole, a rapid to R, which counts from where the cycle starts, a feed to
-//! Z, dwell P at the bottom, a rapid back to the start. With Q in pecks: parameter 5101.2 (RTR) says whether each goes back
-//! to R or by the return 5114 (d); down again a rapid ends d above what is drilled. Q is a depth, without a point in least
-//! increments. Systems B and C are refused by their tables: whether R is a place or a way there is a parameter (5102.6).
+//! B-64304EN-1, "Front drilling cycle", "Front boring cycle": along X to the hole, a rapid to R, a feed to Z, dwell P at the
+//! bottom, a rapid back. With Q in pecks: parameter 5101.2 (RTR) says whether each goes back to R or by the return 5114 (d);
+//! down again a rapid ends d above what is drilled. Q is a depth, without a point in least increments. G85 comes back to R in
+//! a feed, by parameter 5121 (0 there doubles F), and from there in a rapid. In system A R counts from where the cycle starts,
+//! and the tool goes back there; in B and C R is a place or a way by parameter 5102.6 (RAB), and G99 leaves the tool at R.
 
 use diagnostic::{Text, both};
-use nc_syntax::dialect::DrillPecks;
-use nc_syntax::{Item, ItemKind, Span, Value};
+use nc_syntax::dialect::{DrillPecks, DrillR};
+use nc_syntax::{Item, ItemKind, Number, Span, Value};
 
-use super::emit::Code;
+use super::emit::{Code, Moves};
 use super::state::Motion;
 use super::{Fault, Spot, Writer};
+use crate::output::{Style, word};
 use crate::shorthand::Words;
 
 /// Pecks of one hole; more are a wrong step.
 const MOST: i64 = 2_000;
 
+/// A hole on the axis, Z in millionths of the unit.
+#[derive(Clone, Copy, Debug)]
+struct Hole {
+    x: i64,
+    start: i64,
+    /// R: where drilling begins.
+    level: i64,
+    sign: i64,
+    deep: i64,
+}
+
+impl Hole {
+    /// The place of a depth below R.
+    fn place(&self, reached: i64) -> Spot {
+        [self.x, self.level + self.sign * reached]
+    }
+}
+
 impl Writer<'_, '_> {
+    /// G83.
     pub(super) fn drill(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
+        self.state.set_return(&words);
         let start = self.standing(&words, span)?;
+        let hole = self.hole(&words, span, start)?;
+        let peck = self.state.depth(&words, b'Q').map_or(hole.deep, i64::abs);
+        let (style, back) =
+            if peck > 0 && peck < hole.deep { self.peck_rules(&words, span)? } else { (DrillPecks::Full, 0) };
+        let peck = if peck == 0 { hole.deep } else { peck };
+        if hole.deep / peck > MOST {
+            return Err(words.cycle_fault(
+                span,
+                both!("a hole of more than 2000 pecks", "отверстие больше чем в 2000 проходов"),
+                both!("Q counts least increments where it has no point", "Q без точки считает дискреты"),
+                both!("correct Z and Q", "исправьте Z и Q"),
+            ));
+        }
+        let mut moves = self.begin(&words, start, b"XZUWRQPK")?;
+        self.go(&mut moves, Code::Rapid, [hole.x, hole.start]);
+        self.go(&mut moves, Code::Rapid, hole.place(0));
+        let mut reached = 0;
+        while reached < hole.deep {
+            if reached > 0 {
+                let up = (reached - back).max(0);
+                if style == DrillPecks::Full {
+                    self.go(&mut moves, Code::Rapid, hole.place(0));
+                }
+                self.go(&mut moves, Code::Rapid, hole.place(up));
+            }
+            reached = (reached + peck).min(hole.deep);
+            self.go(&mut moves, Code::Line, hole.place(reached));
+        }
+        if let Some(dwell) = self.dwell(&words) {
+            self.between(&mut moves, &dwell);
+        }
+        self.go(&mut moves, Code::Rapid, hole.place(0));
+        self.leave(moves, &words, hole);
+        Ok(())
+    }
+
+    /// G85.
+    pub(super) fn bore(&mut self, at: usize, span: Span) -> Result<(), Fault> {
+        let words = self.words(at);
+        self.state.set_return(&words);
+        let start = self.standing(&words, span)?;
+        let hole = self.hole(&words, span, start)?;
+        let Some(percent) = self.turning.cycles.bore_return_percent else {
+            return Err(words.parameter_fault(
+                span,
+                &both!("at which feed G85 leaves its hole", "подача, с которой G85 выходит из отверстия"),
+                "bore_return_percent",
+                "200",
+            ));
+        };
+        let feed = words
+            .number(b'F')
+            .map(|(feed, _)| feed)
+            .or(self.state.feed)
+            .filter(|_| !self.unsure_feed || words.number(b'F').is_some());
+        let (Some(feed), Some(out)) = (feed, feed.and_then(|feed| out_of(feed, percent))) else {
+            return Err(words.cycle_fault(
+                span,
+                both!(
+                    "a boring feed that is not known, or has no point",
+                    "подача расточки неизвестна или без точки"
+                ),
+                both!("out of the hole it is {percent} per cent of F", "на выходе она {percent} % от F"),
+                both!("write F with a point in this block", "напишите в этом кадре F с точкой"),
+            ));
+        };
+        let mut moves = self.begin(&words, start, b"XZUWRPK")?;
+        self.go(&mut moves, Code::Rapid, [hole.x, hole.start]);
+        self.go(&mut moves, Code::Rapid, hole.place(0));
+        self.go(&mut moves, Code::Line, hole.place(hole.deep));
+        if let Some(dwell) = self.dwell(&words) {
+            self.between(&mut moves, &dwell);
+        }
+        self.go_with(&mut moves, Code::Line, hole.place(0), &out);
+        // Behind the hole F holds as it was.
+        let back = [&b"F"[..], &feed_text(feed)].concat();
+        self.between(&mut moves, &back);
+        self.leave(moves, &words, hole);
+        Ok(())
+    }
+
+    /// Back to the start, or from R where G99 leaves the tool there.
+    fn leave(&mut self, mut moves: Moves, words: &Words<'_, '_>, hole: Hole) {
+        if !self.state.returns_to_r {
+            self.go(&mut moves, Code::Rapid, [hole.x, hole.start]);
+        }
+        if let Some((feed, _)) = words.number(b'F') {
+            (self.state.feed, self.unsure_feed) = (Some(feed), false);
+        }
+        self.end(moves);
+        self.state.motion = Motion::Unknown;
+    }
+
+    /// Where the hole lies, what cannot be one refused.
+    fn hole(&self, words: &Words<'_, '_>, span: Span, start: Spot) -> Result<Hole, Fault> {
         let refuse = |what: Text, label: Text, help: Text| Err(words.cycle_fault(span, what, label, help));
         if let Some((number, span)) = words.number(b'K').filter(|(number, _)| number.integer() != Some(1)) {
             return Err(words.cycle_fault(
@@ -33,7 +150,7 @@ impl Writer<'_, '_> {
                 both!("leave K out", "уберите K"),
             ));
         }
-        let [Some(x), Some(bottom)] = self.state.target(&words) else {
+        let [Some(x), Some(target)] = self.state.target(words) else {
             return refuse(
                 both!("where the cycle leads is not known", "неизвестно, куда ведёт цикл"),
                 both!("above 400 km", "больше 400 км"),
@@ -53,68 +170,56 @@ impl Writer<'_, '_> {
                 ),
             );
         }
-        if bottom == start[1] || words.number(b'R').is_none() {
+        let Some(r) = self.state.length(words, b'R') else {
             return refuse(
                 both!("a hole without a depth, or without R", "отверстие без глубины или без R"),
-                both!(
-                    "R is the way from the start to where drilling begins",
-                    "R — путь от начала до места, где начинается сверление"
-                ),
+                both!("R says where drilling begins", "R говорит, где начинается сверление"),
                 both!(
                     "write Z and R, as in `G83 Z-30. R-3. F0.1`",
                     "напишите Z и R, например `G83 Z-30. R-3. F0.1`"
                 ),
             );
-        }
-        let sign = (bottom - start[1]).signum();
-        let approach = self.state.length(&words, b'R').unwrap_or_default();
-        let deep = (bottom - start[1] - approach) * sign;
-        if approach * sign < 0 || deep <= 0 {
+        };
+        let level = if self.r_is_place(words, span)? { r } else { start[1] + r };
+        // Under G91 Z counts from R.
+        let bottom = if self.state.absolute { target } else { target - start[1] + level };
+        let sign = (bottom - level).signum();
+        if sign == 0 || (level - start[1]) * sign < 0 {
             return refuse(
                 both!("R does not lie between the start and the bottom", "R не лежит между началом и дном"),
-                both!("it counts from the start, with its sign", "отсчитывается от начала, со знаком"),
-                both!("R-3. goes 3 mm along -Z", "R-3. — это 3 мм вдоль -Z"),
+                both!(
+                    "from Z {} it would lead to {}",
+                    "от Z {} он привёл бы к {}",
+                    start[1] as f64 / super::MILLION,
+                    level as f64 / super::MILLION
+                ),
+                both!(
+                    "in system A it counts from the start, with its sign: R-3. goes 3 mm along -Z",
+                    "в системе A отсчитывается от начала, со знаком: R-3. — это 3 мм вдоль -Z"
+                ),
             );
         }
-        let peck = self.state.depth(&words, b'Q').map_or(deep, i64::abs);
-        let (style, back) =
-            if peck > 0 && peck < deep { self.peck_rules(&words, span)? } else { (DrillPecks::Full, 0) };
-        let peck = if peck == 0 { deep } else { peck };
-        if deep / peck > MOST {
-            return refuse(
-                both!("a hole of more than 2000 pecks", "отверстие больше чем в 2000 проходов"),
-                both!("Q counts least increments where it has no point", "Q без точки считает дискреты"),
-                both!("correct Z and Q", "исправьте Z и Q"),
-            );
+        Ok(Hole { x, start: start[1], level, sign, deep: (bottom - level) * sign })
+    }
+
+    /// True where R is a place, false where it is a way from the start.
+    fn r_is_place(&self, words: &Words<'_, '_>, span: Span) -> Result<bool, Fault> {
+        // System A knows U and W, and no G91.
+        if self.turning.increments || !self.state.absolute {
+            return Ok(false);
         }
-        let mut moves = self.begin(&words, start, b"XZUWRQPK")?;
-        let level = start[1] + approach;
-        let place = |reached: i64| -> Spot { [x, level + sign * reached] };
-        self.go(&mut moves, Code::Rapid, [x, start[1]]);
-        self.go(&mut moves, Code::Rapid, place(0));
-        let mut reached = 0;
-        while reached < deep {
-            if reached > 0 {
-                let up = (reached - back).max(0);
-                if style == DrillPecks::Full {
-                    self.go(&mut moves, Code::Rapid, place(0));
-                }
-                self.go(&mut moves, Code::Rapid, place(up));
-            }
-            reached = (reached + peck).min(deep);
-            self.go(&mut moves, Code::Line, place(reached));
+        match self.turning.cycles.drill_r {
+            Some(r) => Ok(r == DrillR::Place),
+            None => Err(words.parameter_fault(
+                span,
+                &both!(
+                    "whether R of a hole is a place or a way",
+                    "что такое R отверстия, координата или расстояние,"
+                ),
+                "drill_r",
+                "\"place\"",
+            )),
         }
-        if let Some(dwell) = self.dwell(&words) {
-            self.between(&mut moves, &dwell);
-        }
-        self.go(&mut moves, Code::Rapid, place(0));
-        self.go(&mut moves, Code::Rapid, [x, start[1]]);
-        if let Some((feed, _)) = words.number(b'F') {
-            (self.state.feed, self.unsure_feed) = (Some(feed), false);
-        }
-        self.end(moves);
-        self.state.motion = Motion::Unknown;
-        Ok(())
     }
 
     /// How the control pecks, and by how much it stays off what is drilled, millionths of the unit.
@@ -148,4 +253,27 @@ impl Writer<'_, '_> {
         let item = words.block.items.iter().find(is_p)?;
         Some([b"G4 ", words.block.text(item.span)].concat())
     }
+}
+
+/// F of the way out, as a word; `None` where it would count in increments that are none.
+fn out_of(feed: Number, percent: f64) -> Option<Vec<u8>> {
+    let value = feed.to_f64() * percent / 100.0;
+    let style = if feed.has_point {
+        Style::Decimals(6)
+    } else if value.fract() == 0.0 {
+        Style::Whole
+    } else {
+        return None;
+    };
+    let mut text = Vec::new();
+    word(&mut text, b'F', value, style)?;
+    (value > 0.0).then_some(text)
+}
+
+/// F as it was written, near enough: a number with its point or without.
+fn feed_text(feed: Number) -> Vec<u8> {
+    let mut text = Vec::new();
+    let style = if feed.has_point { Style::Decimals(6) } else { Style::Whole };
+    let _ = word(&mut text, b'F', feed.to_f64(), style);
+    text.split_off(1)
 }

@@ -167,6 +167,8 @@ fn setting(words: &Words<'_, '_>, span: Span) -> Result<bool, Fault> {
             | Action::FeedPerRevolution
             | Action::Absolute
             | Action::Incremental
+            | Action::ReturnInitial
+            | Action::ReturnR
             | Action::Plane(_)
             | Action::CompensationOff
             | Action::Pass { takes_words: false },

@@ -8,8 +8,8 @@
 //! * [`drawing`]: corners and angles of drawings, before all else.
 //! * [`pass`]: one pass there and back, repeated by each block that names a place.
 //! * [`contour`]: the blocks between P and Q as a way in the plane.
-//! * [`rough`]: passes down to a contour, and the contour itself.
-//! * [`pecks`]: grooves and holes; [`drill`]: a hole on the axis.
+//! * [`rough`]: passes down to a contour, and the contour itself; [`pockets`]: where it has pockets.
+//! * [`pecks`]: grooves and holes; [`drill`]: holes on the axis.
 //! * [`routine`]: LinuxCNC's contours, which are subroutines; [`profile`]: their geometry; [`levels`]: passes down to them.
 //! * [`threads`]: a thread in several passes; [`compound`]: that of LinuxCNC.
 //!
@@ -24,6 +24,7 @@ mod emit;
 mod levels;
 mod pass;
 mod pecks;
+mod pockets;
 mod profile;
 mod rough;
 mod routine;
@@ -180,6 +181,10 @@ impl<'b, 'a> Writer<'b, 'a> {
             }
             TurningCycle::DrillFace => {
                 self.drill(at, span)?;
+                Ok(at + 1)
+            }
+            TurningCycle::BoreFace => {
+                self.bore(at, span)?;
                 Ok(at + 1)
             }
             TurningCycle::ThreadPasses => {

@@ -15,16 +15,36 @@ use diagnostic::both;
 use nc_syntax::dialect::TurningCycle;
 use nc_syntax::{ItemKind, Span};
 
-use super::contour::{Axis, Contour, Piece};
+use super::contour::{Axis, Contour, Piece, Point};
 use super::emit::{Code, Moves};
 use super::state::Motion;
 use super::{Fault, MILLION, Spot, Writer, cycle_of};
 use crate::shorthand::{Words, from, shown};
 
 /// Passes of one cycle; more are a wrong depth.
-const MOST_PASSES: i64 = 10_000;
+pub(super) const MOST_PASSES: i64 = 10_000;
 /// Cuts of G73.
 const MOST_CUTS: i64 = 999;
+
+/// Depths nearer than this are one, mm or inches: a millionth is the step of written places.
+pub(super) const SAME: f64 = 1e-6;
+
+/// How the passes of G71 and G72 lie.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Passes {
+    /// The axis of the infeed.
+    pub(super) down: Axis,
+    /// Its sign.
+    pub(super) sign: f64,
+    /// The sign of the way along the other axis.
+    pub(super) forwards: f64,
+    /// Units of radius or Z.
+    pub(super) depth: f64,
+    pub(super) escape: f64,
+    /// Off the contour, and where the passes start.
+    pub(super) allowance: Spot,
+    pub(super) corner: Spot,
+}
 
 /// What the blocks without P and Q said.
 #[derive(Clone, Copy, Debug, Default)]
@@ -218,19 +238,10 @@ impl Writer<'_, '_> {
         let along: Axis = 1 - down;
         let (depth, escape) = self.depths(words, span, down)?;
         let [a, a1, b] = [self.plane(contour.start), contour.entry.way.to, contour.end()];
-        // Named for both axes and yet without pockets, which the ways below show, it is cut as one of type I.
-        if contour.names_both && a1[along] != a[along] {
-            let block = self.words(contour.first);
-            return Err(block.cycle_fault(
-                block.whole(),
-                both!("a contour with pockets (type II)", "контур с карманами (тип II)"),
-                both!("its first block names both axes; how controls cut pockets differs", "в его первом кадре названы обе оси; как стойки режут карманы, у каждой по-своему"),
-                both!("name only the axis of the infeed in the block of P (type I), or let the CAM write the moves", "назовите в кадре P только ось врезания (тип I) или выводите движения из CAM"),
-            ));
-        }
         let sign = (a1[down] - a[down]).signum();
         let forwards = (b[along] - a1[along]).signum();
-        if a1[down] == a[down] || a1[along] != a[along] || b[along] == a1[along] {
+        let aside = a1[along] != a[along];
+        if a1[down] == a[down] || b[along] == a1[along] || (aside && !contour.names_both) {
             let block = self.words(contour.first);
             let name = ["X", "Z"][down];
             return Err(block.contour_fault(
@@ -240,7 +251,26 @@ impl Writer<'_, '_> {
             ));
         }
         self.require_monotone(words, contour, along, forwards)?;
-        self.require_monotone(words, contour, down, -sign)?;
+        let back = self.require_monotone(words, contour, down, -sign);
+        // Named for both axes and yet without pockets, which the ways show, it is cut as one of type I.
+        if contour.names_both && (aside || back.is_err()) {
+            // Where the contour begins behind the start, its passes do too.
+            let behind = (a1[along] - a[along]) * forwards < 0.0;
+            let mut corner = sum(contour.start, allowance);
+            corner[along] = if behind { contour.entry.to[along] + allowance[along] } else { corner[along] };
+            let passes = Passes { down, sign, forwards, depth, escape, allowance, corner };
+            self.go(moves, Code::Rapid, sum(contour.start, allowance));
+            self.go(moves, Code::Rapid, corner);
+            self.pockets(moves, words, contour, &passes)?;
+            self.along(moves, contour, allowance);
+            // It may end in a pocket: straight out of that first.
+            let mut out = moves.at();
+            out[down] = contour.start[down];
+            self.go(moves, Code::Rapid, out);
+            self.go(moves, Code::Rapid, contour.start);
+            return Ok(());
+        }
+        back?;
         let off = self.plane(allowance);
         let pieces: Vec<Piece> = contour
             .pieces
@@ -252,23 +282,20 @@ impl Writer<'_, '_> {
         let from_corner = self.plane(corner);
         let count = ((deepest - from_corner[down]) * sign / depth - 1e-9).ceil() as i64 - 1;
         if count > MOST_PASSES {
-            return Err(words.cycle_fault(
-                span,
-                both!("more than 10000 passes", "больше 10000 проходов"),
-                both!("the depth of cut is too small", "глубина прохода слишком мала"),
-                both!(
-                    "correct the depth of cut: a length without a point may count least increments",
-                    "исправьте глубину прохода: размер без точки может считать дискреты"
-                ),
-            ));
+            return Err(too_many(words, span));
         }
         self.go(moves, Code::Rapid, corner);
         for pass in 1..=count {
             let level = from_corner[down] + sign * depth * pass as f64;
-            let stop = pieces
-                .iter()
-                .find_map(|piece| piece.way.crossing(down, level))
-                .map_or(b[along] + off[along], |point| point[along]);
+            // The first piece that comes up to the level ends the pass, also where it only touches it.
+            let apart = |point: Point| (point[down] - level) * sign;
+            let stop = pieces.iter().map(|piece| piece.way).find(|way| apart(way.to) <= SAME).map_or(
+                b[along] + off[along],
+                |way| {
+                    let nearer = if apart(way.from).abs() < apart(way.to).abs() { way.from } else { way.to };
+                    way.crossing(down, level).unwrap_or(nearer)[along]
+                },
+            );
             if (stop - from_corner[along]) * forwards <= 0.0 {
                 continue;
             }
@@ -404,6 +431,18 @@ impl Writer<'_, '_> {
         self.out.fresh_line();
         self.out.write(&rest, from(block));
     }
+}
+
+pub(super) fn too_many(words: &Words<'_, '_>, span: Span) -> Fault {
+    words.cycle_fault(
+        span,
+        both!("more than 10000 passes", "больше 10000 проходов"),
+        both!("the depth of cut is too small", "глубина прохода слишком мала"),
+        both!(
+            "correct the depth of cut: a length without a point may count least increments",
+            "исправьте глубину прохода: размер без точки может считать дискреты"
+        ),
+    )
 }
 
 /// The axis of the infeed: X of G71, Z of G72.

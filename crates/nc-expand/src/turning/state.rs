@@ -35,6 +35,8 @@ pub(super) struct State {
     pub(super) compensated: bool,
     /// G18 is in force.
     pub(super) in_zx: bool,
+    /// G99 of systems B and C: a drilling cycle ends at R.
+    pub(super) returns_to_r: bool,
     /// G93 is in force.
     pub(super) inverse_time: bool,
     /// G90.1 is in force.
@@ -57,6 +59,7 @@ impl State {
             at: [None; 2],
             compensated: false,
             in_zx: false,
+            returns_to_r: false,
             inverse_time: false,
             centres_absolute: false,
             feed: None,
@@ -110,6 +113,8 @@ impl State {
             Action::Plane(plane) => self.in_zx = *plane == PlaneCode::Zx,
             Action::FeedInverseTime => self.inverse_time = true,
             Action::FeedPerMinute | Action::FeedPerRevolution => self.inverse_time = false,
+            Action::ReturnInitial => self.returns_to_r = false,
+            Action::ReturnR => self.returns_to_r = true,
             Action::ArcCentresAbsolute => self.centres_absolute = true,
             Action::ArcCentresIncremental => self.centres_absolute = false,
             _ if action.keeps_places() => {}
@@ -189,6 +194,17 @@ impl State {
         let Decimal { mantissa, decimals } = number.decimal;
         let step = if number.has_point { 0 } else { step };
         millionths(Decimal { mantissa, decimals: decimals + step })
+    }
+
+    /// G98 and G99 of systems B and C in the block of a cycle.
+    pub(super) fn set_return(&mut self, words: &Words<'_, '_>) {
+        for (action, _) in words.actions() {
+            match action {
+                Action::ReturnInitial => self.returns_to_r = false,
+                Action::ReturnR => self.returns_to_r = true,
+                _ => {}
+            }
+        }
     }
 
     /// True where the block names a place.
