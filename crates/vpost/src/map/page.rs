@@ -184,8 +184,8 @@ fn next_step(study: &Study, facts: &Facts, language: Language) -> String {
     let [x, y, z] = median(study).shift_mm.map(|mm| language.number(mm * 1e3)).into();
     say!(
         language,
-        "What to do: correct programs with this profile. Their paths then stay within {tolerance} \u{b5}m of what is programmed, as far as the model knows the machine. Without correction: move the zero point by what the machine is off on the average, X {x}, Y {y}, Z {z} \u{b5}m.",
-        "Что делать: исправлять программы по этому профилю. Траектория будет в пределах {tolerance} мкм от заданной — насколько модель знает станок. Без исправления: сдвинуть нулевую точку на среднюю погрешность, X {x}, Y {y}, Z {z} мкм."
+        "What to do: correct programs with this profile. Their paths then stay within {tolerance} \u{b5}m of what is programmed, as far as the model knows the machine. Without correction: the machine is off by X {x}, Y {y}, Z {z} \u{b5}m on the average, and a moved zero point takes that away.",
+        "Что делать: исправлять программы по этому профилю. Траектория будет в пределах {tolerance} мкм от заданной — насколько модель знает станок. Без исправления: станок в среднем отходит на X {x}, Y {y}, Z {z} мкм, и сдвиг нулевой точки это снимает."
     )
 }
 
