@@ -342,7 +342,7 @@ fn a_map_opens_without_a_message_is_small_and_the_same_each_time() {
     };
     let visit = visit(browser, &report.page);
     visit.was_quiet();
-    assert_eq!(visit.dom.matches("<section ").count(), 11);
+    assert_eq!(visit.dom.matches("<section ").count(), 12);
     assert_eq!(visit.dom.matches("<svg ").count(), 7);
     // Thinned in the drawing, not in the numbers: 11 of each axis, twice.
     assert_eq!(visit.dom.matches("<circle ").count(), 2 * 11 * 11 * 11);
@@ -424,7 +424,8 @@ fn a_check_shows_the_path_and_the_worst_blocks() {
     };
     let visit = visit(browser, &report.page);
     visit.was_quiet();
-    assert_eq!(visit.dom.matches("<svg ").count(), 2);
+    // Before and after on one scale, and what is left on its own.
+    assert_eq!(visit.dom.matches("<svg ").count(), 3);
     pictures(browser, &report, "check");
 }
 

@@ -404,3 +404,30 @@ fn a_controls_table_replaces_what_the_base_says_of_its_functions() {
     }
     assert_eq!(room.made("x.csv").lines().count(), room.made("x_negative.csv").lines().count());
 }
+
+#[test]
+fn a_reversal_value_of_readings_without_direction_is_refused() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("x.csv");
+    let profile = folder.path().join("x.toml");
+    let calibrated = |rows: &str, directions: &str| {
+        std::fs::write(&file, rows).expect("writable");
+        let _ = std::fs::remove_file(&profile);
+        let name = |path: &std::path::Path| path.to_str().expect("a plain path").to_owned();
+        let chain = ["--chain", "[w X Y b Z t]", "--directions", directions];
+        let ran = run(
+            &[&["calibrate", "interferometer", &name(&file), "-o", &name(&profile)], &chain[..]].concat()
+        );
+        (ran.status.code(), messages(&ran))
+    };
+    let silent = "position_mm,EXX_um\n0,1\n100,2\n200,4\n";
+    let (code, said) = calibrated(silent, "mean");
+    assert!(
+        code == Some(2) && said.contains("from which side X came") && said.contains("column dir"),
+        "{code:?} {said}"
+    );
+    assert!(!profile.exists());
+    assert_eq!(calibrated(silent, "tables").0, Some(0));
+    let both = "position_mm,EXX_um,dir\n0,1,1\n100,2,1\n200,4,1\n200,8,-1\n100,6,-1\n0,5,-1\n";
+    assert_eq!(calibrated(both, "mean").0, Some(0));
+}

@@ -146,11 +146,12 @@ fn texts_of(page: &str) -> String {
 }
 
 /// Names of machines in samples, and of the manuals that tables cite.
-const NAMES: [&str; 7] = [
+const NAMES: [&str; 8] = [
     "Generic VMC as a field (invented errors)",
     "Mill with a crooked tilting table",
     "Tilting rotary table",
     "vpost calibrate",
+    "vpost predict",
     "Mill Operator's Manual",
     "Programming Manual Cycles",
     "Default to Float",

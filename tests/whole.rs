@@ -23,6 +23,7 @@ mod batch_shop;
 mod browser;
 mod browser_calibrate;
 mod browser_lathe;
+mod browser_pages;
 mod browser_viewer;
 mod budget;
 mod calibrate;

@@ -85,10 +85,13 @@ fn of_ini(file: File<'_>) -> Result<Machine, Box<Refusal>> {
             ),
         ));
     }
-    for (travel, letter) in machine.travels_mm.iter_mut().zip(['X', 'Y', 'Z']) {
-        let section = format!("AXIS_{letter}");
+    for (number, (travel, letter)) in machine.travels_mm.iter_mut().zip(['X', 'Y', 'Z']).enumerate() {
+        // Up to LinuxCNC 2.7 axes were numbered, 0 for X, also where one was left out.
+        let sections = [format!("AXIS_{letter}"), format!("AXIS_{number}")];
         let limit = |key: &str| {
-            let Some(value) = first(&section, key) else { return Ok(None) };
+            let Some(value) = sections.iter().find_map(|section| first(section, key)) else {
+                return Ok(None);
+            };
             let number = value.before(&['#', ';']).trimmed();
             number.number().map(|number| Some(number * unit_mm)).ok_or_else(|| {
                 let help = both!("write a number there", "напишите там число");

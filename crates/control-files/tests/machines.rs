@@ -54,3 +54,17 @@ proptest::proptest! {
         let _ = Machine::read("m", &text, None);
     }
 }
+
+#[test]
+fn axes_are_numbered_in_ini_files_up_to_2_7() {
+    // As makerspaces have them still; 3 is A, whatever the coordinates.
+    let text = "[TRAJ]\nLINEAR_UNITS = mm\nCOORDINATES = X Y Z A\n[AXIS_0]\nMIN_LIMIT = -10\nMAX_LIMIT = 130\n\
+        [AXIS_2]\nMIN_LIMIT = -65\nMAX_LIMIT = 10\n[AXIS_3]\nMIN_LIMIT = -360\nMAX_LIMIT = 360\n";
+    let machine = Machine::read("cnc.ini", text.as_bytes(), None).expect("a machine");
+    assert_eq!(machine.travels_mm, [Some([-10.0, 130.0]), None, Some([-65.0, 10.0])]);
+    assert_eq!(machine.rotary, ['A']);
+    // A letter counts more than a number.
+    let both = format!("{text}[AXIS_X]\nMIN_LIMIT = 0\nMAX_LIMIT = 5\n");
+    let machine = Machine::read("cnc.ini", both.as_bytes(), None).expect("a machine");
+    assert_eq!(machine.travels_mm[0], Some([0.0, 5.0]));
+}

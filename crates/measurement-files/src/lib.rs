@@ -1,6 +1,6 @@
 //! People's tables and instrument files: bytes in, values with places out.
 //!
-//! One way for all of them: bytes → text ([`decoded`]: UTF-8, UTF-16, Windows-1251) → cells with places (comments,
+//! One way for all of them: bytes → text ([`decoded`]: UTF-8, UTF-16, Windows-1251, CP866) → cells with places (comments,
 //! quotes, the separator found) → columns by the registry (name, unit, kind, plausible range; headers as people write
 //! them) → the decimal mark found → numbers in the unit that a column's key ends with. What two readings are possible of
 //! is refused. A kind of file is a list of keys, [`Kind`], and what is made of its rows.
@@ -30,6 +30,7 @@
 mod bar;
 pub mod codes;
 mod columns;
+mod foreign;
 mod number;
 mod points;
 mod refusal;

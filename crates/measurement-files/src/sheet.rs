@@ -7,6 +7,7 @@ use diagnostic::{Code, Diagnostic, Text, both, closest};
 use machine_model::{Command, Vector};
 
 use crate::columns::{Column, Holds, Said, said};
+use crate::foreign;
 use crate::number::Mark;
 use crate::refusal::{Codes, Refusal, error};
 use crate::table::{Cell, Record, Table, value};
@@ -77,7 +78,10 @@ impl Sheet {
             Ok((table, columns, mark)) => {
                 Ok(Self { name: name.to_owned(), text, table, columns, mark, codes: kind.codes })
             }
-            Err(diagnostic) => Err(Refusal::of(name, &text, diagnostic)),
+            Err(diagnostic) => {
+                let diagnostic = foreign::instead(bytes, &text, kind.codes).unwrap_or(diagnostic);
+                Err(Refusal::of(name, &text, diagnostic))
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use encoding_rs::{UTF_16BE, UTF_16LE, WINDOWS_1251};
+use encoding_rs::{IBM866, UTF_16BE, UTF_16LE, WINDOWS_1251};
 
 use crate::number::Mark;
 
@@ -25,7 +25,8 @@ pub fn numbered(names: &mut Vec<String>, name: &str) -> usize {
     })
 }
 
-/// The text of a file: UTF-8 with or without a byte order mark, UTF-16 (Excel's "Unicode text"), else Windows-1251.
+/// The text of a file: UTF-8 with or without a byte order mark, UTF-16 (Excel's "Unicode text"), else Windows-1251, or CP866
+/// where its letters are of that page (instruments under DOS).
 ///
 /// Places in what is refused count bytes of this text.
 #[must_use]
@@ -37,8 +38,23 @@ pub fn decoded(bytes: &[u8]) -> Cow<'_, str> {
         // No table begins with NUL, nor has one behind its first letter.
         [1..=0xFF, 0, ..] => UTF_16LE.decode_without_bom_handling(bytes).0,
         [0, 1..=0xFF, ..] => UTF_16BE.decode_without_bom_handling(bytes).0,
+        _ if std::str::from_utf8(bytes).is_err() && is_cp866(bytes) => {
+            IBM866.decode_without_bom_handling(bytes).0
+        }
         _ => utf8_or_1251(bytes),
     }
+}
+
+/// Whether a text that is not UTF-8 has its Cyrillic letters where CP866 has them.
+///
+/// Letters of both pages are 0xE0 to 0xEF. 0x80 to 0xAF are letters of CP866 alone (signs and letters of other languages in
+/// Windows-1251), 0xC0 to 0xDF and 0xF2 to 0xFF of Windows-1251 alone (frames of tables and rare signs in CP866).
+fn is_cp866(bytes: &[u8]) -> bool {
+    let count = |is: fn(&u8) -> bool| bytes.iter().filter(|byte| is(byte)).count();
+    let dos = count(|byte| (0x80..=0xAF).contains(byte));
+    let windows = count(|byte| matches!(byte, 0xC0..=0xDF | 0xF2..=0xFF));
+    // Dashes and quotation marks of other pages stand there, too.
+    dos >= 4 && dos > 2 * windows
 }
 
 /// Part of a text.

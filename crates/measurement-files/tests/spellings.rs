@@ -20,6 +20,7 @@ enum Encoding {
     Utf8,
     Utf8WithMark,
     Windows1251,
+    Cp866,
     Utf16Little,
     Utf16Big,
 }
@@ -44,6 +45,7 @@ fn spelling() -> impl Strategy<Value = Spelling> {
         Just(Encoding::Utf8),
         Just(Encoding::Utf8WithMark),
         Just(Encoding::Windows1251),
+        Just(Encoding::Cp866),
         Just(Encoding::Utf16Little),
         Just(Encoding::Utf16Big)
     ];
@@ -129,6 +131,7 @@ impl Spelling {
         match self.encoding {
             Encoding::Utf8 => text.as_bytes().to_vec(),
             Encoding::Utf8WithMark => [b"\xEF\xBB\xBF", text.as_bytes()].concat(),
+            Encoding::Cp866 => cp866(text),
             Encoding::Windows1251 => encoding_rs::WINDOWS_1251.encode(text).0.into_owned(),
             Encoding::Utf16Little => {
                 [0xFF, 0xFE].into_iter().chain(text.encode_utf16().flat_map(u16::to_le_bytes)).collect()
@@ -191,6 +194,17 @@ proptest! {
             prop_assert_eq!(refusal.source.map(|(_, text)| text), Some(text.into_owned()));
         }
     }
+}
+
+/// A text as a program under DOS writes it.
+fn cp866(text: &str) -> Vec<u8> {
+    let byte = |letter: char| match letter {
+        'А'..='п' => 0x80 + (letter as u32 - 'А' as u32) as u8,
+        'р'..='я' => 0xE0 + (letter as u32 - 'р' as u32) as u8,
+        '°' => 0xF8,
+        _ => u8::try_from(letter).ok().filter(u8::is_ascii).expect("a letter of the page"),
+    };
+    text.chars().map(byte).collect()
 }
 
 /// Message, what it points at, and help.
@@ -265,4 +279,45 @@ fn rows_and_columns_that_do_not_fit_are_refused() {
     check("run,x_mm\n", "no rows", "", "expected");
     check("", "empty", "", "expected");
     check("run,x_\0mm\na,1\n", "no text", "\0", "UTF-8");
+}
+
+/// What people bring in the place of a table; each kind was found in public repositories (docs/instruments.md).
+#[test]
+fn files_that_are_no_table_are_told_what_they_are() {
+    let refused = |bytes: &[u8]| {
+        let refusal = Sheet::read("a", bytes, &KIND, Some(&[])).expect_err("no table");
+        let help = refusal.diagnostic.help.unwrap_or_default();
+        (refusal.diagnostic.message.english().to_owned(), help.english().to_owned())
+    };
+    let cases: [(&[u8], &str, &str); 11] = [
+        (b"PK\x03\x04\x14\0\x06\0", "a workbook", "CSV UTF-8"),
+        (b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "an old workbook", "export the readings"),
+        (b"%PDF-1.7\n%\xE2\xE3\n", "a printed report", "text or CSV"),
+        (
+            b"<?xml version=\"1.0\"?>\n<QIFDocument xmlns=\"x\">\n<A>1, 2</A>\n</QIFDocument>\n",
+            "QIF",
+            "xm_mm",
+        ),
+        (b"<MTConnectDevices><Header/></MTConnectDevices>\n", "MTConnect", "profile new --from"),
+        (b"<data><p x=\"1\"/></data>\n", "it is XML", "export"),
+        (b"{\"x\": [1, 2]}\n", "it is JSON", "header"),
+        (b"[EMC]\nMACHINE = A\n[TRAJ]\nLINEAR_UNITS = mm\n", "INI file", "--linuxcnc-ini"),
+        // Trackers, with a point's name and without.
+        (b"2.612e+03 1.915e+02 -2.745e+01\n2.474e+03 5.049e+02 -2.172e+02\n", "no header", "x_mm"),
+        (b"P5;-274.556;-3189.212;-248.113;;;;\r\nP6;-275.009;-3137.804;-9.537;;;;\r\n", "no header", "xm_mm"),
+        // A coordinate measuring machine.
+        (
+            b"Plug Plate: 2130A\n\n  Meas X   Meas Y    Nom X\n -80.754 -215.282  -80.743\n",
+            "by spaces",
+            "; or a tab",
+        ),
+    ];
+    for (bytes, message, help) in cases {
+        let found = refused(bytes);
+        assert!(
+            found.0.contains(message) && found.1.contains(help),
+            "{}: {found:?}",
+            String::from_utf8_lossy(bytes)
+        );
+    }
 }

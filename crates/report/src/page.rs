@@ -87,9 +87,17 @@ impl Page<'_> {
 #[must_use]
 pub fn table(language: Language, header: &[&str], numbers: &[usize], rows: &[Vec<String>]) -> Markup {
     html! {
-        div.scroll tabindex="0" role="region" aria-label=(say!(language, "Table", "Таблица")) {
+        // A group, not a region: a page has many of them, and readers who jump between regions want its parts.
+        div.scroll tabindex="0" role="group" aria-label=(say!(language, "Table", "Таблица")) {
             table {
-                thead { tr { @for cell in header { th scope="col" { (cell) } } } }
+                thead {
+                    tr {
+                        @for cell in header {
+                            // Nothing is no heading: it would be read out as an empty one.
+                            @if cell.is_empty() { td {} } @else { th scope="col" { (cell) } }
+                        }
+                    }
+                }
                 tbody {
                     @for row in rows {
                         tr {
@@ -120,7 +128,7 @@ pub fn table_of(language: Language, header: &[Text], numbers: &[usize], rows: &[
 pub fn figure(language: Language, drawing: &Markup, caption: &str, numbers: Option<Markup>) -> Markup {
     html! {
         figure {
-            div.scroll tabindex="0" role="region" aria-label=(say!(language, "Drawing", "Рисунок")) { (drawing) }
+            div.scroll tabindex="0" role="group" aria-label=(say!(language, "Drawing", "Рисунок")) { (drawing) }
             figcaption { (shown(caption)) }
             @if let Some(numbers) = numbers { (folded(language, &numbers)) }
         }

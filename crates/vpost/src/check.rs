@@ -57,6 +57,8 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
             limit_mm,
             passed,
             findings: &outcome.findings,
+            origin: crate::origin::Origin::of(&settings.profile),
+            setup: setup(&settings),
         };
         if let Some(path) = &arguments.html {
             let json = String::from_utf8_lossy(&json);
@@ -74,4 +76,15 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
         file::print(outcome.text().in_language(messages.language()).as_bytes())?;
     }
     if passed { Ok(()) } else { Err(Failure::Check) }
+}
+
+/// Zeros, tools and where the axes stand: what decides over a program besides its text.
+fn setup(settings: &settings::Settings) -> Vec<(String, [f64; 3])> {
+    let setup = &settings.setup;
+    let mut all: Vec<(String, [f64; 3])> = setup.work_offsets.clone();
+    all.extend(setup.tools.iter().map(|(number, length_mm)| (format!("H{number}"), *length_mm)));
+    if let [Some(x), Some(y), Some(z)] = setup.start_mm {
+        all.push(("--start-at".to_owned(), [x, y, z]));
+    }
+    all
 }

@@ -23,6 +23,7 @@ pub mod manual;
 pub mod map;
 mod message;
 mod number;
+mod origin;
 mod predict;
 mod profile_command;
 pub mod profile_new;

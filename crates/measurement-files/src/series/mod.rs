@@ -1,10 +1,11 @@
 //! The files interferometers and controls write, as readings of error functions.
 //!
 //! Known by what stands in them: Renishaw RTL (section keys as documented: TARGET DATA, USER-TEXT, RUNS, DEVIATIONS),
-//! tables with one column a run, ISG CSV (mm and rad), LinuxCNC compensation triplets, Heidenhain AXISPOS tables, and the
+//! tables with one column a run, API's means by direction (`.pos`), ISG CSV (mm and rad), LinuxCNC compensation triplets, Heidenhain AXISPOS tables, and the
 //! product's own CSV. What such a file does not say (function, unit, sign) is asked.
 
 mod controls;
+mod directional;
 mod file;
 mod renishaw;
 
@@ -31,6 +32,9 @@ pub fn read(name: &str, bytes: &[u8], told: Told<'_>, ignore: &[String]) -> Resu
     let first = lines().next().unwrap_or_default();
     if lines().any(|l| l.eq_ignore_ascii_case("DEVIATIONS::")) {
         return Ok(vec![renishaw::rtl(&file)?].into());
+    }
+    if lines().any(|l| l.to_lowercase().contains(directional::HEADING)) {
+        return Ok(vec![directional::read(&file)?].into());
     }
     if lines().any(|l| l.to_uppercase().contains("AXISPOS")) {
         return Ok(controls::heidenhain(&file)?.into());
@@ -116,4 +120,37 @@ fn own_csv(name: &str, bytes: &[u8], ignore: &[String]) -> Result<Vec<Series>, B
         ));
     }
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn positioning(text: &str, values: Option<Values>) -> Result<Content, Box<Refusal>> {
+        read("a.pos", text.as_bytes(), Told { symbol: symbol("EXX"), unit: None, values }, &[])
+    }
+
+    /// Written by hand after the headings that a public reader looks for.
+    const MEANS: &str = "Axis X\r\nPosition   \tBidirectional Avg Error\r\n0.000\t0.0010\r\n100.000\t0.0030\r\n\
+        Position   \tForward Directional Avg Error\r\n0.000\t0.0005\r\n100.000\t0.0025\r\n\
+        Position   \tReverse Directional Avg Error\r\n0.000\t0.0015\r\n100.000\t0.0035\r\n";
+
+    #[test]
+    fn means_by_direction_are_read_in_mm_with_the_sign_that_is_told() {
+        let content = positioning(MEANS, Some(Values::Corrections)).expect("a table");
+        let found: Vec<(f64, f64, i8)> =
+            content.series[0].readings.iter().map(|r| (r.position_mm, r.value, r.direction)).collect();
+        assert_eq!(found, [(0.0, -0.0005, 1), (100.0, -0.0025, 1), (0.0, -0.0015, -1), (100.0, -0.0035, -1)]);
+        let one = MEANS.split("Position   \tForward").next().expect("a part");
+        let content = positioning(one, Some(Values::Errors)).expect("a table");
+        let found: Vec<(f64, i8)> =
+            content.series[0].readings.iter().map(|r| (r.value, r.direction)).collect();
+        assert_eq!(found, [(0.001, 0), (0.003, 0)]);
+    }
+
+    #[test]
+    fn what_sign_the_means_have_is_asked() {
+        let refusal = positioning(MEANS, None).expect_err("a question");
+        assert!(refusal.diagnostic.message.english().contains("what the axis did, or what the control adds"));
+    }
 }

@@ -106,8 +106,8 @@ impl Viewer<'_> {
                     header {
                         p.muted { (t(&of_kind("kind"))) }
                         div.tongues.needs-script role="group" data-label="languages" {
-                            button #en type="button" lang="en" aria-label="English" { "EN" }
-                            button #ru type="button" lang="ru" aria-label="Русский" { "RU" }
+                            button #en type="button" lang="en" aria-label="EN, English" { "EN" }
+                            button #ru type="button" lang="ru" aria-label="RU, русский" { "RU" }
                         }
                         h1 { (t(&of_kind("head"))) }
                         p #seen.muted.needs-script {}
@@ -222,7 +222,7 @@ impl Viewer<'_> {
                 p #place.muted {}
                 table #picked tabindex="-1" {
                     caption { (t("displaced")) }
-                    thead { tr { th scope="col" {} th scope="col" { "X" } th scope="col" { "Y" } th scope="col" { "Z" } th scope="col" { (t("size")) } } }
+                    thead { tr { td {} th scope="col" { "X" } th scope="col" { "Y" } th scope="col" { "Z" } th scope="col" { (t("size")) } } }
                     tbody {
                         (row("r", "k-real", format!("real_{kind}")))
                         (row("a", "k-corrected", format!("corrected_{kind}")))

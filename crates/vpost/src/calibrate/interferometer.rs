@@ -152,6 +152,7 @@ fn change(
         let own = session.change(axis, all, Gauge { zero, without_slopes }, temperature_c)?;
         let mut changed = session.changed(axis, &own, zero)?;
         if arguments.directions == Directions::Mean {
+            say_directions(axis, all)?;
             changed = changed.averaged(axis.direction());
         }
         write_axis(output, arguments, axis, &changed)?;
@@ -205,6 +206,26 @@ fn change(
         let whole = changes.iter().flatten().all(Option::is_some) && asked.rad.iter().all(Option::is_some);
         if whole { own } else { output.with_base_mm(own, messages) }
     }))
+}
+
+/// A reversal value of readings that all came from nobody knows where is a guess.
+fn say_directions(axis: Axis, all: &[Series]) -> Result<(), Failure> {
+    let mut own = all.iter().filter(|s| s.axis == axis && s.function == axis.direction()).peekable();
+    let is_silent =
+        own.peek().is_some() && own.flat_map(|s| &s.readings).all(|reading| reading.direction == 0);
+    if !is_silent {
+        return Ok(());
+    }
+    Err(Failure::option(
+        both!(
+            "`--directions mean`: no reading of E{axis}{axis} says from which side {axis} came, and its reversal value is made of that",
+            "`--directions mean`: ни один отсчёт E{axis}{axis} не говорит, с какой стороны подошла ось {axis}, а зона реверса находится по этому"
+        ),
+        both!(
+            "add the column dir (1 upwards, -1 downwards), or leave the option out: one table for both directions is written then",
+            "добавьте столбец dir (1 — вверх, -1 — вниз) или уберите ключ: тогда таблица будет одна на оба направления"
+        ),
+    ))
 }
 
 /// What the set-up hides, and what was taken for it.

@@ -20,6 +20,9 @@ pub(super) struct Facts<'a> {
     pub limit_mm: f64,
     pub passed: bool,
     pub findings: &'a [Text],
+    pub origin: crate::origin::Origin,
+    /// What holds before the program begins: zeros and tools by name.
+    pub setup: Vec<(String, [f64; 3])>,
 }
 
 /// Blocks listed.
@@ -88,6 +91,25 @@ fn head(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Marku
                 "По исходной программе инструмент отходит от траектории до {before} мкм, по исправленной — до {after} мкм; допустимо {limit} мкм"
             ))
         }
+        p { (next_step(facts, language)) }
+        (facts.origin.line(language))
+    }
+}
+
+/// What to do with this result.
+fn next_step(facts: &Facts<'_>, language: Language) -> String {
+    if facts.passed {
+        say!(
+            language,
+            "Run the corrected program. It counts for this machine as its profile describes it, with the zeros and tools below.",
+            "Запускайте исправленную программу. Она годится для этого станка, каким его описывает профиль, с нулями и инструментами ниже."
+        )
+    } else {
+        say!(
+            language,
+            "Do not run the corrected program: see the findings, and correct the program as posted once more.",
+            "Исправленную программу не запускайте: смотрите, что найдено, и исправьте исходную программу заново."
+        )
     }
 }
 
@@ -135,8 +157,9 @@ fn paths(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Mark
         );
         return html! { p { (why) } };
     };
-    let before = comparison.before.largest_mm * 1e3;
-    let after = comparison.after.largest_mm.max(facts.limit_mm) * 1e3;
+    let left = comparison.after.largest_mm.max(facts.limit_mm) * 1e3;
+    // One scale for before and after: what the correction brings is what is seen.
+    let both = (comparison.before.largest_mm * 1e3).max(left);
     let drawing = |title: &str, value: fn(&Trace) -> f64, largest: f64| {
         let all = stretches(&comparison.traces, value, largest);
         path(language, title, solid, &all, largest, MICROMETRES.in_language(language))
@@ -150,12 +173,21 @@ fn paths(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Mark
     let corrected = say!(language, "Tool path as corrected", "Траектория по исправленной программе");
     let corrected_caption = say!(
         language,
-        "The same motions, coloured by the distance that is left after the correction, on a scale of its own that ends at what is allowed, or at the largest if that is more.",
-        "Те же движения; цвет — расстояние, которое осталось после исправления, на своей шкале: она кончается на допустимом или на наибольшем, если оно больше."
+        "The same motions as corrected, on the same scale.",
+        "Те же движения по исправленной программе, на той же шкале."
+    );
+    let rest = say!(language, "What is left", "Что осталось");
+    let rest_caption = say!(
+        language,
+        "The same on a scale of its own, which ends at what is allowed, or at the largest if that is more.",
+        "То же на своей шкале: она кончается на допустимом или на наибольшем, если оно больше."
     );
     html! {
-        (figure(language, &drawing(&posted, |t| t.before_mm * 1e3, before), &posted_caption, None))
-        (figure(language, &drawing(&corrected, |t| t.after_mm * 1e3, after), &corrected_caption, None))
+        (figure(language, &drawing(&posted, |t| t.before_mm * 1e3, both), &posted_caption, None))
+        (figure(language, &drawing(&corrected, |t| t.after_mm * 1e3, both), &corrected_caption, None))
+        @if both > left {
+            (figure(language, &drawing(&rest, |t| t.after_mm * 1e3, left), &rest_caption, None))
+        }
     }
 }
 
@@ -268,6 +300,11 @@ fn provenance(facts: &Facts<'_>, language: Language) -> Markup {
             dt { (say!(language, "machine", "станок")) } dd { (shown(facts.machine)) }
             dt { (say!(language, "profile and its tables", "профиль и его таблицы")) } dd { (shown(facts.profile)) " " span.muted { "BLAKE3 " (facts.profile_hash) } }
             dt { (say!(language, "model", "модель")) } dd { (facts.engine) }
+            @for (name, place) in &facts.setup {
+                dt { (shown(name)) }
+                dd { (place.map(|v| language.digits(v, 3)).join(" ")) (say!(language, " mm", " мм")) }
+            }
+            (facts.origin.rows(language))
             dt { (say!(language, "made by", "создано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.check/1" }
         }
     }

@@ -146,18 +146,10 @@ fn facts(
     measured: &Measured,
     holdout: Option<&Measured>,
 ) -> Result<Facts, Failure> {
-    let calibrated = model.profile.calibrated.as_ref().map_or_else(String::new, |c| {
-        let temperature = c.temperature_c.map(|t| format!("{t} \u{b0}C"));
-        [c.date.clone(), temperature, c.instrument.clone()]
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join(", ")
-    });
     Ok(Facts {
         machine: model.profile.name.clone(),
         chain: model.profile.chain().to_string(),
-        calibrated,
+        origin: crate::origin::Origin::of(&model.profile),
         profile: File {
             name: file::name(machine(&shared.job)?),
             hash: model.hash.to_string(),

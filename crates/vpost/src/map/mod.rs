@@ -3,6 +3,7 @@
 mod arguments;
 mod curves;
 mod deformation;
+mod dominant;
 mod drawn;
 mod export;
 mod json;
@@ -18,6 +19,7 @@ pub use arguments::Map;
 use diagnostic::both;
 use jobs::map::model;
 use machine_model::{Range, Volume};
+use report::text::Numbers;
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
@@ -37,9 +39,9 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
         .writes("--html", arguments.html.as_deref())
         .writes("--viewer", arguments.viewer.as_deref())
         .are_apart()?;
-    let conditions = conditions::conditions(&shared.job)?;
+    let under = conditions::conditions(&shared.job)?;
     let id = profile.forward_engine(shared.job.engine());
-    let engine = profile.engine(id, &conditions).map_err(|error| conditions::failure(&error))?;
+    let engine = profile.engine(id, &under).map_err(|error| conditions::failure(&error))?;
     let model = model(engine.as_ref())?;
     let asked = options::read(arguments, shared, &profile, model.volume())?;
     jobs::map::require_tool(model, asked.tool_mm)?;
@@ -56,7 +58,13 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
     if let Some(path) = &arguments.json {
         file::write(path, &json::bytes(&study))?;
     }
-    let facts = facts(arguments, shared, &profile, machine(&shared.job)?, &loaded.hash);
+    let dominant = dominant::dominant(&profile, id, &under, &asked);
+    let doubts = conditions::doubts(&profile, id).into_iter().flat_map(|report| report.diagnostics);
+    let facts = page::Facts {
+        dominant,
+        doubts: doubts.map(|doubt| messages.language().prose(&doubt.message)).collect(),
+        ..facts(arguments, shared, &profile, machine(&shared.job)?, &loaded.hash)
+    };
     if let Some(path) = &arguments.viewer {
         viewer::write(path, &profile, model, (&study, &asked), &facts, (shared, messages))?;
     }
@@ -86,6 +94,10 @@ fn facts(
         profile: file::name(path),
         profile_hash: hash.to_string(),
         options,
+        origin: crate::origin::Origin::of(profile),
+        dominant: Vec::new(),
+        doubts: Vec::new(),
+        tolerance_um: shared.job.tolerance.unwrap_or(profile.correction.tolerance_um),
     }
 }
 

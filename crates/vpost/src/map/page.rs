@@ -11,9 +11,11 @@ use report::scale::nice;
 use report::text::{MICROMETRES, Numbers, shown};
 
 use super::deformation;
+use super::dominant::{self, Dominant};
 use super::drawn::{classes, median};
 use super::study::{Part, Study};
 use super::text::{freedom_name, proof};
+use crate::origin::Origin;
 
 /// Nodes drawn along an axis of the volume, at most: thinned in the drawing, not in the numbers.
 const SPOTS: usize = 11;
@@ -27,6 +29,13 @@ pub(super) struct Facts {
     pub profile_hash: String,
     /// Conditions and options as they were typed.
     pub options: Vec<(&'static str, String)>,
+    pub origin: Origin,
+    /// Deviations, first the one that matters most.
+    pub dominant: Vec<Dominant>,
+    /// What is doubtful of the profile: signs, orders, units.
+    pub doubts: Vec<String>,
+    /// What a corrected program keeps to, µm.
+    pub tolerance_um: f64,
 }
 
 /// The page.
@@ -71,9 +80,20 @@ pub(super) fn html(study: &Study, facts: &Facts, json: &str, language: Language)
             body: zero_points(study, language),
         },
     ];
+    if !facts.dominant.is_empty() {
+        sections.insert(
+            1,
+            Section {
+                id: "deviations",
+                title: Text::pair("What makes it", "Из чего она складывается"),
+                body: dominant::section(&facts.dominant, language),
+            },
+        );
+    }
+    let slices = sections.iter().position(|section| section.id == "slices").map_or(0, |at| at + 1);
     if let Some(body) = deformations(study, language) {
         sections.insert(
-            5,
+            slices,
             Section {
                 id: "deformation",
                 title: Text::pair("Stretch, shear and rotation", "Растяжение, сдвиг и поворот"),
@@ -109,7 +129,7 @@ pub(super) fn html(study: &Study, facts: &Facts, json: &str, language: Language)
             "Карта погрешностей \u{2014} {}",
             study.machine
         ),
-        head: head(study, language),
+        head: head(study, facts, language),
         sections,
         json,
         foot: &say!(
@@ -122,7 +142,7 @@ pub(super) fn html(study: &Study, facts: &Facts, json: &str, language: Language)
     .into_html()
 }
 
-fn head(study: &Study, language: Language) -> Markup {
+fn head(study: &Study, facts: &Facts, language: Language) -> Markup {
     let (before, after) = (&study.parts[0].figures, &median(study).figures);
     let [largest, largest_after] = [before, after].map(|f| um(f.magnitude_mm.high, language));
     let [rms, rms_after] = [before, after].map(|f| um(f.rms_mm, language));
@@ -144,7 +164,29 @@ fn head(study: &Study, language: Language) -> Markup {
                 "Узлов {nodes}: в пределах {within} мкм сейчас {share}, после сдвига нулевой точки на геометрическую медиану {share_after}. Среднее квадратическое значение (СКЗ) погрешности: {rms} мкм до, {rms_after} мкм после."
             ))
         }
+        @if let Some(makes) = dominant::sentence(&facts.dominant, language) { p { (shown(&makes)) } }
+        p { (next_step(study, facts, language)) }
+        @for doubt in &facts.doubts { p { strong { (say!(language, "Doubtful: ", "Сомнительно: ")) } (shown(doubt)) } }
+        (facts.origin.line(language))
     }
+}
+
+/// What to do, and what it will bring.
+fn next_step(study: &Study, facts: &Facts, language: Language) -> String {
+    let tolerance = language.number(facts.tolerance_um);
+    if study.parts[0].figures.magnitude_mm.high <= study.within_mm {
+        return say!(
+            language,
+            "All of it is within what is asked: programs may stay as they are.",
+            "Всё в пределах заданного: программы можно не исправлять."
+        );
+    }
+    let [x, y, z] = median(study).shift_mm.map(|mm| language.number(mm * 1e3)).into();
+    say!(
+        language,
+        "What to do: correct programs with this profile. Their paths then stay within {tolerance} \u{b5}m of what is programmed, as far as the model knows the machine. Without correction: the machine is off by X {x}, Y {y}, Z {z} \u{b5}m on the average, and a moved zero point takes that away.",
+        "Что делать: исправлять программы по этому профилю. Траектория будет в пределах {tolerance} мкм от заданной — насколько модель знает станок. Без исправления: станок в среднем отходит на X {x}, Y {y}, Z {z} мкм, и сдвиг нулевой точки это снимает."
+    )
 }
 
 fn figures(study: &Study, language: Language) -> Markup {
@@ -606,6 +648,7 @@ fn provenance(study: &Study, facts: &Facts, language: Language) -> Markup {
             dd { (vector(&study.tool_mm, 3)) (say!(language, " mm", " мм")) }
             dt { (say!(language, "rotary axes", "поворотные оси")) } dd { (vector(&study.rotary_rad.map(f64::to_degrees), 3)) "\u{b0}" }
             @for (name, value) in &facts.options { dt { (name) } dd { (shown(value)) } }
+            (facts.origin.rows(language))
             dt { (say!(language, "made by", "создано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.map/1" }
         }
     }

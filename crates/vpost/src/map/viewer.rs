@@ -93,6 +93,7 @@ pub(super) fn write(
         facts: &[
             ("fact_machine", format!("{}, {}", study.machine, facts.chain)),
             ("fact_profile", format!("{} (BLAKE3 {})", facts.profile, facts.profile_hash)),
+            ("fact_calibrated", facts.origin.said(messages.language())),
             ("fact_engine", study.engine.name().to_owned()),
             ("fact_grid", grid.collect::<Vec<_>>().join(", ")),
             ("fact_tool", format!("{} mm", vector(&study.tool_mm))),

@@ -10,6 +10,7 @@ use turning::Lathe;
 use super::judged::{Form, Outline, mm, ridges, um};
 use super::surface::{HIGHEST_WAVE, Stretch, Surface, Turned};
 use crate::message::{Failure, Wording};
+use crate::origin::Origin;
 use crate::settings::Settings;
 
 mod outline;
@@ -186,6 +187,7 @@ impl Shown<'_> {
             @if let Some((cylinder, form)) = worst { p { (self.say(&what(cylinder.stretch, form))) } }
             (self.gain(worst.map(|(cylinder, _)| cylinder)))
             p { (self.say(&self.kept())) }
+            (Origin::of(&self.facts.settings.profile).line(self.language))
         }
     }
 
@@ -401,6 +403,7 @@ impl Shown<'_> {
                 dd { (shown(&settings.profile_name)) " " span.muted { "BLAKE3 " (settings.profile_hash.to_string()) } }
                 dt { (say!(self.language, "places along Z", "места вдоль Z")) }
                 dd { (self.turned.places.len()) ", " (self.language.figures(mm(self.surface.step_mm))) " " (say!(self.language, "mm apart", "мм друг от друга")) }
+                (Origin::of(&settings.profile).rows(self.language))
                 dt { (say!(self.language, "made by", "сделано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.turned/1" }
             }
             p.muted { (self.say(&both!(

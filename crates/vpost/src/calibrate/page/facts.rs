@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use crate::arguments::Shared;
 use crate::figures::round;
 use crate::message::Failure;
+use crate::origin::{command, command_row};
 use crate::{file, profile};
 
 use super::super::output::Target;
@@ -156,35 +157,8 @@ impl Facts {
                     }
                 }
                 dt { (say!(language, "made by", "создано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", " (SCHEMA) }
-                dt { (say!(language, "command", "команда")) } dd { code { (shown(&self.command)) } }
+                (command_row(language))
             }
         }
-    }
-}
-
-/// The command as it was typed, quoted for a shell.
-fn command() -> String {
-    let typed: Vec<String> = std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()).collect();
-    quoted(&typed)
-}
-
-fn quoted(typed: &[String]) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "_-./,:=+@%".contains(c);
-    let word = |word: &String| {
-        if !word.is_empty() && word.chars().all(plain) {
-            word.clone()
-        } else {
-            format!("'{}'", word.replace('\'', "'\\''"))
-        }
-    };
-    std::iter::once("vpost".to_owned()).chain(typed.iter().map(word)).collect::<Vec<_>>().join(" ")
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn a_command_can_be_typed_again() {
-        let typed = ["a b.csv", "--chain", "[w X b Z t]", "it's", "", "-m=x.toml"].map(str::to_owned);
-        assert_eq!(super::quoted(&typed), "vpost 'a b.csv' --chain '[w X b Z t]' 'it'\\''s' '' -m=x.toml");
     }
 }

@@ -9,8 +9,8 @@ pub(in crate::diagnose) struct Facts {
     pub machine: String,
     /// Its kinematic chain.
     pub chain: String,
-    /// When, at what temperature and with what it was calibrated.
-    pub calibrated: String,
+    /// When, how warm and with what it was measured.
+    pub origin: crate::origin::Origin,
     /// The profile, with the hash of its tables.
     pub profile: File,
     /// The measurements.

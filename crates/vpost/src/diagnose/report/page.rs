@@ -143,7 +143,37 @@ fn head(d: &Diagnosis, facts: &Facts, language: Language) -> Markup {
                 ))
             }
         }
+        @if let Some(gain) = gain(d, language) { p { (gain) } }
+        (facts.origin.line(language))
     }
+}
+
+/// What a correction by the causes will bring, and what unseen rows say of it.
+fn gain(d: &Diagnosis, language: Language) -> Option<String> {
+    let s = d.causes.last()?.shrink_predicted;
+    let [low, mid, high] = [s.low, s.mid, s.high].map(|share| language.percent(share));
+    let mut said = say!(
+        language,
+        "With the causes in the profile the gap is forecast to shrink by {mid} ({low} to {high}).",
+        "С причинами в профиле расхождение, по прогнозу, уменьшится на {mid} (от {low} до {high})."
+    );
+    said.push(' ');
+    match &d.holdout {
+        Some(held) => {
+            let kept = language.percent(held.shrink);
+            said.push_str(&say!(
+                language,
+                "On unseen rows it shrank by {kept}.",
+                "На новых строках оно уменьшилось на {kept}."
+            ));
+        }
+        None => said.push_str(&say!(
+            language,
+            "No unseen rows prove it: add --holdout FILE.",
+            "Новыми строками это не проверено: добавьте --holdout FILE."
+        )),
+    }
+    Some(said)
 }
 
 /// What a verdict asks of its reader.

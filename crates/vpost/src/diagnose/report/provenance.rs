@@ -42,7 +42,6 @@ pub(super) fn body(d: &Diagnosis, facts: &Facts, language: Language) -> Markup {
         dl {
             dt { (say!(language, "machine", "станок")) }
             dd { (shown(&facts.machine)) (say!(language, ", chain ", ", цепь ")) (shown(&facts.chain)) }
-            @if !facts.calibrated.is_empty() { dt { (say!(language, "calibrated", "калибровка")) } dd { (shown(&facts.calibrated)) } }
             (file(&say!(language, "measurements", "измерения"), &facts.measurements))
             (file(&say!(language, "profile and its tables", "профиль и его таблицы"), &facts.profile))
             @if let Some(holdout) = &facts.holdout { (file(&say!(language, "unseen points", "новые точки"), holdout)) }
@@ -54,6 +53,7 @@ pub(super) fn body(d: &Diagnosis, facts: &Facts, language: Language) -> Markup {
             @if !facts.without.is_empty() {
                 dt { (say!(language, "effects left out", "исключённые эффекты")) } dd { (shown(&facts.without.join(", "))) }
             }
+            (facts.origin.rows(language))
             dt { (say!(language, "made by", "создано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.diagnosis/1" }
         }
         @if !d.notes.is_empty() {

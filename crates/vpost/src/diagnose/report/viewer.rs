@@ -105,7 +105,7 @@ impl Report<'_> {
             facts: &[
                 ("fact_measurements", format!("{name} (BLAKE3 {})", facts.measurements.hash)),
                 ("fact_machine", format!("{}, {}", facts.machine, facts.chain)),
-                ("fact_calibrated", facts.calibrated.clone()),
+                ("fact_calibrated", facts.origin.said(messages.language())),
                 ("fact_profile", format!("{} (BLAKE3 {})", facts.profile.name, facts.profile.hash)),
                 ("fact_engine", facts.engine.clone()),
                 ("fact_command", format!("vpost {} diagnose", env!("CARGO_PKG_VERSION"))),

@@ -1,0 +1,112 @@
+//! Which deviations make the error of a map: what the first screen names.
+
+use diagnostic::{Language, say};
+use error_budget::{Budget, Machine};
+use machine_model::effects::Conditions;
+use machine_model::{EngineId, Vector, WithEffects};
+use machine_profile::Profile;
+use maud::{Markup, html};
+use rayon::prelude::*;
+use report::page::table;
+use report::text::Numbers;
+
+use super::options::{Asked, command};
+
+/// Nodes along an axis: the largest error of a smooth machine lies at an end or near one.
+const NODES: usize = 5;
+/// Named on the first screen.
+const NAMED: usize = 3;
+
+/// One deviation, and what it does to the largest error of the map.
+pub(super) struct Dominant {
+    pub name: String,
+    /// The largest error of the machine with it alone, mm.
+    pub alone_mm: f64,
+    /// The largest error of the machine without it, mm.
+    pub without_mm: f64,
+}
+
+/// The deviations of the rigid-body model, first the one without which the largest error is smallest; none for models that
+/// have no deviations to be taken out one by one.
+pub(super) fn dominant(
+    profile: &Profile,
+    id: EngineId,
+    conditions: &Conditions,
+    asked: &Asked,
+) -> Vec<Dominant> {
+    if id != EngineId::RigidBody {
+        return Vec::new();
+    }
+    // Under these conditions the engine was built already.
+    let Ok(model) = profile.machine(conditions) else { return Vec::new() };
+    let machine = Machine::new(model);
+    let places: [Vec<f64>; 3] = asked.grid.axes().each_ref().map(|nodes| {
+        let all = nodes.places_mm();
+        let kept = all.len().min(NODES);
+        (0..kept).map(|k| all[if kept > 1 { k * (all.len() - 1) / (kept - 1) } else { 0 }]).collect()
+    });
+    let mut commands = Vec::new();
+    for z in &places[2] {
+        for y in &places[1] {
+            commands.extend(places[0].iter().map(|x| command(asked, Vector::new(*x, *y, *z), [0; 3])));
+        }
+    }
+    let evaluate = |model: &WithEffects| -> Vec<Vector> {
+        use machine_model::PathModel;
+        commands.par_iter().map(|command| model.error_mm(command)).collect()
+    };
+    let Some(budget) = Budget::new(&machine, evaluate) else { return Vec::new() };
+    budget
+        .items
+        .iter()
+        .map(|item| Dominant {
+            name: machine.deviations()[item.deviation].name.clone(),
+            alone_mm: item.alone.largest_mm,
+            without_mm: item.without.largest_mm,
+        })
+        .collect()
+}
+
+fn um(mm: f64, language: Language) -> String {
+    language.number(mm * 1e3)
+}
+
+/// The sentence of the first screen; nothing where nothing is known of single deviations.
+pub(super) fn sentence(all: &[Dominant], language: Language) -> Option<String> {
+    let largest = all.iter().map(|own| own.alone_mm).fold(0.0, f64::max);
+    let named: Vec<String> = all
+        .iter()
+        .take(NAMED)
+        // A tenth of the largest is none that one would begin with.
+        .filter(|own| own.alone_mm > 0.1 * largest)
+        .map(|own| {
+            let (name, um) = (&own.name, um(own.alone_mm, language));
+            say!(language, "{name} (alone {um} \u{b5}m)", "{name} (одно {um} мкм)")
+        })
+        .collect();
+    let named = named.join(", ");
+    (!named.is_empty())
+        .then(|| say!(language, "What makes most of it: {named}.", "Больше всего вносят: {named}."))
+}
+
+/// All of them as a table.
+pub(super) fn section(all: &[Dominant], language: Language) -> Markup {
+    let rows: Vec<Vec<String>> = all
+        .iter()
+        .map(|own| vec![own.name.clone(), um(own.alone_mm, language), um(own.without_mm, language)])
+        .collect();
+    let header = match language {
+        Language::English => ["deviation", "largest with it alone, \u{b5}m", "largest without it, \u{b5}m"],
+        Language::Russian => ["отклонение", "наибольшее с ним одним, мкм", "наибольшее без него, мкм"],
+    };
+    html! {
+        p {
+            (say!(
+                language,
+                "Symbols of ISO 230-1. At up to five places along each axis of the map; `vpost budget` says more, and what each deviation may be.",
+                "Обозначения по ISO 230-1. До пяти мест вдоль каждой оси карты; больше, в том числе допуск на каждое отклонение, говорит `vpost budget`."
+            ))
+        }
+        (table(language, &header, &[1, 2], &rows))
+    }
+}
