@@ -25,7 +25,6 @@ MILLS = ["fanuc", "haas", "mitsubishi", "okuma", "mach", "perspektiva", "linuxcn
 AMBIGUOUS = {
     "peck-with-chip-breaking.nc": "how far G73 retreats is a parameter of the control",
     "tool-length-by-h0.nc": "G43 H0 is the tool in the spindle on LinuxCNC, no length elsewhere",
-    "cycle-repeated-by-l.nc": "what an increment of R counts from",
 }
 # Controls differ in the decimals they write: more than that, and less than any other meaning.
 ROUNDING_UM = 50.0
@@ -70,6 +69,7 @@ def judge(vpost, only):
             for path in programs(own):
                 shutil.copy(path, source)
         for named in MILLS:
+            print(f"under {named}: so far {tried} tried, {len(wrong)} wrong", flush=True)
             for own in MILLS:
                 if own == named or (only and named != only):
                     continue
