@@ -1,5 +1,6 @@
 //! Bad input: a clear error, no output, the right exit status, and an earlier output left alone.
 
+use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Write};
 use std::process::Stdio;
 
@@ -135,7 +136,85 @@ fn all_refusals_at_once() {
     error[VP0101]: `X+-3` is not a number a control reads
     ");
     assert!(said.contains("2 more blocks like it"), "{said}");
+    // Remarks in a form that the control has not: other words in every block, and one way out.
+    let remarks = b"G21 G90 G54; METRIC\nG0 X0 Y0 Z50.; rapid\nG1 X10. F100.; cut\nM30\n";
+    let said = Trial::new().refused(remarks, &["-d", "fanuc"]);
+    assert!(said.matches("error[").count() == 1 && said.contains("2 more blocks like it"), "{said}");
     assert_eq!(said.matches("help:").count(), errors.len());
+}
+
+const PLAIN: &str = "format = 1\nname = \"Square\"\ncontrol = \"fanuc\"\nchain = \"[w X Y b Z t]\"\n[axis.X]\ntravel_mm = [-500, 500]\n\
+    [axis.Y]\ntravel_mm = [-500, 500]\n[axis.Z]\ntravel_mm = [-500, 500]\n[squareness]\nEC0Y_urad = 60.0\n";
+
+/// What the help of a refusal says to write under a section, between its first backquotes.
+fn written<'s>(said: &'s str, section: &str) -> &'s str {
+    let line =
+        said.lines().find(|line| line.contains(section)).unwrap_or_else(|| panic!("{section}: {said}"));
+    line.split('`').nth(1).expect("an entry")
+}
+
+/// Lengths that the profile lacks are one refusal, and so are zeros: two entries mend the program.
+#[test]
+fn what_one_table_of_the_profile_settles_is_one_refusal() {
+    let trial = Trial::new();
+    let mut program = String::from("G21 G90 G17 G40 G80\n");
+    for (tool, zero) in [(1, "G54"), (2, "G54"), (7, "G55"), (2, "G57")] {
+        write!(program, "T{tool} M6\n{zero}\nG0 G43 H{tool} Z50.\nX0. Y0.\nG1 Z10. F200.\nX40.\n")
+            .expect("a text");
+    }
+    let part = trial.file("part.nc", format!("{program}M30\n").as_bytes());
+    let bare = trial.file("bare.toml", PLAIN.as_bytes());
+    let ran = run(&[&part, "-m", &bare]);
+    let said = messages(&ran);
+    assert_eq!((ran.status.code(), said.matches("error[").count()), (Some(1), 2), "{said}");
+    let lengths = written(&said, "`[tool]`");
+    assert_eq!(lengths, "lengths_mm = { H1 = 120.0, H2 = 120.0, H7 = 120.0 }");
+    assert!(said.contains("one more block like it"), "H2 twice: {said}");
+    let offsets = said.lines().find(|line| line.contains("`[work_offsets_mm]`")).expect("offsets");
+    let offsets: Vec<&str> = offsets.split('`').filter(|part| part.starts_with('G')).collect();
+    assert_eq!(offsets, ["G54 = [X, Y, Z]", "G55 = [X, Y, Z]", "G57 = [X, Y, Z]"]);
+    // What it says to write mends the program.
+    let offsets = offsets.join("\n").replace("[X, Y, Z]", "[0, 0, 0]");
+    let mended = format!("{PLAIN}[tool]\n{lengths}\n[work_offsets_mm]\n{offsets}\n");
+    let ran = run(&[&part, "-m", &trial.file("mended.toml", mended.as_bytes())]);
+    assert!(ran.status.success(), "{}", messages(&ran));
+}
+
+/// `vpost batch` sums refusals by what settles them: one entry of the profile for all programs.
+#[test]
+fn a_batch_says_what_mends_it() {
+    let trial = Trial::new();
+    let programs = trial.folder.path().join("release");
+    std::fs::create_dir(&programs).expect("a folder");
+    for (name, tool) in [("a", 1), ("b", 2), ("c", 2)] {
+        let text = format!(
+            "G21 G90 G17 G54\nT{tool} M6\nG0 G43 H{tool} Z50.\nG1 Z10. F200.\nG0 X0. Y0.\nG1 X40.\nM30\n"
+        );
+        std::fs::write(programs.join(format!("{name}.nc")), text).expect("written");
+    }
+    let programs = programs.to_str().expect("a plain path");
+    let batch = |profile: &str, out: &str| {
+        let (profile, out) = (trial.file("machine.toml", profile.as_bytes()), trial.folder.path().join(out));
+        let ran = run(&["batch", programs, "-m", &profile, "-O", out.to_str().expect("a plain path")]);
+        (ran.status.code(), String::from_utf8_lossy(&ran.stdout).into_owned())
+    };
+    let zero = format!("{PLAIN}[work_offsets_mm]\nG54 = [0, 0, 0]\n");
+    let (status, table) = batch(&zero, "first");
+    assert!(status == Some(1) && table.contains("       3  VP0215  "), "{table}");
+    let lengths = written(&table, "`[tool]`");
+    assert_eq!(lengths, "lengths_mm = { H1 = 120.0, H2 = 120.0 }");
+    // The next cause comes to light: the same key for all three.
+    let with_lengths = format!("{zero}[tool]\n{lengths}\n");
+    let (status, table) = batch(&with_lengths, "second");
+    assert!(status == Some(1) && table.contains("       3  VP0213  "), "{table}");
+    let change = written(&table, "`[program]`");
+    assert_eq!(change, "tool_change = { keeps = \"XYZ\" }");
+    // Nobody knows yet where X and Y stand at the start: only the program can say.
+    let (status, table) = batch(&format!("{with_lengths}[program]\n{change}\n"), "third");
+    assert!(
+        status == Some(1) && table.contains("       3  VP0213  ") && table.contains("help: program a rapid"),
+        "{table}"
+    );
 }
 
 #[test]

@@ -49,6 +49,7 @@ impl Options {
     }
 }
 
+const SAMPLES_HEADING: &str = "# LinuxCNC's samples\n";
 const SAMPLES: &str = "# LinuxCNC's samples\n\nMade by `cargo run -p xtask -- corpus`: every program that comes with LinuxCNC, corrected for a wide crooked machine \
          (`tests/profiles/linuxcnc_samples.toml`), with the program's own folder as `--include`. Where a message names an option as the way out (`--set` for a variable, `--start-at`), it is given: 100 for a \
          variable. Each corrected one goes through the closed loop \
@@ -124,12 +125,20 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
     let made = wrapped(&section(&samples, &intro));
     if options.only.is_none() {
         let page = std::fs::read_to_string(&options.page).unwrap_or_default();
-        let (before, after) = page.split_at(page.find(SUITE_HEADING).unwrap_or(page.len()));
-        let (one, other) =
-            if options.suite.is_some() { (before, made.as_str()) } else { (made.as_str(), after) };
-        std::fs::write(&options.page, format!("{}\n\n{other}", one.trim_end()).trim_end().to_owned() + "\n")?;
+        let heading = if options.suite.is_some() { SUITE_HEADING } else { SAMPLES_HEADING };
+        std::fs::write(&options.page, with_section(&page, heading, &made))?;
     }
     Ok(made)
+}
+
+/// The page with its section of a heading made anew; what stands before and behind it stays.
+fn with_section(page: &str, heading: &str, made: &str) -> String {
+    let start = page.find(heading).unwrap_or(page.len());
+    let (before, old) = page.split_at(start);
+    let behind = old.find("\n# ").map_or("", |end| &old[end..]);
+    let parts = [before, made, behind].map(str::trim);
+    let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    parts.join("\n\n") + "\n"
 }
 
 fn programs(folder: &Path, found: &mut Vec<PathBuf>) -> anyhow::Result<()> {
@@ -407,4 +416,18 @@ fn shown(verdict: &Verdict) -> String {
 /// Text that fits a cell of a table.
 fn cell(text: &str) -> String {
     text.replace('|', "/").replace('<', "&lt;").chars().take(140).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_section;
+
+    #[test]
+    fn a_section_is_made_anew_between_the_others() {
+        let page = "# A\n\nold\n\n## A1\n\n# B\n\nkept\n\n# C\n\nkept\n";
+        let expected = "# A\n\nnew\n\n# B\n\nkept\n\n# C\n\nkept\n";
+        assert_eq!(with_section(page, "# A\n", "# A\n\nnew\n"), expected);
+        assert!(with_section(page, "# B\n", "# B\n").ends_with("# B\n\n# C\n\nkept\n"));
+        assert!(with_section(page, "# D\n", "# D\n\nnew\n").ends_with("# C\n\nkept\n\n# D\n\nnew\n"));
+    }
 }

@@ -4,6 +4,7 @@
 //! of, never a file name, line or column: those are found where the message is printed (`vpost`).
 //! The list of codes with cause and remedy is `docs/diagnostics.md`.
 
+mod entry;
 mod language;
 mod others;
 mod speaks;
@@ -12,6 +13,7 @@ mod text;
 use std::fmt;
 use std::ops::Range;
 
+pub use entry::Entry;
 pub use language::{Language, russian_plural};
 pub use others::{of_system, of_toml};
 pub use speaks::Speaks;
@@ -57,13 +59,23 @@ pub struct Diagnostic {
     pub label: Text,
     /// What to type.
     pub help: Option<Text>,
+    /// What the profile lacks, where entries of one of its tables settle it.
+    pub entries: Vec<Entry>,
 }
 
 impl Diagnostic {
     /// An error.
     #[must_use]
     pub fn error(code: Code, message: Text) -> Self {
-        Self { code, severity: Severity::Error, message, span: None, label: Text::EMPTY, help: None }
+        Self {
+            code,
+            severity: Severity::Error,
+            message,
+            span: None,
+            label: Text::EMPTY,
+            help: None,
+            entries: Vec::new(),
+        }
     }
     /// A warning.
     #[must_use]
@@ -80,6 +92,12 @@ impl Diagnostic {
     pub fn at(mut self, span: Range<u64>, label: Text) -> Self {
         self.span = Some(span);
         self.label = label;
+        self
+    }
+    /// Says which entry of the profile settles it.
+    #[must_use]
+    pub fn settled_by(mut self, entry: Entry) -> Self {
+        self.entries.push(entry);
         self
     }
     /// Says what to do.

@@ -158,8 +158,8 @@ fn correct_expanded(
     });
     let mut corrected = match result {
         Ok(corrected) => corrected,
-        Err(PipelineEnd::Refused(mut diagnostics)) => {
-            diagnostics.extend(rewrite::refused_besides(expanded.text(), &job, &diagnostics));
+        Err(PipelineEnd::Refused(diagnostics)) => {
+            let diagnostics = rewrite::all_refusals(expanded.text(), &job, diagnostics);
             return Err(Failure::Refused(reports(&expanded, name, text, diagnostics)));
         }
         Err(PipelineEnd::Failed(failure)) => return Err(failure),

@@ -229,6 +229,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
         },
         cycle_repeats: cycles.repeats.into_bytes(),
         zero_repeats_define: cycles.zero_repeats == ZeroRepeats::Define,
+        bottom_lies_below_r: cycles.bottom_lies_below_r,
         length_of_loaded_tool: tool_length.without_h == WithoutH::LoadedTool,
         length_under_g40: match tool_length.under_g40 {
             UnderG40::Stays => LengthAfter::Stays,

@@ -214,6 +214,8 @@ pub(crate) struct Cycles {
     pub(crate) repeats: String,
     #[serde(default)]
     pub(crate) zero_repeats: ZeroRepeats,
+    #[serde(default)]
+    pub(crate) bottom_lies_below_r: bool,
     pub(crate) peck_clearance_mm: Spanned<f64>,
     pub(crate) chip_retreat_mm: Spanned<f64>,
 }

@@ -3,7 +3,7 @@
 //! Controls share most of their codes, and what one of them alone writes gives it away: `VC1=5`, `CYCLE81(`, `TOOL CALL`.
 //! A program is refused by the first of these that its dialect cannot read; that it is the dialect that is wrong, and not
 //! the block, is said here. A sign that the dialect does read, as something else, refuses the program by itself
-//! (`G15 H1`, see [`crate::Evidence`]).
+//! (`G15 H1`, `M97 P1000`, see [`crate::Evidence`]).
 
 use std::ops::Range;
 
@@ -24,6 +24,13 @@ struct Control {
     signs: &'static [Sign],
 }
 
+impl Control {
+    fn reads(&self, dialect: &Dialect) -> bool {
+        let of = |name: &str| self.dialects.contains(&name);
+        of(&dialect.name) || dialect.extends.as_deref().is_some_and(of)
+    }
+}
+
 /// What stands in a line: letters upper case, blanks of any number as one, none at either end.
 #[derive(Clone, Copy)]
 enum Sign {
@@ -39,10 +46,31 @@ enum Sign {
     Ends(&'static str),
 }
 
-/// The place of Okuma in [`CONTROLS`].
-const OKUMA: usize = 1;
+/// A control that one block gives away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sure {
+    Okuma,
+    Haas,
+    Sinumerik,
+}
 
-const CONTROLS: [Control; 5] = [
+impl Sure {
+    /// Its place in [`CONTROLS`].
+    const fn place(self) -> usize {
+        match self {
+            Self::Okuma => 1,
+            Self::Sinumerik => 2,
+            Self::Haas => 5,
+        }
+    }
+
+    /// The dialect reads this control's programs.
+    pub(crate) fn is_read_by(self, dialect: &Dialect) -> bool {
+        CONTROLS[self.place()].reads(dialect)
+    }
+}
+
+const CONTROLS: [Control; 6] = [
     Control {
         name: "Heidenhain",
         dialects: &[],
@@ -114,6 +142,7 @@ const CONTROLS: [Control; 5] = [
             Sign::Numbered("#", "="),
         ],
     },
+    Control { name: "Haas", dialects: &["haas"], signs: &[Sign::Numbered("M97 P", "")] },
 ];
 
 /// Names the control that a program looks written for: VP0246, where its dialect is none of that control's.
@@ -137,11 +166,7 @@ pub fn looks_like(text: &[u8], dialect: &Dialect) -> Option<Diagnostic> {
     }
     let most = counts.iter().copied().max().filter(|most| *most > 0)?;
     // What the dialect's own control has too tells nothing.
-    let reads = |control: &Control| {
-        let of = |name: &str| control.dialects.contains(&name);
-        of(&dialect.name) || dialect.extends.as_deref().is_some_and(of)
-    };
-    if CONTROLS.iter().zip(counts).any(|(control, count)| count == most && reads(control)) {
+    if CONTROLS.iter().zip(counts).any(|(control, count)| count == most && control.reads(dialect)) {
         return None;
     }
     let index = counts.iter().position(|count| *count == most)?;
@@ -171,8 +196,8 @@ fn named(control: &Control, dialect: &Dialect, span: Range<u64>) -> Diagnostic {
 }
 
 /// VP0246 for a block that another control alone writes, and that this dialect reads as something else.
-pub(crate) fn sure(dialect: &Dialect, span: Range<u64>) -> Diagnostic {
-    named(&CONTROLS[OKUMA], dialect, span)
+pub(crate) fn sure(control: Sure, dialect: &Dialect, span: Range<u64>) -> Diagnostic {
+    named(&CONTROLS[control.place()], dialect, span)
 }
 
 /// A line without its number and its comments, upper case, blanks as one.

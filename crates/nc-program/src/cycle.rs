@@ -162,6 +162,7 @@ pub(crate) fn holes(
             )));
     }
     let (r_mm, bottom_mm) = levels(env, words, state, &cycle, normal, &shift)?;
+    below_r(env, words, state, r_mm, bottom_mm)?;
     if let ReturnLevel::Undecided { line } = state.return_level {
         return Err(words
             .refuse(
@@ -366,6 +367,35 @@ fn levels(
                 )))
         }
     }
+}
+
+/// Some controls drill downwards only, and stop where the bottom would lie above R.
+fn below_r(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    state: &Modal,
+    r_mm: f64,
+    bottom_mm: f64,
+) -> Outcome<()> {
+    if !env.dialect.bottom_lies_below_r || r_mm >= bottom_mm {
+        return Ok(());
+    }
+    let above_mm = bottom_mm - r_mm;
+    let message = both!(
+        "the bottom of the hole lies {above_mm:.3} mm above R, and dialect {} stops there",
+        "дно отверстия на {above_mm:.3} мм выше R; стойка диалекта {} здесь останавливается",
+        env.dialect.name
+    );
+    let label = both!("R and the depth in force", "действующие R и глубина");
+    let refusal = words.refuse(codes::CYCLE_WORDS, message, words.span(AXIS_LETTERS.or(R)), label);
+    Err(refusal.help(if state.distance == Distance::Incremental {
+        both!(
+            "under G91 this control counts R from the level before the cycle and the depth from R, also where an earlier block wrote them: write both again, or take the dialect that the program was posted for",
+            "при G91 эта стойка отсчитывает R от уровня до цикла, а глубину от R, даже если их написал прежний кадр: напишите оба снова или возьмите диалект, для которого выведена программа"
+        )
+    } else {
+        both!("correct R or the depth", "исправьте R или глубину")
+    }))
 }
 
 fn incomplete(words: &Words<'_, '_, '_>, missing: &str) -> Box<diagnostic::Diagnostic> {

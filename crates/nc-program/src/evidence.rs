@@ -13,7 +13,7 @@ use nc_syntax::dialect::{Action, GCode, LatheSign, PointFree};
 use nc_syntax::{Block, Dialect, ItemKind, Number, PlainLine, Reader, Value, Word};
 use smallvec::SmallVec;
 
-use crate::alike;
+use crate::alike::{self, Sure};
 use crate::codes;
 use crate::setup::Setup;
 use crate::words::is_motion;
@@ -21,6 +21,10 @@ use nc_syntax::Letters;
 
 /// G15
 const POLAR_OFF: GCode = GCode(150);
+/// As increments no program is smaller, whatever it positions and cuts.
+const SMALLEST_PROGRAM: u64 = 1000;
+/// Of fewer lengths nothing is concluded.
+const FEWEST_BARE: u64 = 4;
 /// No more codes are named in one message.
 const MOST_NAMED: usize = 8;
 
@@ -87,8 +91,12 @@ pub struct Evidence {
     ends: bool,
     /// The number with which the text ends, without a line end.
     cut_number: Option<Place>,
-    /// `G15 H1`, where G15 is another code: Okuma's work offset.
-    other_control: Option<Place>,
+    /// The largest of [`Evidence::bare`], increments.
+    largest_bare: u64,
+    /// What another control alone writes: `G15 H1`, where G15 is another code, is Okuma's work offset; `M97 P1000` is Haas's
+    /// call of a block; `%_N_` begins a
+    /// program's name on Sinumerik.
+    other_control: Option<(Sure, Place)>,
 }
 
 impl Evidence {
@@ -123,7 +131,10 @@ impl Evidence {
                     let word = Word { letter, value, span: item.span };
                     match (letter, value) {
                         (b'G', _) => seen.code(&word, questions.dialect),
-                        (b'M', Value::Number(number)) => self.miscellaneous(block, &word, number, questions),
+                        (b'M', Value::Number(number)) => {
+                            seen.local_call |= calls_a_block(number, questions.dialect);
+                            self.miscellaneous(block, &word, number, questions);
+                        }
                         _ => {}
                     }
                 }
@@ -134,9 +145,15 @@ impl Evidence {
                 _ => {}
             }
         }
+        if block.bytes.starts_with(b"%_N_") && !Sure::Sinumerik.is_read_by(questions.dialect) {
+            self.belongs_to(Sure::Sinumerik, block);
+        }
         self.states_unit |= seen.unit;
-        if seen.polar_off && !seen.length && letters.any(Letters::of(b"H")) && self.other_control.is_none() {
-            self.other_control = Some(place(block, block.file_range()));
+        if seen.polar_off && !seen.length && letters.any(Letters::of(b"H")) {
+            self.belongs_to(Sure::Okuma, block);
+        }
+        if seen.local_call && letters.any(Letters::of(b"P")) {
+            self.belongs_to(Sure::Haas, block);
         }
         self.acts |= !letters.without(Letters::of(b"NO")).is_empty();
         if !letters.is_empty() || !questions.dialect.commands.is_empty() {
@@ -182,6 +199,7 @@ impl Evidence {
             names,
             changes_tool,
             bare,
+            largest_bare,
             first_bare,
             first_pointed,
             first_length,
@@ -201,6 +219,7 @@ impl Evidence {
         (0..3).for_each(|i| self.names[i] |= names[i]);
         self.changes_tool |= changes_tool;
         self.bare += bare;
+        self.largest_bare = self.largest_bare.max(*largest_bare);
         self.states_unit |= states_unit;
         self.unknown += unknown;
         self.unknown_codes.extend(unknown_codes.iter().cloned());
@@ -213,13 +232,19 @@ impl Evidence {
             (&mut self.first_length, first_length),
             (&mut self.first_unknown, first_unknown),
             (&mut self.opened, opened),
-            (&mut self.other_control, other_control),
         ] {
             if first.is_none() {
                 first.clone_from(later);
             }
         }
+        if self.other_control.is_none() {
+            self.other_control.clone_from(other_control);
+        }
         self.cut_number.clone_from(cut_number);
+    }
+
+    fn belongs_to(&mut self, control: Sure, block: &Block<'_>) {
+        self.other_control.get_or_insert_with(|| (control, place(block, block.file_range())));
     }
 
     fn sign(&mut self, sign: usize, place: impl FnOnce() -> Place) {
@@ -275,6 +300,7 @@ impl Evidence {
             self.first_pointed.get_or_insert_with(|| place.clone());
         } else if number.decimal.mantissa != 0 {
             self.bare += 1;
+            self.largest_bare = self.largest_bare.max(number.decimal.mantissa.unsigned_abs());
             self.first_bare.get_or_insert_with(|| place.clone());
         }
     }
@@ -284,10 +310,13 @@ impl Evidence {
     /// # Errors
     /// VP0246 for a program of another control, VP0240 for one of a lathe, VP0241 for one that mixes lengths with and without a point.
     pub fn refusal(&self, questions: &Questions<'_>) -> Result<(), Box<Finding>> {
-        if let Some(at) = &self.other_control {
-            return Err(Box::new((alike::sure(questions.dialect, at.span.clone()), at.line)));
+        if let Some((control, at)) = &self.other_control {
+            return Err(Box::new((alike::sure(*control, questions.dialect, at.span.clone()), at.line)));
         }
         if let Some(finding) = self.of_a_lathe(questions.dialect) {
+            return Err(Box::new(finding));
+        }
+        if let Some(finding) = self.too_small() {
             return Err(Box::new(finding));
         }
         let (Some(bare), Some(pointed)) = (&self.first_bare, &self.first_pointed) else { return Ok(()) };
@@ -305,6 +334,26 @@ impl Evidence {
             .at(bare.span.clone(), label)
             .help(both!("`--decimal increments` where Z10 is ten steps (0.010 mm), `--decimal millimetres` where it is Z10.; or `decimal = \"…\"` under `[program]` in the profile", "`--decimal increments`, если Z10 — десять дискрет (0.010 мм), `--decimal millimetres`, если это Z10.; или `decimal = \"…\"` в разделе `[program]` профиля"));
         Err(Box::new((diagnostic, bare.line)))
+    }
+
+    /// Read as increments, the whole program would lie within a thousand of them: no cutter works so small, and none
+    /// positions so near. Somebody wrote `X40` for forty millimetres.
+    fn too_small(&self) -> Option<Finding> {
+        let bare = self.first_bare.as_ref().filter(|_| self.first_pointed.is_none())?;
+        if self.bare < FEWEST_BARE || self.largest_bare >= SMALLEST_PROGRAM {
+            return None;
+        }
+        let message = both!(
+            "no length has a decimal point, and read as increments the largest would be {} of them",
+            "ни у одного размера нет десятичной точки, и, если это дискреты, в наибольшем их {}",
+            self.largest_bare
+        );
+        let label = both!("the first: so small is no program", "первый; таких маленьких программ не бывает");
+        let diagnostic = Diagnostic::error(codes::BARE_LENGTHS, message).at(bare.span.clone(), label).help(both!(
+            "`--decimal millimetres` where X40 is forty millimetres, or the dialect that the program was posted for (`--dialect`); `--decimal increments` where it is 0.040 mm",
+            "`--decimal millimetres`, если X40 — сорок миллиметров, или диалект, для которого выведена программа (`--dialect`); `--decimal increments`, если это 0.040 мм"
+        ));
+        Some((diagnostic, bare.line))
     }
 
     /// What is doubtful about the program, all of it read: VP0242 to VP0245.
@@ -463,6 +512,8 @@ struct Seen {
     length: bool,
     /// G0 to G3.
     moves: bool,
+    /// M97, where the dialect has none.
+    local_call: bool,
 }
 
 impl Seen {
@@ -483,6 +534,15 @@ impl Seen {
             Action::Dwell | Action::Pass { takes_words: true } | Action::Turning(_) | Action::Refuse { .. }
         );
     }
+}
+
+/// M97 of Haas, under a dialect that has no such code.
+fn calls_a_block(number: Number, dialect: &Dialect) -> bool {
+    const LOCAL_CALL: u16 = 97;
+    number.integer() == Some(i64::from(LOCAL_CALL))
+        && dialect.m_code(LOCAL_CALL).is_none()
+        && !dialect.flow.local_calls
+        && !dialect.flow.calls(i64::from(LOCAL_CALL))
 }
 
 fn place(block: &Block<'_>, span: Range<u64>) -> Place {

@@ -1,6 +1,6 @@
 //! Where a block's axis words lead, and what is said where that cannot be known.
 
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Diagnostic, Entry, Text, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::Action;
 use toolpath::{AXIS_NAMES, Frame, Position};
@@ -304,7 +304,12 @@ fn unknown(words: &Words<'_, '_, '_>, message: Text, span: Span, lost: &[(char, 
         "запрограммируйте перед этим кадром быстрый ход `G90 G0 {}`{tool_change:#}{start:#}",
         names.join(" ")
     );
-    words.refuse(codes::POSITION_UNKNOWN, message, span, reasons(lost)).help(help)
+    let refusal = words.refuse(codes::POSITION_UNKNOWN, message, span, reasons(lost));
+    if lost.iter().all(changed) {
+        let entry = Entry::new("program", None, "tool_change", "{ keeps = \"XYZ\" }");
+        return refusal.settled_by(entry).help(help);
+    }
+    refusal.help(help)
 }
 
 /// `X, Y not known since the start of the program; Z not known since the reference return in line 12`.

@@ -1,6 +1,6 @@
 //! What the codes of a block set before anything moves, whatever their order in the block.
 
-use diagnostic::both;
+use diagnostic::{Entry, both};
 use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
 use nc_syntax::{Dialect, Span};
 use toolpath::Plane;
@@ -660,6 +660,12 @@ fn cycle_frame(words: &Words<'_, '_, '_>, before: &Modal, after: &Modal) -> Outc
         )))
 }
 
+/// A name as a key of the profile: with a point in it it is quoted.
+fn toml_key(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if name.chars().all(bare) { name.to_owned() } else { format!("\"{name}\"") }
+}
+
 /// The refusal of an offset nobody gave.
 pub(crate) fn missing_offset(
     words: &Words<'_, '_, '_>,
@@ -673,6 +679,7 @@ pub(crate) fn missing_offset(
             span,
             both!("given by no profile, file or option", "его нет ни в профиле, ни в файлах, ни в ключах"),
         )
+        .settled_by(Entry::new("work_offsets_mm", None, toml_key(name), "[X, Y, Z]"))
         .help(both!("`--work-offset {name}=X,Y,Z` with the machine coordinates of the program's zero, or `{name} = [X, Y, Z]` under `[work_offsets_mm]` in the profile", "`--work-offset {name}=X,Y,Z` с координатами станка, где лежит нуль программы, или `{name} = [X, Y, Z]` в разделе `[work_offsets_mm]` профиля"
         ))
 }

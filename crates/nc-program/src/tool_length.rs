@@ -1,6 +1,6 @@
 //! T, H, G43, G44, G49 and G43.1: which tool length is in force.
 
-use diagnostic::{Text, both};
+use diagnostic::{Entry, Text, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::LengthAfter;
 
@@ -238,6 +238,7 @@ fn take(
                 span,
                 both!("given by no profile, file or option", "его нет ни в профиле, ни в файлах, ни в ключах"),
             )
+            .settled_by(length_entry(offset, env.dialect.turning.is_some()))
             .help(if env.dialect.turning.is_some() {
                 both!("`--tool H{offset}=X,0,Z` in mm, X a radius, or `lengths_mm = {{ H{offset} = [X, 0, Z] }}` under `[tool]` in the profile", "`--tool H{offset}=X,0,Z` в мм, где X — радиус, или `lengths_mm = {{ H{offset} = [X, 0, Z] }}` в разделе `[tool]` профиля"
                 )
@@ -275,6 +276,12 @@ fn bring_in(
     }
     state.tool_length = length;
     Ok(())
+}
+
+/// The entry of the profile that gives a length.
+fn length_entry(number: u32, turning: bool) -> Entry {
+    let value = if turning { "[X, 0, Z]" } else { "120.0" };
+    Entry::new("tool", Some("lengths_mm"), format!("H{number}"), value)
 }
 
 /// The code that ends cutter compensation, where it may end a tool length too.
@@ -382,7 +389,7 @@ pub(crate) fn length(
     let Some(vector) = written(words, span, number, state)?.or_else(|| env.setup.tool(number)) else {
         let message = both!("tool length H{number} is not given", "длина инструмента H{number} не задана");
         let at = if words.has(H) { words.span(H) } else { span };
-        return Err(words.refuse(codes::TOOL_LENGTH, message, at, both!("given by no profile, file or option", "его нет ни в профиле, ни в файлах, ни в ключах")).help(
+        return Err(words.refuse(codes::TOOL_LENGTH, message, at, both!("given by no profile, file or option", "его нет ни в профиле, ни в файлах, ни в ключах")).settled_by(length_entry(number, false)).help(
             both!("`--tool H{number}=120` for a length of 120 mm, or `lengths_mm = {{ H{number} = 120.0 }}` under `[tool]` in the profile", "`--tool H{number}=120` для длины 120 мм или `lengths_mm = {{ H{number} = 120.0 }}` в разделе `[tool]` профиля"),
         ));
     };

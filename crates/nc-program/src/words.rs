@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Code, Diagnostic, Entry, Text, both};
 use nc_syntax::dialect::{Action, CodeEntry, GCode};
 use nc_syntax::{Block, Dialect, Invalid, ItemKind, Letters, Number, Span, Value};
 use smallvec::SmallVec;
@@ -495,6 +495,12 @@ fn whole(number: Number) -> Option<u64> {
 pub(crate) struct Refusal(Box<Diagnostic>);
 
 impl Refusal {
+    /// Says which entry of the profile settles it.
+    pub(crate) fn settled_by(mut self, entry: Entry) -> Self {
+        self.0.entries.push(entry);
+        self
+    }
+
     pub(crate) fn help(mut self, help: Text) -> Box<Diagnostic> {
         self.0.help = Some(help);
         self.0

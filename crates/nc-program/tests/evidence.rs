@@ -103,6 +103,32 @@ fn bare_lengths_alone_are_counted() {
     assert!(doubts[0].0.message.english().starts_with("2 length(s)"), "{}", doubts[0].0.message);
 }
 
+/// `X40` of a post for LinuxCNC, read by a control that counts increments: a part of 0.04 mm is none.
+#[test]
+fn a_program_of_forty_increments_is_refused() {
+    let small = "G21\nG0 X10 Y10 Z60\nG1 Z-5 F200\nX40 Y30\n";
+    assert_eq!(verdict("fanuc", small), [(242, 2, "X10".to_owned())]);
+    let refused = |dialect_name: &str, text: &str, setup: &Setup| {
+        let questions = Questions::new(dialect(dialect_name), setup);
+        Evidence::of(text.as_bytes(), &questions).refusal(&questions).is_err()
+    };
+    let open = Setup::default();
+    assert!(refused("fanuc", small, &open) && !refused("linuxcnc", small, &open));
+    // One length of a millimetre, a point, or who says what they are: nothing is contradicted.
+    assert!(!refused("fanuc", &small.replace("Z60", "Z1000"), &open));
+    assert!(!refused("fanuc", small, &Setup { lengths_settled: true, ..Setup::default() }));
+    assert!(!refused("fanuc", "G21\nG0 X10\nG0 Y10\n", &open), "two lengths say nothing");
+}
+
+#[test]
+fn what_one_control_alone_writes_refuses_under_others() {
+    assert_eq!(codes("linuxcnc", "G21\nG0 X1. Y1.\nM97 P1000 L3\n"), [246]);
+    assert_eq!(codes("fanuc", "G21\nG0 X1. Y1.\nM97 P1000\n"), [246]);
+    assert_eq!(codes("haas", "G21\nG0 X1. Y1.\nM97 P1000\n"), [0; 0]);
+    assert_eq!(codes("mach", "%_N_PART_MPF\nG21\nG0 X1. Y1.\n"), [246]);
+    assert_eq!(codes("sinumerik", "%_N_PART_MPF\nG0 X1. Y1.\n"), [0; 0]);
+}
+
 #[test]
 fn unknown_m_codes_are_one_doubt_with_their_count() {
     assert_eq!(verdict("fanuc", "G21\nM3\nM777\nM8\nM12\nM777 M98 P1\n"), [(243, 3, "M777".to_owned())]);

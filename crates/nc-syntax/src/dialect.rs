@@ -1098,6 +1098,8 @@ pub struct Dialect {
     pub cycle_repeats: Vec<u8>,
     /// A count of zero stores the words of the cycle and makes no hole; where false it is an error.
     pub zero_repeats_define: bool,
+    /// The control stops at a cycle whose bottom lies above R (LinuxCNC).
+    pub bottom_lies_below_r: bool,
     /// G43 without H, and with H0, takes the length of the tool in the spindle (LinuxCNC); where false it needs H, and
     /// H0 is no length.
     pub length_of_loaded_tool: bool,

@@ -56,5 +56,5 @@ mod words;
 pub use check::{Checked, Unreadable, check, courses};
 pub use job::*;
 pub use large::{Digest, Large, LargeEnd, Manner, Part, Source};
-pub use survey::refused_besides;
+pub use survey::all_refusals;
 pub use whole::{correct, correct_plain, corrected_before};

@@ -35,6 +35,7 @@ pub(crate) fn dialect() -> Dialect {
         turning: None,
         cycle_repeats: Vec::new(),
         zero_repeats_define: false,
+        bottom_lies_below_r: false,
         length_under_g40: LengthAfter::Stays,
         length_under_g49: LengthAfter::Ends,
         t_may_change_tool: false,

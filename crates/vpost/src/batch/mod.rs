@@ -4,6 +4,7 @@
 //! (`folder`) and keeps a journal of what is done (`journal`).
 
 mod arguments;
+mod causes;
 mod cluster;
 mod folder;
 mod inputs;

@@ -1,6 +1,6 @@
 //! What became of a program: one line of the results and of the journal.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Entry, Language};
 use serde::{Deserialize, Serialize};
 
 use crate::expand::Lookup;
@@ -105,6 +105,34 @@ pub(crate) struct Fault {
     pub note: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub help: Option<String>,
+    /// What the profile lacks, where entries of one of its tables settle it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub settled_by: Vec<Settling>,
+    /// The help in Russian: of this run alone, records are English.
+    #[serde(skip)]
+    pub help_in_russian: Option<String>,
+}
+
+/// An entry of the profile.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Settling {
+    pub section: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub key: Option<String>,
+    pub name: String,
+    pub value: String,
+}
+
+impl Settling {
+    fn of(entry: &Entry) -> Self {
+        let Entry { section, key, name, value } = entry.clone();
+        Self { section, key, name, value }
+    }
+
+    pub(crate) fn entry(&self) -> Entry {
+        let Self { section, key, name, value } = self;
+        Entry::new(section, key.as_deref(), name.as_str(), value)
+    }
 }
 
 impl Fault {
@@ -117,6 +145,11 @@ impl Fault {
             line,
             note: diagnostic.label.english().to_owned(),
             help: diagnostic.help.as_ref().map(|help| help.english().to_owned()),
+            settled_by: diagnostic.entries.iter().map(Settling::of).collect(),
+            help_in_russian: diagnostic
+                .help
+                .as_ref()
+                .map(|help| help.in_language(Language::Russian).to_owned()),
         }
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use diagnostic::{Language, Text, both, russian_plural};
 
+use super::causes;
 use super::record::{Fault, Record, Status};
 use super::work::Results;
 use crate::explain;
@@ -71,7 +72,7 @@ pub(crate) fn table(results: &Results, language: Language) -> String {
             "отклонение пути не больше {before:.1} мкм до, {after:.2} мкм после\n"
         ));
     }
-    say(&reasons(&REFUSED, records, |record| &record.errors));
+    say(&causes::causes(&REFUSED, records));
     say(&reasons(&WARNINGS, records, |record| &record.warnings));
     let older: Vec<&str> =
         records.iter().filter(|record| record.older_output).map(|record| record.output.as_str()).collect();

@@ -1,0 +1,129 @@
+//! Why programs were refused, summed over a batch by what settles it.
+
+use std::collections::BTreeSet;
+
+use diagnostic::{Entry, Language, Text, both};
+
+use super::record::{Fault, Record, Settling, Status};
+use crate::explain;
+
+/// No more ways out are shown of one message: the rest is in the results.
+const MOST_WAYS: usize = 3;
+
+/// Programs that one thing would settle.
+struct Cause<'r> {
+    /// What was said of the first.
+    fault: &'r Fault,
+    message: &'r str,
+    /// Files could not be read or written.
+    failed: bool,
+    /// What the profile lacks, each once.
+    entries: Vec<Entry>,
+    programs: BTreeSet<&'r str>,
+    /// The output of the first program.
+    first: &'r str,
+}
+
+impl<'r> Cause<'r> {
+    /// What stands together in one line: the number of the message, and where files failed what the system said.
+    fn headline(&self) -> (&'r str, &'r str) {
+        (&self.fault.code, if self.failed { self.message } else { "" })
+    }
+
+    /// One message number, and one way out: the same words, or entries of the same table of the profile.
+    fn takes(&self, fault: &Fault, message: &str, failed: bool) -> bool {
+        if self.fault.code != fault.code {
+            return false;
+        }
+        match (self.entries.first(), fault.settled_by.first()) {
+            (Some(known), Some(entry)) => known.is_beside(&entry.entry()),
+            (None, None) if failed => self.message == message,
+            (None, None) => self.fault.help == fault.help,
+            _ => false,
+        }
+    }
+
+    fn add(&mut self, fault: &Fault) {
+        for entry in fault.settled_by.iter().map(Settling::entry) {
+            if !self.entries.contains(&entry) {
+                self.entries.push(entry);
+            }
+        }
+    }
+}
+
+/// What programs were refused for, the causes of most programs first, each with what settles it.
+pub(crate) fn causes(title: &Text, records: &[Record]) -> Text {
+    let causes = gathered(records);
+    if causes.is_empty() {
+        return Text::EMPTY;
+    }
+    let mut text = both!("{title}:\n", "{title:#}:\n");
+    let mut told: Vec<(&str, &str)> = Vec::new();
+    for cause in &causes {
+        if told.contains(&cause.headline()) {
+            continue;
+        }
+        told.push(cause.headline());
+        let ways: Vec<&Cause<'_>> =
+            causes.iter().filter(|other| other.headline() == cause.headline()).collect();
+        let programs: BTreeSet<&str> = ways.iter().flat_map(|way| way.programs.iter().copied()).collect();
+        text.push(&line(cause, programs.len()));
+        for way in ways.iter().take(MOST_WAYS) {
+            text.push(&settled(way, ways.len() > 1));
+        }
+        if let Some(more) = ways.len().checked_sub(MOST_WAYS).filter(|more| *more > 0) {
+            text.push(&both!(
+                "                 … and {more} more ways out, of fewer programs: `--results FILE` has them\n",
+                "                 … и ещё {more} для меньшего числа программ: они есть в `--results FILE`\n"
+            ));
+        }
+    }
+    text
+}
+
+/// All causes, those of most programs first.
+fn gathered(records: &[Record]) -> Vec<Cause<'_>> {
+    let mut causes: Vec<Cause<'_>> = Vec::new();
+    for record in records {
+        let failed = record.status == Status::Failed;
+        for fault in &record.errors {
+            // Files fail for more than one reason: what the system said stands behind the name.
+            let reason = failed.then(|| fault.message.rsplit_once(": ")).flatten();
+            let message = reason.map_or(fault.message.as_str(), |(_, reason)| reason);
+            let known = causes.iter().position(|cause| cause.takes(fault, message, failed));
+            let index = known.unwrap_or_else(|| {
+                let (entries, programs, first) = (Vec::new(), BTreeSet::new(), record.output.as_str());
+                causes.push(Cause { fault, message, failed, entries, programs, first });
+                causes.len() - 1
+            });
+            causes[index].add(fault);
+            causes[index].programs.insert(&record.output);
+        }
+    }
+    causes.sort_by_key(|cause| std::cmp::Reverse(cause.programs.len()));
+    causes
+}
+
+/// `       7  VP0215  tool length H1 is not given: op10/lid.nc, …`
+fn line(cause: &Cause<'_>, count: usize) -> Text {
+    let (code, message, first) = (&cause.fault.code, cause.message, cause.first);
+    let more = if count > 1 { ", …" } else { "" };
+    // Records are English; what a number means stands in the page that explains it.
+    let russian = explain::title(code, Language::Russian).unwrap_or(message);
+    both!("{count:8}  {code}  {message}: {first}{more}\n", "{count:8}  {code}  {russian}: {first}{more}\n")
+}
+
+/// What settles a cause; for how many programs, where a message has several ways out.
+fn settled(cause: &Cause<'_>, of_several: bool) -> Text {
+    let count = cause.programs.len();
+    let count = if of_several { format!("{count} x ") } else { String::new() };
+    let way = if cause.entries.is_empty() {
+        let Some(english) = &cause.fault.help else { return Text::EMPTY };
+        let russian = cause.fault.help_in_russian.as_ref().unwrap_or(english);
+        Text::new(english.clone(), russian.clone())
+    } else {
+        Entry::written(&cause.entries)
+    };
+    both!("                 {count}help: {way}\n", "                 {count}что делать: {way:#}\n")
+}
