@@ -216,7 +216,7 @@ fn passes_leave_the_contour_whole_and_cut_one_depth_each() {
             let points: Vec<[f64; 2]> = one.points.iter().copied().map(seen).collect();
             let before = stock.depths.clone();
             let own = Heights::of(&points, places);
-            for k in FIRST..places - 1 {
+            for (k, stood) in before.iter().enumerate().take(places - 1).skip(FIRST) {
                 let (depth, p) = (own.depths[k], [k as f64 * STEP, own.depths[k]]);
                 if depth == f64::NEG_INFINITY {
                     continue;
@@ -225,7 +225,7 @@ fn passes_leave_the_contour_whole_and_cut_one_depth_each() {
                 let lowest = wanted.depths[k] - allowance + 2e-5;
                 assert!(depth <= lowest, "{}", context("below the contour", p));
                 let most = if one.is_rapid { 0.0 } else { cut };
-                assert!(depth <= before[k] + most + 1e-4, "{}", context("through what stands", p));
+                assert!(depth <= stood + most + 1e-4, "{}", context("through what stands", p));
             }
             points.windows(2).for_each(|ends| stock.cut(ends[0], ends[1]));
         }
