@@ -24,8 +24,9 @@ def passes(asked, below=0.0, sign=1.0):
     `below`: deeper than the allowances say, `sign` -1: allowances to the wrong side.
     """
     c, out = asked["contour"], []
-    u, w = sign * asked["u"] / 2 - below * c.side, sign * asked["w"]
-    line = judge.fill(c.points() + (np.array([u, w]) if c.facing else np.array([w, u])), 0.02)
+    u, w = sign * asked["u"] / 2, sign * asked["w"]
+    away = (np.array([u, w]) if c.facing else np.array([w, u])) - [0.0, below * c.side]
+    line = judge.fill(c.points() + away, 0.02)
     start = np.array(c.start if c.facing else c.start[::-1], float)
     rz = (lambda a, b: (a, b)) if c.facing else (lambda a, b: (b, a))
     # How far in the contour lets a pass in a place be: at a wall the shallowest.
@@ -54,7 +55,7 @@ def passes(asked, below=0.0, sign=1.0):
         level -= c.side * asked["depth"]
     out.append(("G0", rz(start[0], clear)))
     out.append(("G0", rz(start[0], line[0][1])))
-    out += [("G1", rz(a, b)) for a, b in c.points() + (np.array([u, w]) if c.facing else np.array([w, u]))]
+    out += [("G1", rz(a, b)) for a, b in c.points() + away]
     out.append(("G0", c.start))
     return out
 
