@@ -31,14 +31,14 @@ def arc_points(start, end, centre, left, z0, z1):
     if abs(abs(sweep) - 2 * math.pi) < 1e-5 and np.linalg.norm(end - start) > 0:
         sweep = 0.0
     r0, r1 = np.linalg.norm(a), np.linalg.norm(b)
-    n = 2 + int(abs(sweep) / math.sqrt(8 * 2e-5 / max(r0, 0.01)))
+    n = 2 + int(abs(sweep) / math.sqrt(8 * 5e-5 / max(r0, 0.01)))
     s = np.linspace(0, 1, n)
     radius, angle = r0 + s * (r1 - r0), t0 + s * sweep
     return np.stack([centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle), z0 + s * (z1 - z0)], axis=1)
 
 
 def straight(a, b):
-    n = 2 + int(np.linalg.norm(b - a) / 0.5)
+    n = 2 + int(np.linalg.norm(b - a) / 1.5)
     return a + np.linspace(0, 1, n)[:, None] * (b - a)
 
 

@@ -22,7 +22,7 @@ import centre
 import generate
 from mill import Mill
 
-SLACK = {"linuxcnc": 0.25e-3, "fanuc": 0.06e-3}  # rs274 prints four decimals: of ends, and of centres, mm
+SLACK = {"linuxcnc": 0.25e-3, "fanuc": 0.1e-3}  # rs274 prints four decimals: of ends, and of centres, mm
 LEAD = 1.0
 
 
@@ -156,7 +156,8 @@ class Judge:
                 self.report("perfect", n, folder, "not the same bytes")
             return
         self.tally["compensation left in the output"] += bool(re.search(r"^[^(]*G4[12]", output, re.M))
-        self.tally["off the way before"] += bool(compare(spec, text, text)[0])
+        if n % 5 == 0:
+            self.tally["of every fifth, off the way before"] += bool(compare(spec, text, text)[0])
         found, largest = compare(spec, text, output)
         if found and found[0][0] == "path" and "VP0508" in errors:
             # The contour was corrected, and the command says so: the error may differ by what it changes over a radius.
@@ -176,6 +177,8 @@ class Judge:
 
     def all(self):
         for n in range(self.o.first, self.o.first + self.o.count):
+            if n % 20 == 0:
+                print("# %d" % n, file=sys.stderr, flush=True)
             with tempfile.TemporaryDirectory() as folder:
                 try:
                     self.one(n, pathlib.Path(folder))

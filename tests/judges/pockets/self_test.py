@@ -207,7 +207,7 @@ def written_other(spec, text, asked):
     for line in text.splitlines():
         if line.startswith("N20 "):
             out += ["N20"] + moves
-        elif not line.startswith(("N10 ", "N30 ")):
+        elif not line.startswith(("N5 ", "N10 ", "N30 ")):
             out.append(line)
     return "\n".join(out) + "\n"
 
