@@ -162,7 +162,7 @@ class Judge:
         if found and found[0][0] == "path" and "VP0508" in errors:
             # The contour was corrected, and the command says so: the error may differ by what it changes over a radius.
             points = np.concatenate([x for kind, x in ideal if kind == "feed"])
-            more = 2 * spec["radius"] * Mill(spec).gradient(points)
+            more = spec["radius"] * Mill(spec).gradient(points)
             again, largest = compare(spec, text, output, limit(spec) + more)
             if not again:
                 self.tally["off by more than the tolerance, and warned of (VP0508)"] += 1
