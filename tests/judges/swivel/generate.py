@@ -96,7 +96,7 @@ def profile(spec, folder, known=None, sign="+"):
     lines += ["[work_offsets_mm]"] + ["%s = %r" % x for x in spec["offsets"].items()]
     lines += ["[correction]", "tolerance_um = %r" % spec["tolerance"], "[kinematics]", 'straight = "tip"']
     lines += ["centres_mm = { %s }" % ", ".join("%s = %r" % x for x in spec["control"].items())]
-    lines += ['branch = "%s%s"' % (spec["reference"], sign), 'turn = "%s"' % spec["turn"]]
+    lines += ['direction_reference = "%s"' % spec["reference"], 'branch = "%s%s"' % (spec["reference"], sign), 'turn = "%s"' % spec["turn"]]
     for key, value in spec.get("extra_kinematics", {}).items():
         if known is None or key in known:
             lines.append("%s = %s" % (key, json.dumps(value)))
