@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use rayon::prelude::*;
 use serde::Deserialize;
 
 use crate::common::{root, run};
@@ -74,25 +75,35 @@ fn outcome(call: &str, files: &BTreeMap<String, String>) -> Outcome {
     (ran.status.code(), text(&ran.stdout), text(&ran.stderr), found)
 }
 
+/// Command and option of each that a case tries, and what is wrong: nothing where giving it changed something.
+fn tried<'c>(case: &'c Case, files: &BTreeMap<String, String>) -> Vec<(&'c str, String, Option<String>)> {
+    let without = outcome(&case.call, files);
+    let one = |option: &String| {
+        let with = outcome(&format!("{} '{option}'", case.call), files);
+        let no_call = ["unexpected argument", "cannot be used multiple times"];
+        let fault = if no_call.iter().any(|said| with.2.contains(said)) {
+            Some(format!("{} {option}: {}", case.call, with.2))
+        } else {
+            (with == without).then(|| format!("ignored: vpost {} '{option}'\n{}", case.call, with.2))
+        };
+        (case.command.as_str(), option.split('=').next().unwrap_or_default().to_owned(), fault)
+    };
+    case.options.iter().map(one).collect()
+}
+
 #[test]
 fn every_option_that_is_listed_acts() {
     let table: Table =
         toml::from_str(&std::fs::read_to_string(root().join("tests/options.toml")).expect("text"))
             .expect("cases");
+    // Each call in a folder of its own, so that they may run side by side.
+    let tried: Vec<(&str, String, Option<String>)> =
+        table.case.par_iter().flat_map_iter(|case| tried(case, &table.files)).collect();
     let mut acting: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
-    let mut wrong = Vec::new();
-    for case in &table.case {
-        let without = outcome(&case.call, &table.files);
-        for option in &case.options {
-            let with = outcome(&format!("{} '{option}'", case.call), &table.files);
-            if with.2.contains("unexpected argument") || with.2.contains("cannot be used multiple times") {
-                wrong.push(format!("{} {option}: {}", case.call, with.2));
-            } else if with == without {
-                wrong.push(format!("ignored: vpost {} '{option}'\n{}", case.call, with.2));
-            } else {
-                let name = option.split('=').next().unwrap_or_default().to_owned();
-                acting.entry(&case.command).or_default().insert(name);
-            }
+    let mut wrong: Vec<String> = tried.iter().filter_map(|(.., fault)| fault.clone()).collect();
+    for (command, option, fault) in tried {
+        if fault.is_none() {
+            acting.entry(command).or_default().insert(option);
         }
     }
     for command in every_command() {

@@ -96,7 +96,8 @@ fn reads(command: &[&str], option: &str) -> bool {
     match command {
         // The manifest says which profile and options hold.
         ["batch", "run" | "merge"] => false,
-        ["correct" | "batch", ..] => true,
+        ["batch", ..] => option != "verbose",
+        ["correct", ..] => true,
         ["check", ..] => option != "outside" && !OF_OUTPUT.contains(&option),
         // A lathe's program, or points.
         ["predict", ..] => option != "orientation" && !OF_OUTPUT.contains(&option),
@@ -118,7 +119,11 @@ fn reads(command: &[&str], option: &str) -> bool {
 /// Options that a command does not list, since they change nothing there, and takes all the same: who checks gives what the
 /// correction was given.
 fn accepts(command: &[&str], option: &str) -> bool {
-    command == ["check"] && ["outside", "strict"].contains(&option)
+    match command {
+        ["check"] => ["outside", "strict"].contains(&option),
+        ["batch", ..] => option == "verbose",
+        _ => false,
+    }
 }
 
 /// What a command that reads an option somewhere lacks to read it in this call: what there is no program for is not read.
