@@ -45,7 +45,8 @@ fn plus(a: Three, b: Three) -> Three {
 impl Swivel {
     /// Of a vector in the plane's coordinates: in those that the call counts in. The last turn is done first.
     fn turned(&self, mut at: Three) -> Three {
-        for (axis, angle_deg) in ORDERS[self.order].1.chars().zip(self.angles_deg).rev() {
+        let turns: Vec<(char, f64)> = ORDERS[self.order].1.chars().zip(self.angles_deg).collect();
+        for (axis, angle_deg) in turns.into_iter().rev() {
             at = turned(axis, angle_deg, at);
         }
         at
