@@ -384,16 +384,10 @@ fn the_proposed_line_filled_in_settles_what_was_open() {
 #[test]
 fn the_program_of_a_proposal_goes_through_its_points() {
     let next = |form: &str| {
-        let ran = run(&[
-            "diagnose",
-            "samples/diagnosis/one_feed.csv",
-            "-m",
-            "samples/diagnosis/one_feed.toml",
-            "--next",
-            form,
-            "--work-offset",
-            "G54=100,50,-200",
-        ]);
+        let rows = ["diagnose", "samples/diagnosis/one_feed.csv", "-m", "samples/diagnosis/one_feed.toml"];
+        // Points are in machine coordinates: no work offset is read there.
+        let offset: &[&str] = if form == "program" { &["--work-offset", "G54=100,50,-200"] } else { &[] };
+        let ran = run(&[&rows[..], &["--next", form], offset].concat());
         assert!(ran.status.success(), "{}", messages(&ran));
         String::from_utf8(ran.stdout).expect("text")
     };

@@ -102,7 +102,9 @@ fn every_how_to_leads_a_newcomer_to_the_end_in_both_languages() {
                 pages += usize::from(!english.is_empty());
                 ran += english.len() + russian.len();
                 for (english, russian) in english.iter().zip(&russian) {
-                    if let Some(fault) = crate::russian::fault(english, russian) {
+                    // A file of ParaView's is in English to its end.
+                    let spoken = |text: &str| text.split("# vtk ").next().unwrap_or_default().to_owned();
+                    if let Some(fault) = crate::russian::fault(&spoken(english), &spoken(russian)) {
                         wrong.push(format!("{name}, in Russian: {fault}\n{russian}"));
                     }
                     for shipped in ["STAN", "Generic", "MS-300", "Leica", "Renishaw"] {

@@ -40,7 +40,7 @@ pub struct Turning {
     /// Write what was found as JSON.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write what was found as one page for a browser: drawings, their numbers, no network, no script.
+    /// Write a page for a browser: drawings, numbers.
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
 }
