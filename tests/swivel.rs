@@ -78,7 +78,7 @@ fn in_workpiece(planes: &[Swivel], at: Three) -> Three {
 /// it is `Rz(-C) Rx(-A) z = (sin C sin A, cos C sin A, cos A)`.
 fn angles([x, y, z]: Three, above: bool) -> [f64; 2] {
     let sign = if above { 1.0 } else { -1.0 };
-    let tilt = units::math::atan2(x.hypot(y), z).to_degrees();
+    let tilt = units::math::atan2(units::math::hypot(x, y), z).to_degrees();
     [sign * tilt, units::math::atan2(sign * x, sign * y).to_degrees()]
 }
 

@@ -60,7 +60,7 @@ pub struct Diagnostic {
     /// What to type.
     pub help: Option<Text>,
     /// What the profile lacks, where entries of one of its tables settle it.
-    pub entries: Vec<Entry>,
+    pub entries: Box<[Entry]>,
 }
 
 impl Diagnostic {
@@ -74,7 +74,7 @@ impl Diagnostic {
             span: None,
             label: Text::EMPTY,
             help: None,
-            entries: Vec::new(),
+            entries: Box::default(),
         }
     }
     /// A warning.
@@ -97,7 +97,7 @@ impl Diagnostic {
     /// Says which entry of the profile settles it.
     #[must_use]
     pub fn settled_by(mut self, entry: Entry) -> Self {
-        self.entries.push(entry);
+        self.entries = Box::new([entry]);
         self
     }
     /// Says what to do.

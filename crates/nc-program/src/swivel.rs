@@ -100,7 +100,7 @@ impl Call<'_, '_, '_, '_> {
 
     fn whole(&self, place: usize) -> Outcome<u32> {
         let value = self.number(place)?;
-        if value < 0.0 || value > 999_999.0 || value.fract() != 0.0 {
+        if !(0.0..=999_999.0).contains(&value) || value.fract() != 0.0 {
             return Err(
                 self.unknown(place, &both!("no value that the cycle has", "такого значения у цикла нет"))
             );

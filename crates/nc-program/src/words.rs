@@ -497,7 +497,7 @@ pub(crate) struct Refusal(Box<Diagnostic>);
 impl Refusal {
     /// Says which entry of the profile settles it.
     pub(crate) fn settled_by(mut self, entry: Entry) -> Self {
-        self.0.entries.push(entry);
+        self.0.entries = Box::new([entry]);
         self
     }
 

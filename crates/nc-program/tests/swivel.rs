@@ -80,9 +80,9 @@ fn the_direction_asks_for_an_angle_of_the_reference_axis() {
 fn one_on_top_of_another_counts_in_the_first() {
     let first = "CYCLE800(0,\"\",0,57,0,0,20,-15,0,0,0,0,0,-1)\n";
     let (both, _) = plane(&format!("{first}CYCLE800(0,\"\",1,57,0,10,0,-10,0,0,0,0,0,-1)"));
-    let (sin, cos) = (15f64.to_radians().sin(), 15f64.to_radians().cos());
+    let (sin, cos) = units::math::sin_cos_deg(15.0);
     near(&both.zero_mm, &[100.0, 10.0 * cos, 20.0 - 10.0 * sin], "zero");
-    let (sin, cos) = (25f64.to_radians().sin(), 25f64.to_radians().cos());
+    let (sin, cos) = units::math::sin_cos_deg(25.0);
     near(&both.normal(), &[0.0, sin, cos], "normal");
     // A new one does not.
     let (new, _) = plane(&format!("{first}CYCLE800(0,\"\",0,57,0,10,0,-10,0,0,0,0,0,-1)"));

@@ -153,7 +153,7 @@ impl<R: Read + Seek + Send, O: Fn() -> R + Sync> Source<'_, O> {
             Err(End::Refused(chunk, diagnostics)) => {
                 return Err(self.refused(chunk, diagnostics, survey.envelope));
             }
-            Err(End::Unfinished(finding)) => return Err(self.refused_as_a_whole(finding)),
+            Err(End::Unfinished(finding)) => return Err(self.refused_as_a_whole(*finding)),
             Err(End::Flows) => return Err(LargeEnd::AsAWhole),
             Err(End::Unread(unread)) => return Err(unread.into()),
             Err(End::Unwritten(error)) => return Err(LargeEnd::Unwritten(error)),

@@ -43,7 +43,7 @@ pub(crate) enum End {
     /// A block of this chunk cannot be corrected.
     Refused(Chunk, Vec<Diagnostic>),
     /// The text ends inside what takes several blocks.
-    Unfinished(Warning),
+    Unfinished(Box<Warning>),
     /// A block computes or jumps: the program is not plain.
     Flows,
     /// The program cannot be read in chunks.
@@ -164,7 +164,7 @@ where
     match board.end {
         Some(end) => Err(end),
         None => match board.state.interpreter.unfinished() {
-            Some(unfinished) => Err(End::Unfinished(unfinished)),
+            Some(unfinished) => Err(End::Unfinished(Box::new(unfinished))),
             None => Ok(board.tally),
         },
     }

@@ -61,51 +61,55 @@ pub fn all_refusals(text: &[u8], job: &Job<'_>, first: Vec<Diagnostic>) -> Vec<D
 struct Group {
     /// The one that stands first.
     face: Diagnostic,
+    /// What the profile lacks, each once.
+    entries: Vec<Entry>,
     /// How many more blocks have it.
     more: usize,
 }
 
 impl Group {
-    fn of(face: Diagnostic) -> Self {
-        Self { face, more: 0 }
+    fn of(mut face: Diagnostic) -> Self {
+        let entries = std::mem::take(&mut face.entries).into_vec();
+        Self { face, entries, more: 0 }
     }
 
     /// True where the same settles both.
     fn takes(&self, other: &Diagnostic) -> bool {
-        let Diagnostic { code, message, help, entries, .. } = &self.face;
+        let Diagnostic { code, message, help, .. } = &self.face;
         if *code != other.code {
             return false;
         }
         // What stands there differs from block to block, remarks that are none: the way out is one.
         let alike = message == &other.message || is_unreadable(*code);
-        let pair = entries.first().zip(other.entries.first());
+        let pair = self.entries.first().zip(other.entries.first());
         (alike && help == &other.help) || pair.is_some_and(|(a, b)| a.is_beside(b))
     }
 
     fn take(&mut self, other: Diagnostic) {
-        let known = self.face.entries.len();
+        let known = self.entries.len();
         for entry in other.entries {
-            if !self.face.entries.contains(&entry) {
-                self.face.entries.push(entry);
+            if !self.entries.contains(&entry) {
+                self.entries.push(entry);
             }
         }
-        self.more += usize::from(self.face.entries.len() == known);
+        self.more += usize::from(self.entries.len() == known);
     }
 
     fn told(self) -> Diagnostic {
-        let Self { mut face, more } = self;
-        if let [_, others @ ..] = &face.entries[..]
+        let Self { mut face, entries, more } = self;
+        if let [_, others @ ..] = &entries[..]
             && !others.is_empty()
         {
             let names: Vec<&str> = others.iter().map(|entry| entry.name.as_str()).collect();
             let names = names.join(", ");
             add(&mut face.label, &both!("nor are {names}", "не даны и {names}"));
-            let written = Entry::written(&face.entries);
+            let written = Entry::written(&entries);
             face.help = Some(both!(
                 "this settles all of them, with your values: {written}",
                 "всё сразу, со своими значениями: {written:#}"
             ));
         }
+        face.entries = entries.into_boxed_slice();
         counted(face, more)
     }
 }
