@@ -35,7 +35,7 @@ impl Ini {
                     BEYOND,
                     both!(
                         "the tools of this machine are kept by a program of their own",
-                        "инструмент этого станка хранит отдельная программа"
+                        "данные об инструментах этого станка хранит отдельная программа"
                     ),
                     both!(
                         "which lengths it holds this file does not say",

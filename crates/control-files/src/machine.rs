@@ -95,7 +95,8 @@ fn of_ini(file: File<'_>) -> Result<Machine, Box<Refusal>> {
             let number = value.before(&['#', ';']).trimmed();
             number.number().map(|number| Some(number * unit_mm)).ok_or_else(|| {
                 let help = both!("write a number there", "напишите там число");
-                let message = both!("`{}` is no limit of {letter}", "`{}` — не предел {letter}", value.text);
+                let message =
+                    both!("`{}` is no limit of {letter}", "`{}` — не предел оси {letter}", value.text);
                 refuse(file, value, UNREADABLE, message, both!("expected a number", "ожидалось число"), help)
             })
         };

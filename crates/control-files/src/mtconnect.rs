@@ -127,7 +127,7 @@ fn limits_mm(file: File<'_>, axis: &Node<'_, '_>, letter: char) -> Result<Option
         let limit = |name: &'static str| {
             let Some(element) = elements(node, name).next() else { return Ok(None) };
             let value = element.text().unwrap_or_default().trim();
-            let message = || both!("`{value}` is no limit of {letter}", "`{value}` — не предел {letter}");
+            let message = || both!("`{value}` is no limit of {letter}", "`{value}` — не предел оси {letter}");
             let number = value.parse::<f64>().ok().filter(|number| number.is_finite());
             number.map(Some).ok_or_else(|| refused(file, &element, message()))
         };

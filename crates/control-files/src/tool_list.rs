@@ -10,7 +10,7 @@ const KIND: Kind<'static> = Kind {
     columns: "tool length_mm x_mm y_mm z_mm diameter_mm note",
     expected: Text::pair(
         "expected: tool,length_mm (a line for each: H1,120.5), a tool table of LinuxCNC (T1 P1 Z120.5), or a control's offsets (G10 L10 P1 R120.5)",
-        "ожидалось: tool,length_mm (строка на каждый: H1,120.5), таблица инструмента LinuxCNC (T1 P1 Z120.5) или коррекции стойки (G10 L10 P1 R120.5)",
+        "ожидалось: tool,length_mm (строка на каждый: H1,120.5), таблица инструментов LinuxCNC (T1 P1 Z120.5) или коррекции стойки (G10 L10 P1 R120.5)",
     ),
     passes_over: None,
     may_be_empty: false,
@@ -38,7 +38,7 @@ pub(crate) fn lengths(name: &str, bytes: &[u8]) -> Result<Vec<Length>, Box<Refus
     if !by_axis {
         sheet.need(
             &["length_mm"],
-            both!("a list of tools needs their lengths", "в списке инструмента нужны длины"),
+            both!("a list of tools needs their lengths", "в списке инструментов нужны длины"),
         )?;
     }
     let mut lengths: Vec<Length> = Vec::new();

@@ -29,7 +29,7 @@ pub(crate) fn lengths(name: &str, text: &str, unit_mm: Option<f64>) -> Result<Ve
             UNREADABLE,
             both!(
                 "a tool table of LinuxCNC does not say in which unit its lengths are",
-                "таблица инструмента LinuxCNC не говорит, в какой единице длины"
+                "таблица инструментов LinuxCNC не говорит, в какой единице длины"
             ),
             both!(
                 "give the machine's INI file, which says it (LINEAR_UNITS): `--linuxcnc-ini FILE`",
@@ -45,7 +45,7 @@ pub(crate) fn lengths(name: &str, text: &str, unit_mm: Option<f64>) -> Result<Ve
         }
         let unread = |word: Piece<'_>, label: Text| {
             let message =
-                both!("`{}` in a tool table of LinuxCNC", "`{}` в таблице инструмента LinuxCNC", word.text);
+                both!("`{}` in a tool table of LinuxCNC", "`{}` в таблице инструментов LinuxCNC", word.text);
             let help = both!(
                 "LinuxCNC would pass over this line; write it like `T1 P1 Z+120.5 D10 ;end mill`, or remove it",
                 "LinuxCNC эту строку пропустил бы; напишите её так: `T1 P1 Z+120.5 D10 ;end mill`, или уберите"
@@ -72,7 +72,7 @@ pub(crate) fn lengths(name: &str, text: &str, unit_mm: Option<f64>) -> Result<Ve
             if !NUMBERS.contains(letter) {
                 return Err(unread(
                     word,
-                    both!("not a letter of a tool table", "такой буквы в таблице инструмента нет"),
+                    both!("not a letter of a tool table", "такой буквы в таблице инструментов нет"),
                 ));
             }
             let value =
@@ -94,7 +94,7 @@ pub(crate) fn lengths(name: &str, text: &str, unit_mm: Option<f64>) -> Result<Ve
         if lengths.iter().any(|(known, _)| *known == number) {
             let message = both!(
                 "T{number} stands twice in the tool table",
-                "T{number} стоит в таблице инструмента дважды"
+                "T{number} стоит в таблице инструментов дважды"
             );
             return Err(refuse(
                 file,

@@ -111,13 +111,13 @@ impl Speaks for CorrectionError {
                     .to_owned()
             }
             Self::TooManyPecks { pecks } => {
-                format!("отверстие в {pecks:.0} проходов, которое пришлось бы записать движениями")
+                format!("отверстие, где проходов {pecks:.0}, а записать его пришлось бы движениями")
             }
             Self::TurnedFrame { distance_um, tolerance_um } => format!(
                 "в этой повёрнутой системе координат ось с люфтом ходила бы взад и вперёд: отклонение {distance_um:.2} мкм, допуск {tolerance_um} мкм"
             ),
             Self::Sideways { distance_um, tolerance_um } => format!(
-                "при реверсе оси потеря хода сдвигает инструмент вбок: при любой команде остаётся {distance_um:.2} мкм, допуск {tolerance_um} мкм"
+                "при реверсе оси мёртвый ход сдвигает инструмент вбок: при любой команде остаётся {distance_um:.2} мкм, допуск {tolerance_um} мкм"
             ),
             Self::Unnamed { axis, distance_um } => format!(
                 "инструмент отошёл бы на {distance_um:.2} мкм без слова {}, а программа эту ось не назвала",

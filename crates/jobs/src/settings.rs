@@ -259,7 +259,7 @@ fn turning_dialect(dialect: Dialect, profile: &Profile) -> Result<Dialect, Failu
         return Err(Failure::option(
             both!(
                 "which G-code system? the profile of {} does not say",
-                "какая система функций G? в профиле {} не сказано",
+                "какая система G-кодов? в профиле {} не сказано",
                 lathe.chain
             ),
             both!(
@@ -273,7 +273,7 @@ fn turning_dialect(dialect: Dialect, profile: &Profile) -> Result<Dialect, Failu
         Failure::option(
             both!(
                 "dialect {name} has no G-code system {system}",
-                "в диалекте {name} нет системы функций G {system}"
+                "в диалекте {name} нет системы G-кодов {system}"
             ),
             both!("one of: {}", "одно из: {}", systems.join(", ")),
         )

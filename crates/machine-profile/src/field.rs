@@ -87,7 +87,7 @@ impl Loader<'_> {
                 both!("[field] on a machine with {axes}", "[field] на станке, у которого есть {axes:#}");
             let diagnostic = Diagnostic::error(CONFLICT, message).help(both!(
                 "error vectors say nothing of how they change while a rotary axis or a spindle turns: describe this machine by [axis] tables",
-                "векторы ошибок не говорят, как они меняются при повороте оси или шпинделя: опишите этот станок таблицами [axis]"
+                "векторы погрешности не говорят, как они меняются при повороте оси или шпинделя: опишите этот станок таблицами [axis]"
             ));
             self.refuse(
                 written,
@@ -266,7 +266,7 @@ fn error(sheet: &Sheet, row: Row<'_>, place_mm: &Vector) -> Result<Vector, Box<R
     }
     let message = both!(
         "an error of {:.3} mm is larger than geometric errors get: wrong unit?",
-        "ошибка {:.3} мм больше, чем бывают геометрические: не та единица?",
+        "погрешность {:.3} мм больше, чем бывают геометрические: не та единица?",
         error_mm.norm()
     );
     let (key, help) = if measured {

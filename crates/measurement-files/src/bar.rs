@@ -99,7 +99,7 @@ impl Sheet {
             if gap > LARGEST_GAP_DEG {
                 let message = both!(
                     "run `{run}` covers {:.0} degrees of its circle",
-                    "проход `{run}` охватывает {:.0} градусов своей окружности",
+                    "проход `{run}` охватывает {:.0}° своей окружности",
                     360.0 - gap
                 );
                 let help = both!(

@@ -346,7 +346,7 @@ impl<'d> Emitter<'d> {
         }
         Err(Diagnostic::error(
             BLOCK_TOO_LONG,
-            both!("the corrected block has {} characters, the control takes {limit}", "в исправленном кадре {} знаков, а стойка принимает {limit}", text.len()),
+            both!("the corrected block has {} characters, the control takes {limit}", "в исправленном кадре знаков {}, а стойка принимает {limit}", text.len()),
         )
         .at(
             block.file_range(),

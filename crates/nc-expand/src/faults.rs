@@ -291,7 +291,7 @@ pub(crate) fn protected(protected: Protected, variable: Variable, names: &Names)
             codes::ALARM,
             both!(
                 "the program stops itself with an alarm here",
-                "программа здесь сама останавливается аварией"
+                "программа здесь сама выдаёт аварийное сообщение и останавливается"
             ),
             both!("reached with the values given", "при заданных значениях исполнение доходит сюда"),
             both!(

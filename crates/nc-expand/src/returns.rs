@@ -102,7 +102,7 @@ impl Writer<'_> {
                 &words,
                 words.whole(),
                 both!("a move behind a cycle without its code", "ход после цикла без своей функции"),
-                both!("a rapid or a feed?", "ускоренный или рабочий?"),
+                both!("a rapid or a feed?", "быстрый или рабочий?"),
                 both!("write G0 or G1 in this block", "напишите в этом кадре G0 или G1"),
             ));
         }

@@ -301,7 +301,7 @@ fn definition(parser: &mut Parser<'_, '_>) -> Result<Vec<(Expression, Expression
         if is_parameter(&target) || target.len() < 2 {
             return Err(both!(
                 "R parameters and single letters cannot be declared",
-                "параметры R и отдельные буквы не объявляют"
+                "R-параметры и отдельные буквы не объявляют"
             ));
         }
         let id = parser.names.id(&target);

@@ -217,7 +217,7 @@ pub(crate) fn angles(
                 both!("say which one the control takes: `branch = \"A+\"` under `[kinematics]` in the profile; or turn the axes by their own words before", "скажите, какую берёт стойка: `branch = \"A+\"` в разделе `[kinematics]` профиля; или поверните до этого оси их собственными словами"),
             ),
             NoAngles::Start(axis, degrees) => (
-                both!("the tool stands along {}, which would have to turn by {degrees} degrees before the tool tilts", "инструмент стоит вдоль {}, и до наклона эту ось надо повернуть на {degrees} градусов", name(axis)),
+                both!("the tool stands along {}, which would have to turn by {degrees} degrees before the tool tilts", "инструмент стоит вдоль {}, и до наклона эту ось надо повернуть на {degrees}°", name(axis)),
                 both!("turn {} there in a rapid by its own word, before G43.5 or without a direction in the block", "поверните туда {} быстрым ходом её собственным словом, до G43.5 или в кадре без направления", name(axis)),
             ),
             NoAngles::Free(axis) | NoAngles::Unknown(axis) => (

@@ -97,7 +97,7 @@ pub(crate) fn execute(
             words,
             span,
             &both!("under cutter compensation", "при коррекции на радиус"),
-            both!("the compensated path jumps with it", "эквидистанта прыгает вместе с ней"),
+            both!("the compensated path jumps with it", "эквидистанта скачком сместилась бы вместе с ней"),
         )
         .help(both!(
             "cancel the compensation with G40 before it",
@@ -423,7 +423,7 @@ fn write_offset(
         let at = if words.has(L) { words.span(L) } else { span };
         return Err(words
             .refuse(codes::FRAME, both!("{} that writes no work offset", "{} записывает не смещение нуля", words.text(span)), at, both!("L2 or L20 was expected", "ожидалось L2 или L20"))
-            .help(both!("tool tables and parameters: set them on the control, give lengths with --tool, and delete the block", "таблицы инструмента и параметры задайте на стойке, длины дайте ключом --tool, а кадр удалите")));
+            .help(both!("tool tables and parameters: set them on the control, give lengths with --tool, and delete the block", "таблицы инструментов и параметры задайте на стойке, длины дайте ключом --tool, а кадр удалите")));
     }
     if words.has(R) {
         return Err(words

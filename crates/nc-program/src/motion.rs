@@ -479,7 +479,7 @@ fn machine_coordinates(
                     "координаты станка при действующей коррекции на длину"
                 ),
                 words.span(along),
-                both!("the place of the tip, or of the spindle?", "место вершины или шпинделя?"),
+                both!("the place of the tip, or of the spindle?", "положение вершины или шпинделя?"),
             )
             .help(both!("write D0 in this block, or before it", "напишите D0 в этом кадре или перед ним")));
     }

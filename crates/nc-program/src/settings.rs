@@ -404,7 +404,10 @@ fn switches(words: &Words<'_, '_, '_>, state: &mut Modal, wanted: &Wanted<'_>) -
                 codes::FRAME,
                 message,
                 span,
-                both!("the compensated path jumps with it", "эквидистанта прыгает вместе с ней"),
+                both!(
+                    "the compensated path jumps with it",
+                    "эквидистанта скачком сместилась бы вместе с ней"
+                ),
             )
             .help(both!(
                 "cancel the compensation with G40 before it",

@@ -692,7 +692,7 @@ pub(crate) fn check_motions(
             "the rotary axes do not stand the tool upright on the tilted plane",
             "поворотные оси не ставят инструмент перпендикулярно наклонной плоскости"
         );
-        let label = both!("it leans by {} degrees", "наклон {} градуса", angle(off_rad));
+        let label = both!("it leans by {} degrees", "наклон {}°", angle(off_rad));
         return Err(words
             .refuse(codes::PLANE_ANGLES, message, span, label)
             .help(both!("write the angles that belong to the plane before G68.2, with as many decimals as the plane has, or G53.1 behind it", "напишите до G68.2 углы этой плоскости с тем же числом знаков, что и у неё, или после неё G53.1")));

@@ -146,11 +146,11 @@ pub(crate) fn check(words: &Words<'_, '_, '_>, demand: &Demand<'_>, state: &Moda
         return Err(words
             .refuse(
                 codes::NO_TURNING,
-                both!("an increment where a place was expected", "приращение там, где ожидалось место"),
+                both!("an increment where a place was expected", "приращение там, где ожидалась координата"),
                 span,
                 both!("U and W add to X and Z", "U и W прибавляются к X и Z"),
             )
-            .help(both!("write the place with X and Z", "напишите место словами X и Z")));
+            .help(both!("write the place with X and Z", "напишите координаты словами X и Z")));
     }
     let arc = matches!(state.motion, MotionMode::Arc(..)) && demand.owner == Owner::Motion;
     if arc && words.has(AXIS_LETTERS.or(ARC_LETTERS)) && state.plane != Plane::Zx {
@@ -159,7 +159,7 @@ pub(crate) fn check(words: &Words<'_, '_, '_>, demand: &Demand<'_>, state: &Moda
                 codes::NO_TURNING,
                 both!("an arc out of the plane of X and Z", "дуга не в плоскости X и Z"),
                 words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-                both!("a lathe turns arcs in G18", "токарный станок режет дуги в G18"),
+                both!("a lathe turns arcs in G18", "на токарном станке дуги выполняются в G18"),
             )
             .help(both!("write G18 before it", "напишите перед ней G18")));
     }

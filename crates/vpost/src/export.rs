@@ -162,7 +162,7 @@ pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure
         return Err(Failure::option(
             both!(
                 "the profile corrects by error vectors, which are no functions of axes",
-                "профиль исправляет по векторам ошибок, а это не функции осей"
+                "профиль исправляет по векторам погрешности, а это не функции осей"
             ),
             both!("write them as a lattice: `--format lattice`", "выведите их решёткой: `--format lattice`"),
         ));

@@ -111,7 +111,7 @@ impl Cell {
     #[must_use]
     pub fn part(&self) -> Text {
         let russian = match (self.by.as_str(), self.cell.as_str()) {
-            ("component", "along the bar") => "вдоль датчика".to_owned(),
+            ("component", "along the bar") => "вдоль измерителя".to_owned(),
             ("direction", "unknown") => "неизвестно".to_owned(),
             ("feed", cell) => cell.replace("mm/min", "мм/мин"),
             ("load", cell) => cell.replace("kg", "кг"),

@@ -258,7 +258,7 @@ fn ends(data: &Measurements) -> Vec<(Text, Vector, Vector)> {
             ));
         }
     }
-    all.push((Text::pair("the body diagonal", "диагональ тела"), low, high));
+    all.push((Text::pair("the body diagonal", "объёмную диагональ"), low, high));
     all
 }
 

@@ -296,9 +296,13 @@ fn implausible(kind: EffectKind, terms: &[(Term, f64)]) -> Option<Why> {
         EffectKind::Backlash(_) | EffectKind::LostMotion { .. } => {
             (500.0, ["a play of a millimetre is felt by hand", "люфт в миллиметр чувствуется рукой"])
         }
-        EffectKind::Pitch(_) => {
-            (200.0, ["no screw errs by 0.2 mm within a turn", "винт не ошибается на 0.2 мм за оборот"])
-        }
+        EffectKind::Pitch(_) => (
+            200.0,
+            [
+                "no screw errs by 0.2 mm within a turn",
+                "винтов с погрешностью 0.2 мм в пределах оборота не бывает",
+            ],
+        ),
         EffectKind::Squareness(..) => (
             20_000.0,
             [
@@ -310,7 +314,7 @@ fn implausible(kind: EffectKind, terms: &[(Term, f64)]) -> Option<Why> {
             10_000.0,
             [
                 "a scale wrong by 10 mm per metre is a wrong unit",
-                "масштаб с ошибкой 10 мм на метр — это не та единица",
+                "погрешность масштаба 10 мм на метр — это не та единица",
             ],
         ),
         EffectKind::ServoLag(_) | EffectKind::ServoMismatch(..) => {

@@ -110,17 +110,17 @@ impl Assembly<'_> {
             ),
             EffectKind::Pitch(a) => both!(
                 "{} errs by {swing:.1} µm once every {:.2} mm: one turn of its screw",
-                "{} ошибается на {swing:.1} мкм каждые {:.2} мм: один оборот винта",
+                "{} даёт погрешность {swing:.1} мкм с периодом {:.2} мм: это один оборот винта",
                 axis(a),
                 shape.pitch_mm
             ),
             EffectKind::Angular { about, axis: a } => {
                 let turns = if about == a {
-                    Text::pair("rolls", "кренится")
+                    Text::pair("rolls", "отклоняется по крену")
                 } else if about == 2 {
-                    Text::pair("yaws", "рыскает")
+                    Text::pair("yaws", "отклоняется по рысканию")
                 } else {
-                    Text::pair("pitches", "клюёт")
+                    Text::pair("pitches", "отклоняется по тангажу")
                 };
                 both!(
                     "{} {turns} as it travels: {swing:.1} µm at the tool",
@@ -156,7 +156,7 @@ impl Assembly<'_> {
             ),
             EffectKind::Eccentricity(a) => both!(
                 "{} errs once per turn by {swing:.1} µm",
-                "{} ошибается раз за оборот на {swing:.1} мкм",
+                "{} даёт погрешность раз за оборот: {swing:.1} мкм",
                 ["A", "B", "C"][a]
             ),
             EffectKind::ProbeLobing => both!(
@@ -208,7 +208,7 @@ impl Assembly<'_> {
             }
             EffectKind::Local(a) => both!(
                 "{} errs by {swing:.1} µm near {:.0} mm, over {:.0} mm",
-                "{} ошибается на {swing:.1} мкм около {:.0} мм, на участке {:.0} мм",
+                "{} даёт погрешность {swing:.1} мкм около {:.0} мм, на участке {:.0} мм",
                 axis(a),
                 shape.centre_mm,
                 shape.width_mm

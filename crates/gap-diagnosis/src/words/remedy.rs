@@ -77,7 +77,7 @@ pub const fn remedy(kind: EffectKind) -> Text {
         ),
         EffectKind::InstrumentDrift => Text::pair(
             "Let the instrument settle and return to a reference point between lines; the machine is not the cause.",
-            "Дайте прибору установиться и между линиями возвращайтесь к опорной точке; станок не причина.",
+            "Дайте прибору выйти на режим и между линиями возвращайтесь к опорной точке; станок не причина.",
         ),
         EffectKind::Step(_) => Text::pair(
             "Ask what happened at that time (collision, clamping, restart) and measure again.",

@@ -61,7 +61,7 @@ impl Profile {
             (
                 Text::pair("chamfer of threads", "сбег резьбы"),
                 turning.thread_chamfer_leads,
-                Text::pair(" leads", " шагов"),
+                Text::pair(" leads", " ходов"),
             ),
             (
                 Text::pair("its angle", "его угол"),
@@ -69,7 +69,7 @@ impl Profile {
                 Text::pair(" degrees", " градусов"),
             ),
             (
-                Text::pair("escape of roughing", "отскок при черновой"),
+                Text::pair("escape of roughing", "отвод при черновой"),
                 turning.roughing_escape_mm,
                 Text::pair(" mm", " мм"),
             ),
@@ -125,7 +125,7 @@ impl Profile {
         }
         if let Some(chips) = turning.drill_chips {
             said.push(if chips {
-                Text::pair("pecks break the chip", "врезания ломают стружку")
+                Text::pair("pecks break the chip", "врезания дробят стружку")
             } else {
                 Text::pair("pecks go back to R", "после врезания отвод до R")
             });

@@ -56,7 +56,7 @@ impl Writer<'_> {
                 codes::CALLED_CYCLE,
                 words.whole(),
                 both!("a cycle under G91", "цикл при G91"),
-                both!("its moves are places", "его ходы заданы местами"),
+                both!("its moves are places", "его ходы заданы координатами"),
                 both!("write G90 before it", "напишите перед ним G90"),
             ));
         }

@@ -275,7 +275,7 @@ fn pecks(
                 both!("CYCLE83 of an unknown kind", "CYCLE83 неизвестного вида"),
                 both!(
                     "argument 12: 0 breaks chips, 1 removes them",
-                    "аргумент 12: 0 ломает стружку, 1 удаляет её"
+                    "аргумент 12: 0 — дробление стружки, 1 — её вывод"
                 ),
             ));
         }

@@ -188,7 +188,7 @@ impl Writer<'_, '_> {
             return Err(words.contour_fault(
                 span,
                 both!("the block of Q stands before the block of P", "кадр Q стоит раньше кадра P"),
-                both!("Q ends the contour", "Q кончает контур"),
+                both!("Q ends the contour", "Q завершает контур"),
             ));
         }
         let mut state = self.state.clone();

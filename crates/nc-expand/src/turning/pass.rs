@@ -216,7 +216,7 @@ impl Writer<'_, '_> {
         let Some(leads) = self.turning.cycles.thread_chamfer_leads else {
             return Err(words.parameter_fault(
                 words.whole(),
-                &both!("the chamfer at the end of a thread", "фаска в конце резьбы"),
+                &both!("the chamfer at the end of a thread", "сбег резьбы"),
                 "thread_chamfer_leads",
                 "0.0",
             ));
@@ -246,7 +246,7 @@ impl Writer<'_, '_> {
                 return Err(words.cycle_fault(
                     words.whole(),
                     both!("a thread whose lead is not certain", "резьба, ход которой неясен"),
-                    both!("its chamfer is so many leads long", "её фаска длиной в столько-то ходов"),
+                    both!("its chamfer is so many leads long", "её сбег длиной в столько-то ходов"),
                     both!("write F with a point in this block", "напишите в этом кадре F с точкой"),
                 ));
             }
@@ -265,8 +265,8 @@ impl Writer<'_, '_> {
         if share < 0.0 || outwards > (clear_mm - begins[0]).abs() {
             return Err(words.cycle_fault(
                 words.whole(),
-                both!("a thread shorter than its chamfer", "резьба короче своей фаски"),
-                both!("its chamfer is {length} long and leads {outwards:.4} outwards", "длина фаски {length}, и она уводит наружу на {outwards:.4}"),
+                both!("a thread shorter than its chamfer", "резьба короче своего сбега"),
+                both!("its chamfer is {length} long and leads {outwards:.4} outwards", "длина сбега {length}, и он уводит наружу на {outwards:.4}"),
                 both!("correct `thread_chamfer_leads` or `thread_chamfer_deg` in the profile, or start further out", "исправьте `thread_chamfer_leads` или `thread_chamfer_deg` в профиле или начните дальше от детали"),
             ));
         }

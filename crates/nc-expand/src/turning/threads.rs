@@ -59,7 +59,7 @@ impl Writer<'_, '_> {
                 ),
                 both!(
                     "finishing passes, chamfer, angle and infeeds are parameters of the control then",
-                    "чистовые проходы, фаска, угол и врезания — тогда параметры стойки"
+                    "чистовые проходы, сбег, угол и врезания — тогда параметры стойки"
                 ),
                 both!(
                     "write the first block, as in `G76 P020000 Q100 R0.05`",
@@ -207,7 +207,7 @@ impl Writer<'_, '_> {
         )?;
         let chamfer = said(
             cycles.thread_chamfer_leads,
-            both!("the chamfer at the end", "фаска в конце"),
+            both!("the chamfer at the end", "сбег в конце"),
             "thread_chamfer_leads",
             "1",
         )?;

@@ -155,7 +155,7 @@ fn plane_axes(words: &Words<'_, '_, '_>, state: &Modal, form: CurveCode, span: S
             words,
             span,
             both!("{} outside the plane of G17", "{} не в плоскости G17", words.text(span)),
-            both!("this control cuts it in X and Y only", "эта стойка режет её только в X и Y"),
+            both!("this control cuts it in X and Y only", "эта стойка обрабатывает её только в X и Y"),
         )
         .help(both!(
             "write G17 before it, or G5.2 for another plane",

@@ -39,7 +39,7 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
         "Displacements are drawn {times} their size. Without {causes} the largest would be {largest} µm.",
         "Смещения показаны увеличенными: {times}. Без причин ({causes}) наибольшее было бы {largest} мкм.",
     ),
-    ("still", "Displacements are drawn {times} times their size.", "Смещения увеличены в {times} раз."),
+    ("still", "Displacements are drawn {times} times their size.", "Увеличение смещений: {times}\u{d7}."),
     ("skip", "Skip to the place that is looked at", "Перейти к выбранному месту"),
     ("languages", "Language", "Язык"),
     (

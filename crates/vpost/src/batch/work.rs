@@ -156,7 +156,7 @@ impl<'a> Batch<'a> {
             let mut outcome = Outcome::of(self.record(item));
             let diagnostic = Diagnostic::error(
                 DEFECT,
-                both!("vpost broke down on {}", "vpost сломался на {}", item.input.display()),
+                both!("vpost broke down on {}", "сбой vpost на {}", item.input.display()),
             )
             .help(both!(
                 "this is a defect of vpost; please report it with the program and the lines above",

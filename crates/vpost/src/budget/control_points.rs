@@ -279,7 +279,7 @@ fn from_file(
     if machine.model().depends_on_direction() && commands.iter().any(|c| c.direction.contains(&0)) {
         what.push(&Text::pair(
             ", where dir_x, dir_y, dir_z do not say: the mean of both directions, without lost motion",
-            ", где dir_x, dir_y, dir_z не указаны: среднее обоих направлений, без потери хода",
+            ", где dir_x, dir_y, dir_z не указаны: среднее обоих направлений, без мёртвого хода",
         ));
     }
     Ok(ControlPoints { commands, what })
@@ -289,7 +289,7 @@ fn too_many(what: &str, count: usize, directions: usize) -> Failure {
     let each = if directions > 1 {
         both!(
             " (each node from {directions} sides, for lost motion)",
-            " (каждый узел с {directions} сторон, из-за потери хода)"
+            " (каждый узел с {directions} сторон, из-за мёртвого хода)"
         )
     } else {
         Text::EMPTY

@@ -99,7 +99,7 @@ fn functions(old: &Profile, new: &Profile, uncertainty_mm: f64, volume: &Volume)
         if change.reversal.abs() * arm > 1.5 * uncertainty_mm {
             text.push(&both!(
                 "  reversal value of {name} by {:+.2} {unit}\n",
-                "  величина реверса {name} на {:+.2} {unit:#}\n",
+                "  зона нечувствительности {name} на {:+.2} {unit:#}\n",
                 change.reversal * factor
             ));
         }

@@ -219,7 +219,7 @@ fn say_directions(axis: Axis, all: &[Series]) -> Result<(), Failure> {
     Err(Failure::option(
         both!(
             "`--directions mean`: no reading of E{axis}{axis} says from which side {axis} came, and its reversal value is made of that",
-            "`--directions mean`: ни один отсчёт E{axis}{axis} не говорит, с какой стороны подошла ось {axis}, а зона реверса находится по этому"
+            "`--directions mean`: ни один отсчёт E{axis}{axis} не говорит, с какой стороны подошла ось {axis}, а зона нечувствительности находится по этому"
         ),
         both!(
             "add the column dir (1 upwards, -1 downwards), or leave the option out: one table for both directions is written then",

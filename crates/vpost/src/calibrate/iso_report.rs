@@ -43,7 +43,7 @@ pub(super) fn figures(e: &Evaluation) -> Vec<Figure> {
         ),
         of("R↑", "repeatability, up", "повторяемость, вверх", up.map(|d| d.repeatability)),
         of("R↓", "repeatability, down", "повторяемость, вниз", down.map(|d| d.repeatability)),
-        of("B", "largest reversal value", "наибольшая величина реверса", e.reversal),
+        of("B", "largest reversal value", "наибольшая зона нечувствительности (реверс)", e.reversal),
     ]
     .into_iter()
     .flatten()
@@ -88,7 +88,7 @@ pub(super) fn lines(title: &str, e: &Evaluation, scale: f64, unit: &Text) -> Tex
     if let Some(b) = e.mean_reversal {
         out.push(&both!(
             "  B̄   {}            mean reversal value\n",
-            "  B̄   {}            средняя величина реверса\n",
+            "  B̄   {}            средняя зона нечувствительности (реверс)\n",
             v(b)
         ));
     }

@@ -131,7 +131,7 @@ pub(super) fn reversal(series: &Series, function: &Function) -> Result<(), Failu
     }
     let message = both!(
         "{}: at every target {} stands further when it comes from below than from above, by {} um on average: lost motion is the other way round",
-        "{}: в каждой цели {} при подходе снизу стоит дальше, чем сверху, в среднем на {} мкм: потеря хода обратного знака",
+        "{}: в каждой цели {} при подходе снизу стоит дальше, чем сверху, в среднем на {} мкм: мёртвый ход обратного знака",
         series.source,
         series.axis,
         short(mean * 1e3, 3)

@@ -71,7 +71,7 @@ pub(super) fn html(study: &Study, facts: &Facts, json: &str, language: Language)
         },
         Section {
             id: "diagonals",
-            title: Text::pair("Body diagonals", "Диагонали тела"),
+            title: Text::pair("Body diagonals", "Объёмные диагонали"),
             body: diagonals(study, language),
         },
         Section {
@@ -497,10 +497,11 @@ fn diagonals(study: &Study, language: Language) -> Markup {
     let header = match language {
         Language::English => ["diagonal", "systematic E", "mean M", "reversal B", "length error"],
         Language::Russian => {
-            ["диагональ", "систематическое E", "среднее M", "зона реверса B", "погрешность длины"]
+            ["диагональ", "систематическое E", "среднее M", "зона нечувствительности B", "погрешность длины"]
         }
     };
-    let title = say!(language, "Positioning along the body diagonals", "Позиционирование по диагоналям тела");
+    let title =
+        say!(language, "Positioning along the body diagonals", "Позиционирование по объёмным диагоналям");
     let caption = say!(
         language,
         "Deviation forward along each diagonal, \u{b5}m, as an interferometer would read it (ISO 230-6); P and N: whether X, Y, Z run to plus or to minus. Spread between diagonals speaks of squareness, a common slope of scale.",

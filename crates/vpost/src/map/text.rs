@@ -102,7 +102,7 @@ fn diagonals(study: &Study, language: Language, out: &mut String) {
     let heading = say!(
         language,
         "body diagonals (ISO 230-6), um      systematic E     mean M  reversal B  length error",
-        "диагонали тела (ISO 230-6), мкм      систем. откл. E  среднее M    реверс B  погр. длины"
+        "объёмные диагонали (ISO 230-6), мкм  систем. откл. E  среднее M    реверс B  погр. длины"
     );
     let _ = writeln!(out, "\n{heading}");
     for diagonal in &study.diagonals {

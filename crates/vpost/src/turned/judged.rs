@@ -127,12 +127,12 @@ impl Form {
             }
             Lead::Cone if self.cone_um > 0.0 => both!(
                 "it is a cone, {} \u{b5}m thicker on the diameter at the end away from the chuck",
-                "он конус, у дальнего от патрона конца толще на {} мкм по диаметру",
+                "он конусный, у дальнего от патрона конца толще на {} мкм по диаметру",
                 um(self.cone_um)
             ),
             Lead::Cone => both!(
                 "it is a cone, {} \u{b5}m thicker on the diameter at the chuck",
-                "он конус, у патрона толще на {} мкм по диаметру",
+                "он конусный, у патрона толще на {} мкм по диаметру",
                 um(-self.cone_um)
             ),
             Lead::Barrel => both!(

@@ -102,7 +102,7 @@ impl<'t> Verdict<'t> {
             Self::Open { degrees } => say!(
                 language,
                 " over the {} degrees that were read",
-                " на измеренных {} градусах",
+                " на измеренных {}°",
                 language.digits(*degrees, 0)
             ),
             Self::Unexplained => say!(
@@ -358,7 +358,7 @@ fn not_drawn(test: &CircularTest, names: &[String], language: Language) -> Marku
                 (say!(
                     language,
                     "Run {}, {}, covers {} degrees of the circle: nothing is drawn where nothing was read, and G and the sizes of causes count what was read alone.",
-                    "Проход {}, {:#}, охватывает {} градусов окружности: где отсчётов нет, ничего не нарисовано, а G и величины причин относятся только к измеренному.",
+                    "Проход {}, {:#}, охватывает {}° окружности: где отсчётов нет, ничего не нарисовано, а G и величины причин относятся только к измеренному.",
                     shown(names.get(t.run).map_or("", String::as_str)),
                     sense_name(t.sense),
                     language.digits(360.0 - t.gap_rad.to_degrees(), 0)
@@ -414,7 +414,7 @@ fn figures(test: &CircularTest, language: Language) -> Markup {
         let words = say!(
             language,
             "circular hysteresis, at {} degrees",
-            "круговой гистерезис, на {} градусах",
+            "круговой гистерезис, на {}°",
             language.digits(h.angle_rad.to_degrees(), 1)
         );
         rows.push(row("H", um(h.value_mm, language), words));
@@ -503,7 +503,7 @@ fn patterns(test: &CircularTest, language: Language) -> Markup {
             (say!(
                 language,
                 "Causes are drawn {} times larger than the circle; a ring is {} \u{b5}m. Shares are of the sum of what the causes make.",
-                "Причины увеличены в {} раз; шаг колец {} мкм. Доли — от суммы вкладов причин.",
+                "Причины нарисованы с увеличением {}\u{d7}; шаг колец {} мкм. Доли — от суммы вкладов причин.",
                 language.number(m.times),
                 language.number(m.ring)
             ))

@@ -288,7 +288,7 @@ fn axis(read: &Read, language: Language) -> Markup {
                         (say!(
                             language,
                             "Runs in one direction only: of the other, and of the reversal value B, nothing is known. A, E, M and R are those of the direction that was run.",
-                            "Проходы только в одном направлении: о другом и о величине реверса B ничего не известно. A, E, M и R относятся к пройденному направлению."
+                            "Проходы только в одном направлении: о другом и о зоне нечувствительности (реверсе) B ничего не известно. A, E, M и R относятся к пройденному направлению."
                         ))
                     }
                 }
@@ -390,7 +390,7 @@ fn results(e: &Evaluation, language: Language) -> Markup {
     };
     let mut rows: Vec<Vec<String>> = iso_report::figures(e).into_iter().map(row).collect();
     if let Some(mean) = e.mean_reversal {
-        let name = say!(language, "mean reversal value", "средняя величина реверса");
+        let name = say!(language, "mean reversal value", "средняя зона нечувствительности (реверс)");
         rows.push(vec!["B\u{304}".to_owned(), um(mean, language), String::new(), String::new(), name]);
     }
     let header = match language {

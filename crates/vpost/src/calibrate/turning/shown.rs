@@ -191,7 +191,7 @@ impl<'a> Pieces<'a> {
         let header = [
             both!("part", "деталь"),
             both!("Z, mm", "Z, мм"),
-            both!("read, \u{b5}m", "прочитано, мкм"),
+            both!("read, \u{b5}m", "отсчёт, мкм"),
             both!("on the curve's scale", "на шкале кривой"),
             both!("from the curve", "от кривой"),
             Text::EMPTY,

@@ -158,7 +158,7 @@ pub(super) fn vectors(
     let caption = say!(
         language,
         "Errors are drawn {times} times their size. {thinning}",
-        "Погрешности увеличены в {times} раз. {thinning}"
+        "Увеличение погрешностей: {times}\u{d7}. {thinning}"
     );
     let title = say!(language, "Error vectors", "Векторы погрешности");
     Some(figure(language, &views(language, &title, &all, magnification), &caption, None))

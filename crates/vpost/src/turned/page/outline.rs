@@ -63,13 +63,13 @@ impl Shown<'_> {
                 &curves_with(
                     self.language,
                     &self.say(&both!("Radius along Z", "Радиус вдоль Z")),
-                    &self.say(&both!("radius up to {} mm, deviations {times} times as large", "радиус до {} мм, отклонения увеличены в {times} раз", mm(radius_mm))),
+                    &self.say(&both!("radius up to {} mm, deviations {times} times as large", "радиус до {} мм, увеличение отклонений {times}\u{d7}", mm(radius_mm))),
                     &panel(label(&in_mm), radii),
                     &radii_series,
                 ),
                 &self.say(&both!(
                     "The outline of the part, its deviations drawn {times} times as large as they are. Faces and shoulders have no radius and are left out.",
-                    "Контур детали, отклонения увеличены в {times} раз. У торцов и уступов радиуса нет, они пропущены."
+                    "Контур детали, увеличение отклонений {times}\u{d7}. У торцов и уступов радиуса нет, они пропущены."
                 )),
                 None,
             ))

@@ -147,7 +147,7 @@ impl Drawn {
         let title = both!("Roundness at Z {z} mm", "Круглость в Z {z} мм");
         let described = both!(
             "RONt {} \u{b5}m, magnified {times} times",
-            "RONt {} мкм, увеличено в {times} раз",
+            "RONt {} мкм, увеличение {times}\u{d7}",
             um(self.roundness_um)
         );
         let unit = both!("\u{b5}m", "мкм");
