@@ -5,6 +5,7 @@
 //! which motion code is in force in the *output*, so that a block that relied on a modal code still
 //! finds it.
 
+mod ascii;
 mod edit;
 mod emitter;
 mod guard;
@@ -14,6 +15,7 @@ mod provenance;
 mod splice;
 mod words;
 
+pub use ascii::ascii;
 pub use edit::{Piece, WordEdit, WordEdits};
 pub use emitter::Emitter;
 pub use guard::{Asked, Stated, guard, without_guards};

@@ -6,13 +6,15 @@ use std::ops::Range;
 use nc_syntax::dialect::{Paren, Semicolon};
 use nc_syntax::{Block, Dialect, ItemKind, line_ending};
 
+use crate::ascii;
+
 /// What the comment begins with, and what is looked for, in any case.
 const MARKER: &[u8] = b"CORRECTED BY VPOST";
 
 /// The comment that marks a program as corrected: `(CORRECTED BY VPOST text)` or `; CORRECTED …`.
 ///
 /// Upper case without brackets, `%`, `:` or anything beyond ASCII, which some controls take for the end
-/// of the comment, the start of a program or an alarm; cut at the dialect's longest block. Empty where
+/// of the comment, the start of a program or an alarm: letters of other alphabets as [`ascii`] spells them; cut at the dialect's longest block. Empty where
 /// the dialect has no comments. No line end.
 #[must_use]
 pub fn provenance_comment(dialect: &Dialect, text: &str) -> Vec<u8> {
@@ -27,11 +29,12 @@ pub fn provenance_comment(dialect: &Dialect, text: &str) -> Vec<u8> {
     if !text.is_empty() {
         comment.push(b' ');
     }
-    comment.extend(text.chars().map(|character| match character {
+    comment.extend(ascii(text).chars().map(|character| match character {
         '(' | '[' | '{' => b'[',
         ')' | ']' | '}' => b']',
         '%' | ':' | ';' => b'-',
         ' '..='~' => character.to_ascii_uppercase() as u8,
+        // A tab, the end of a line.
         _ => b'_',
     }));
     let limit = dialect.output.max_block_bytes as usize;

@@ -12,7 +12,7 @@ fn the_comment_is_safe_in_every_control() {
     let text = "0.1.0, profile: Стан 50% (new), engine rigid-body";
     assert_eq!(
         String::from_utf8(provenance_comment(&dialect, text)).unwrap(),
-        "(CORRECTED BY VPOST 0.1.0, PROFILE- ____ 50- [NEW], ENGINE RIGID-BODY)"
+        "(CORRECTED BY VPOST 0.1.0, PROFILE- STAN 50- [NEW], ENGINE RIGID-BODY)"
     );
     dialect.output.max_block_bytes = 30;
     assert_eq!(provenance_comment(&dialect, text), b"(CORRECTED BY VPOST 0.1.0, PR)");

@@ -49,7 +49,7 @@ pub(super) fn vtk(study: &Study) -> Vec<u8> {
     let [nx, ny, nz] = grid.counts();
     // The title is one line of at most 255 characters.
     let plain = |c: char| if c.is_ascii_graphic() { c } else { ' ' };
-    let name: String = study.machine.chars().map(plain).take(200).collect();
+    let name: String = nc_emit::ascii(&study.machine).chars().map(plain).take(200).collect();
     let mut out = format!(
         "# vtk DataFile Version 3.0\nvpost map of {name}\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS {nx} {ny} {nz}\n"
     );

@@ -132,7 +132,7 @@ impl Blocks<'_> {
         let plain = |c: char| {
             if c.is_ascii_alphanumeric() || " -.".contains(c) { c.to_ascii_uppercase() } else { ' ' }
         };
-        let plain: String = text.chars().map(plain).collect();
+        let plain: String = nc_emit::ascii(text).chars().map(plain).collect();
         if matches!(dialect.paren, Paren::Comment { .. }) {
             self.block(&format!("({plain})"));
         } else if dialect.semicolon == Semicolon::Comment {
