@@ -118,6 +118,8 @@ const fn of(base: Family, name: &'static str, letters: Letters, aliases: &'stati
     Family { name, letters, aliases, ..base }
 }
 
+const POSITION: &str = "position";
+
 static FAMILIES: &[Family] = &[
     of(TEXT, "run", ONE, &["серия", "проход", "линия", "установка", "set up", "setup"]),
     of(PLACE, "%", XYZ, &["command %", "nominal %", "координата %", "задано %", "% задано", "ось %"]),
@@ -143,8 +145,8 @@ static FAMILIES: &[Family] = &[
     of(PLACE, "tool_%", XYZ, &["вылет %", "инструмент %"]),
     of(PLAIN, "dir_%", XYZABC, &["direction %", "направление %"]),
     of(PLAIN, "dir", ONE, &["direction", "направление"]),
-    of(PLACE, "position", ONE, &["target", "позиция", "положение", "координата"]),
-    of(TURN, "position", ONE, &["angle", "угол", "позиция", "положение"]),
+    of(PLACE, POSITION, ONE, &["target", "позиция", "положение", "координата"]),
+    of(TURN, POSITION, ONE, &["angle", "угол", "позиция", "положение"]),
     of(Family { units: Some([MM, UM]), ..PLAIN }, ERROR_FUNCTION, TRANSLATIONS, &[]),
     of(Family { units: Some([RAD, URAD]), ..PLAIN }, ERROR_FUNCTION, ROTATIONS, &[]),
     of(FEED, "feed", ONE, &["подача"]),
@@ -218,8 +220,18 @@ impl Column {
     }
 
     /// Sign of the column that this heading, without its unit, names; `None` where it names another.
-    fn is_named(&self, heading: &str) -> Option<f64> {
-        let heading = plain(heading);
+    ///
+    /// * `axis` – that of a table of error functions: `Position X` is the position there, and so is `X`
+    fn is_named(&self, heading: &str, axis: Option<char>) -> Option<f64> {
+        let mut heading = plain(heading);
+        if let Some(axis) = axis.filter(|_| self.family.name == POSITION) {
+            if heading.len() == 1 && heading.starts_with(axis) {
+                return Some(1.0);
+            }
+            if heading.ends_with([' ', axis].iter().collect::<String>().as_str()) {
+                heading.truncate(heading.len() - 2);
+            }
+        }
         let is = |pattern: &str| plain(&filled(pattern, self.letter)) == heading;
         if is(self.family.name) || self.family.aliases.iter().any(|alias| is(alias)) {
             return Some(1.0);
@@ -295,6 +307,7 @@ pub(crate) fn said(header: &str, known: &[Column]) -> Said {
         return of_unit(place, &known[place], 1.0, known[place].family.units.map(|units| units[unit]));
     }
     let (mut rest, mut units): (&str, Vec<&str>) = (header.trim(), Vec::new());
+    let axis = only_axis(known);
     // The same spelling may be several units (с: °C and seconds): the column says which is meant.
     let unit_of = |place: usize, text: &str| {
         Unit::named(text, known[place].unit().map(|own| own.quantity)).expect("taken off as a unit")
@@ -303,7 +316,7 @@ pub(crate) fn said(header: &str, known: &[Column]) -> Said {
         let named: Vec<(usize, f64)> = known
             .iter()
             .enumerate()
-            .filter_map(|(place, column)| Some((place, column.is_named(rest)?)))
+            .filter_map(|(place, column)| Some((place, column.is_named(rest, axis)?)))
             .collect();
         // Columns of one name differ in what they measure.
         let fits = |(place, _): &(usize, f64)| {
@@ -329,6 +342,14 @@ pub(crate) fn said(header: &str, known: &[Column]) -> Said {
         rest = shorter;
         units.push(unit);
     }
+}
+
+/// The axis of the error functions in the list, in small; `None` where there are none, or of several axes.
+fn only_axis(known: &[Column]) -> Option<char> {
+    let functions = known.iter().filter(|column| column.family.name == ERROR_FUNCTION);
+    let mut axes = functions.filter_map(|column| column.letter.chars().nth(1));
+    let first = axes.next()?;
+    axes.all(|axis| axis == first).then(|| first.to_ascii_lowercase())
 }
 
 fn of_unit(place: usize, column: &Column, sign: f64, unit: Option<Unit>) -> Said {
@@ -392,6 +413,17 @@ mod tests {
             assert_eq!((known[place].key.as_str(), (found / factor * 1e9).round()), (key, 1e9), "{header}");
         }
         assert!(matches!(said("X", &known), Said::NoUnit { place: 1 }));
+        // A table of one axis may name it beside the position; of another it is not the position.
+        let known = columns(&["position_mm", "EXX_mm", "EYX_mm"]);
+        for header in ["Положение X, мм", "Позиция Х (мм)", "Target X [mm]", "X, мм", "position_mm"]
+        {
+            assert!(matches!(said(header, &known), Said::Column { place: 0, .. }), "{header}");
+        }
+        assert!(matches!(said("Положение Y, мм", &known), Said::Unknown));
+        let several = columns(&["position_mm", "EXX_mm", "EYY_mm"]);
+        assert!(matches!(said("Положение X, мм", &several), Said::Unknown));
+        let known =
+            columns(&["run", "x_mm", "a_deg", "dx_um", "temp_c", "time_s", "tool_x_mm", "feed_mm_min"]);
         assert!(matches!(said("x_mm [um]", &known), Said::TwoUnits { place: 1, .. }));
         assert!(matches!(said("dx_deg", &known), Said::WrongUnit { place: 3, .. }));
         assert!(matches!(said("run, mm", &known), Said::WrongUnit { place: 0, .. }));
