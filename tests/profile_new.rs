@@ -30,6 +30,26 @@ fn what_is_written_is_a_good_profile_of_that_machine() {
     let predicted = String::from_utf8(predicted.stdout).expect("text");
     let row = predicted.lines().nth(1).expect("a row");
     assert_eq!(row.split(',').nth(6).map(str::parse), Some(Ok(5.0)), "{predicted}");
+    // In Russian it is the same profile, with Russian comments.
+    let [english, russian] = ["en", "ru"].map(|language| {
+        let ran = new(&[
+            &TRAVELS[..],
+            &["--chain", "[w C X Y b Z t]", "--centre", "C=-380,-210,0", "--lang", language],
+        ]
+        .concat());
+        String::from_utf8(ran.stdout).expect("text")
+    });
+    let keys = |text: &str| {
+        let lines = text.lines().map(|line| {
+            line.trim_start_matches("# ").split('#').next().unwrap_or_default().trim().to_owned()
+        });
+        lines.filter(|line| line.contains('=') || line.starts_with('[')).collect::<Vec<_>>()
+    };
+    assert_eq!(keys(&english), keys(&russian));
+    for line in russian.lines().filter_map(|line| line.strip_prefix("# ")).filter(|line| !line.contains('='))
+    {
+        assert!(line.chars().filter(|c| ('а'..='я').contains(c)).count() > 10, "{line}");
+    }
     // What is there is somebody's work.
     let again = new(&[&TRAVELS[..], &["-o", &output]].concat());
     assert_eq!(again.status.code(), Some(2));

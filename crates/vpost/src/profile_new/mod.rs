@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use control_files::Machine;
-use diagnostic::both;
+use diagnostic::{Language, both, say};
 use machine_model::Axis;
 
 use crate::message::{Failure, Messages};
@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &New, messages: &Messages) -> Result<(), Failure> {
         Some(path) => Machine::read(&file::name(path), &file::read(path)?, arguments.device.as_deref())?,
     };
     let machine = answers::complete(arguments, said, messages)?;
-    let text = text(arguments, &machine)?;
+    let text = text(arguments, &machine, messages.language())?;
     // What is wrong is said of the lines as they would stand there.
     let path = machine.output.as_deref().unwrap_or(Path::new("profile.toml"));
     profile::loaded(path, text.as_bytes())?;
@@ -80,16 +80,26 @@ pub(crate) fn run(arguments: &New, messages: &Messages) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The profile with an example for each section that it has not.
-fn text(arguments: &New, machine: &Answers) -> Result<String, Failure> {
+/// The profile with an example for each section that it has not, and comments for who fills them in.
+fn text(arguments: &New, machine: &Answers, language: Language) -> Result<String, Failure> {
     let chain = &machine.chain;
     let string = |value: &str| toml_edit::Value::from(value).to_string();
+    let keys = say!(
+        language,
+        "Every key: docs/reference.md, or `vpost profile schema`. Check with `vpost profile check`.",
+        "Все ключи: docs/reference.md или `vpost profile schema`. Проверить: `vpost profile check`."
+    );
+    let order = say!(
+        language,
+        "From workpiece to tool, b the bed: what stands before it carries the workpiece.",
+        "От детали к инструменту, b — станина: что стоит до неё, несёт деталь."
+    );
     let mut text = format!(
-        "# Every key: docs/reference.md, or `vpost profile schema`. Check with `vpost profile check`.\n\
+        "# {keys}\n\
          format  = 1\n\
          name    = {}\n\
          control = {}\n\
-         # From workpiece to tool, b the bed: what stands before it carries the workpiece.\n\
+         # {order}\n\
          chain   = {}\n\
          # calibrated = {{ date = \"2026-01-31\", temperature_c = 20.0, instrument = \"interferometer\" }}\n",
         string(&machine.name),
@@ -100,10 +110,11 @@ fn text(arguments: &New, machine: &Answers) -> Result<String, Failure> {
         let letter = axis.letter();
         let [low, high, step] = [range_mm.low, range_mm.high, arguments.resolution].map(|mm| short(mm, 6));
         let _ = writeln!(text, "\n[axis.{letter}]\ntravel_mm     = [{low}, {high}]\nresolution_mm = {step}");
+        let any = say!(language, "and any of", "и любые из");
         let _ = match arguments.table.iter().filter(|table| table.axis == axis).collect::<Vec<_>>()[..] {
             [] => writeln!(
                 text,
-                "# errors      = \"errors_{}.csv\"  # position_mm and any of EX{letter}_um EY{letter}_um EZ{letter}_um EA{letter}_urad EB{letter}_urad EC{letter}_urad",
+                "# errors      = \"errors_{}.csv\"  # position_mm {any} EX{letter}_um EY{letter}_um EZ{letter}_um EA{letter}_urad EB{letter}_urad EC{letter}_urad",
                 letter.to_ascii_lowercase()
             ),
             [table] => writeln!(text, "errors        = {}", string(&table.path)),
@@ -123,29 +134,49 @@ fn text(arguments: &New, machine: &Answers) -> Result<String, Failure> {
     for (axis, point_mm) in &machine.centres_mm {
         let letter = axis.letter();
         let [x, y, z] = point_mm.map(|value| short(value, 6));
-        let _ = writeln!(
-            text,
-            "\n[rotary.{letter}]\n# A point of its line, machine coordinates of the linear axes.\ncentre_mm = [{x}, {y}, {z}]"
+        let point = say!(
+            language,
+            "A point of its line, machine coordinates of the linear axes.",
+            "Точка на её оси, координаты станка по линейным осям."
         );
+        let _ = writeln!(text, "\n[rotary.{letter}]\n# {point}\ncentre_mm = [{x}, {y}, {z}]");
     }
-    text.push_str(
-        "\n# Signs of ISO 230-1, vpost profile show says what they mean.\n\
+    let signs = say!(
+        language,
+        "Signs of ISO 230-1: a positive number means this angle between the axes.",
+        "Знаки по ИСО 230-1: у положительного числа между осями такой угол."
+    );
+    let (above, below) =
+        (say!(language, "above 90°", "больше 90°"), say!(language, "below 90°", "меньше 90°"));
+    let tip = say!(
+        language,
+        "From the point where the tables were measured to the tip, mm.",
+        "От точки, в которой измерены таблицы, до вершины инструмента, мм."
+    );
+    let zero = say!(
+        language,
+        "Machine coordinates of the program's zero.",
+        "Координаты станка, где нуль программы."
+    );
+    let _ = write!(
+        text,
+        "\n# {signs}\n\
          [squareness]\n\
-         # EC0Y_urad = 0.0  # Y against X\n\
-         # EB0Z_urad = 0.0  # Z against X\n\
-         # EA0Z_urad = 0.0  # Z against Y\n\
+         # EC0Y_urad = 0.0  # +X, +Y: {above}\n\
+         # EB0Z_urad = 0.0  # +X, +Z: {below}\n\
+         # EA0Z_urad = 0.0  # +Y, +Z: {above}\n\
          \n\
          [tool]\n\
-         # From the point where the tables were measured to the tip, mm.\n\
+         # {tip}\n\
          # default_mm = [0, 0, 0]\n\
-         # lengths_mm = { H1 = 120.0 }\n\
+         # lengths_mm = {{ H1 = 120.0 }}\n\
          \n\
-         # Machine coordinates of the program's zero.\n\
+         # {zero}\n\
          [work_offsets_mm]\n\
          # G54 = [0, 0, 0]\n\
          \n\
          [correction]\n\
-         # tolerance_um = 1.0\n",
+         # tolerance_um = 1.0\n"
     );
     Ok(text)
 }
