@@ -155,6 +155,10 @@ fn alone_it_shows_what_there_is() {
     let ran = run(&[]);
     assert_eq!(ran.status.code(), Some(2));
     assert!(messages(&ran).contains("Commands:") && messages(&ran).contains("vpost correct --help"));
+    let russian = crate::common::vpost().env("LC_ALL", "ru_RU.UTF-8").output().expect("it starts");
+    let said = messages(&russian);
+    assert!(russian.status.code() == Some(2) && said.contains("Команды:"), "{said}");
+    assert!(said.contains("vpost correct --help"), "{said}");
 }
 
 #[test]

@@ -105,9 +105,7 @@ pub(crate) fn error(error: &clap::Error) -> String {
             format!("команды `{}` нет", text(ContextKind::InvalidSubcommand))
         }
         ErrorKind::MissingRequiredArgument => format!("не хватает: {argument}"),
-        ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            "не хватает команды".to_owned()
-        }
+        ErrorKind::MissingSubcommand => "не хватает команды".to_owned(),
         ErrorKind::ArgumentConflict => {
             let (own, prior) = (text(ContextKind::Custom), text(ContextKind::PriorArg));
             if !own.is_empty() {
