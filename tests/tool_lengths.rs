@@ -138,6 +138,23 @@ fn a_linuxcnc_machine_says_its_zeros_and_lengths() {
     place.write("config/m.ini", "[TRAJ]\nLINEAR_UNITS = mm\n[RS274NGC]\nPARAMETER_FILE = n.var\n");
     let refused = place.corrected(&machine, &with).expect_err("no such file");
     assert!(refused.contains("n.var") && refused.contains("VP0001"), "{refused}");
+    // Zeros of another machine, or in another unit.
+    place.write(
+        "config/m.ini",
+        "[RS274NGC]\nPARAMETER_FILE = m.var\n[EMCIO]\nTOOL_TABLE = ../m.tbl\n[TRAJ]\nLINEAR_UNITS = inch\n",
+    );
+    place.write("m.tbl", "T1 P1 Z4.7\nT2 P2 Z3.7\n");
+    place.write("config/m.var", "5220 1\n5221 100\n5222 3\n5223 2\n");
+    let refused = place.corrected(&machine, &with).expect_err("a zero 2.5 m away");
+    assert!(
+        refused.contains("VP0501") && refused.contains("the program's zero is at X 2540.000 mm: is the"),
+        "{refused}"
+    );
+    let russian = place.corrected(&machine, &[&with[..], &["--lang", "ru"]].concat()).expect_err("the same");
+    assert!(
+        russian.contains("нуль программы в X 2540.000 мм") && russian.contains("от этого станка"),
+        "{russian}"
+    );
     // Another control keeps no such files.
     let refused = place.corrected(&machine, &[&ini]).expect_err("a Fanuc");
     assert!(refused.contains("--linuxcnc-ini"), "{refused}");

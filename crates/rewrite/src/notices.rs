@@ -125,7 +125,7 @@ impl Notices {
         let spirals = largest.warning(
             SPIRAL,
             |count, um| both!("{count} arc(s) end off their circle, the largest by {:.3} mm", "дуги кончаются не на своей окружности, наибольшее отклонение {:.3} мм: {count}", um * 1e-3),
-            both!("the largest; the control cuts a spiral from the one radius to the other, and that is the path", "наибольшее; стойка режет спираль от одного радиуса к другому, и это и есть путь"),
+            both!("the largest; the control cuts a spiral from the one radius to the other, and that is the path", "наибольшее; стойка ведёт по спирали от одного радиуса к другому: это и есть путь"),
             both!("post with more decimals where that matters", "где это важно, выводите с большим числом знаков"),
         );
         let lines = held.names();
@@ -172,6 +172,15 @@ pub(crate) fn other_tool(error: &SolveError, whole: std::ops::Range<u64>) -> Dia
         ))
 }
 
+/// Axis command of the program's zero, mm, where it lies farther beside the volume than that is long: a part is not so
+/// far from its zero, but the zeros of another machine or unit are.
+fn far_zero(axis: char, [low_mm, high_mm]: [f64; 2], context: &Context) -> Option<f64> {
+    let axis = AXIS_NAMES.iter().position(|name| *name == axis)?;
+    let zero_mm = context.frame.to_machine([0.0; 3])[axis];
+    let span_mm = high_mm - low_mm;
+    (zero_mm < low_mm - span_mm || zero_mm > high_mm + span_mm).then_some(zero_mm)
+}
+
 /// What to say of a motion that cannot be corrected.
 pub(crate) fn refusal(
     error: &CorrectionError,
@@ -187,9 +196,15 @@ pub(crate) fn refusal(
             let what = if matches!(motion, Motion::Hole(_)) { both!("this hole", "это отверстие") } else { both!("this feed motion", "этот рабочий ход") };
             Diagnostic::error(OUTSIDE, both!("{what} leaves the calibrated volume", "{what:#} выходит из калиброванного объёма"))
                 .at(span, both!("axis {axis} would be commanded to {value_mm:.3} mm, calibrated is {low_mm} to {high_mm} mm", "ось {axis} пришлось бы вывести в {value_mm:.3} мм, а калибровано от {low_mm} до {high_mm} мм"))
-                .help(both!("place the workpiece inside the volume: `--work-offset` with {axis} moved by {:+.3} mm or further, or accept the nearest point's correction with `--outside clamp`", "поместите деталь в объём: `--work-offset`, где {axis} сдвинута на {:+.3} мм или дальше; или примите поправку ближайшей точки: `--outside clamp`",
-                    if value_mm < low_mm { low_mm - value_mm } else { high_mm - value_mm }
-                ))
+                .help(match far_zero(*axis, [*low_mm, *high_mm], context) {
+                    Some(zero_mm) => both!(
+                        "the program's zero is at {axis} {zero_mm:.3} mm: is the work offset (profile, `--work-offset` or `--linuxcnc-ini`) of this machine, and in millimetres?",
+                        "нуль программы в {axis} {zero_mm:.3} мм: смещение нуля (профиль, `--work-offset` или `--linuxcnc-ini`) от этого станка и в миллиметрах?"
+                    ),
+                    None => both!("place the workpiece inside the volume: `--work-offset` with {axis} moved by {:+.3} mm or further, or accept the nearest point's correction with `--outside clamp`", "поместите деталь в объём: `--work-offset`, где {axis} сдвинута на {:+.3} мм или дальше; или примите поправку ближайшей точки: `--outside clamp`",
+                        if value_mm < low_mm { low_mm - value_mm } else { high_mm - value_mm }
+                    ),
+                })
         }
         CorrectionError::Solve(error @ SolveError::OutsideVectors { .. }) => {
             Diagnostic::error(OUTSIDE, error.text())
@@ -215,8 +230,8 @@ pub(crate) fn refusal(
             .help(both!("choose another engine with `--engine`", "выберите другой метод ключом `--engine`")),
         CorrectionError::MustNotSplit { .. } if context.thread => {
             Diagnostic::error(MUST_NOT_SPLIT, error.text())
-                .at(whole, both!("a thread must stay one block: it is cut in step with the spindle", "резьба остаётся одним кадром: её режут согласованно со шпинделем"))
-                .help(both!("accept that much with `--tolerance`, or cut the thread uncorrected in a program of its own", "примите такое отклонение ключом `--tolerance` или режьте резьбу без исправления, отдельной программой"))
+                .at(whole, both!("a thread must stay one block: it is cut in step with the spindle", "резьба остаётся одним кадром: её нарезают согласованно со шпинделем"))
+                .help(both!("accept that much with `--tolerance`, or cut the thread uncorrected in a program of its own", "примите такое отклонение ключом `--tolerance` или нарезайте резьбу без исправления, отдельной программой"))
         }
         CorrectionError::MustNotSplit { .. } => Diagnostic::error(MUST_NOT_SPLIT, error.text())
             .at(whole, both!("this block must stay one, with none before it: cutter compensation is active", "кадр остаётся одним, и перед ним ничего не вставить: действует коррекция на радиус"))

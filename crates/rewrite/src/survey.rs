@@ -102,7 +102,7 @@ impl Group {
         {
             let names: Vec<&str> = others.iter().map(|entry| entry.name.as_str()).collect();
             let names = names.join(", ");
-            add(&mut face.label, &both!("nor are {names}", "не даны и {names}"));
+            add(&mut face.label, &both!("nor are {names}", "нет и {names}"));
             let written = Entry::written(&entries);
             face.help = Some(both!(
                 "this settles all of them, with your values: {written}",
