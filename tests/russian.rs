@@ -308,3 +308,63 @@ fn a_language_is_asked_for_or_the_locale_says_it() {
     let wrong = said("ru", &["--lang", "xx"]);
     assert!(wrong.starts_with("ошибка[VP0002]") && wrong.contains("`--lang ru`"), "{wrong}");
 }
+
+/// What issue 20 calls bad input, each with words of its own in both languages.
+#[test]
+fn bad_input_is_said_in_both_languages() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("writable");
+        path.to_str().expect("a plain path").to_owned()
+    };
+    let no_axes =
+        at("no_axes.ini", "[EMC]\nMACHINE = mill\n[TRAJ]\nLINEAR_UNITS = mm\nCOORDINATES = X Y Z\n");
+    let turned = at("turned.ini", "[RS274NGC]\nPARAMETER_FILE = turned.var\n[TRAJ]\nLINEAR_UNITS = mm\n");
+    at("turned.var", "5220 1\n5221 0\n5222 0\n5223 0\n5230 15\n");
+    let far = at("far.ini", "[RS274NGC]\nPARAMETER_FILE = far.var\n[TRAJ]\nLINEAR_UNITS = inch\n");
+    at("far.var", "5220 1\n5221 400\n5222 3\n5223 1\n");
+    let program = at("in.ngc", "G21 G90 G94 G17 G54\nG0 X0 Y0 Z50\nG1 X10 F200\nM2\n");
+    let job = |ini: &str| {
+        [
+            "correct",
+            &program,
+            "-m",
+            "machine-profiles/stan_s500.toml",
+            "-d",
+            "linuxcnc",
+            "--linuxcnc-ini",
+            ini,
+        ]
+        .map(str::to_owned)
+        .to_vec()
+    };
+    let words = |line: &str| line.split(' ').map(str::to_owned).collect::<Vec<_>>();
+    let cases: [(Vec<String>, i32, &str, &str); 6] = [
+        (words("explain VP9999"), 2, "there is no message `VP9999`", "сообщения `VP9999` нет"),
+        (words("explain arc"), 2, "there is no message `arc`", "сообщения `arc` нет"),
+        (
+            ["profile", "new", "--from", &no_axes].map(str::to_owned).to_vec(),
+            1,
+            "no axis of this INI file has limits",
+            "ни у одной оси этого INI-файла нет пределов",
+        ),
+        (job(&no_axes), 1, "work offset G54 is not given", "смещение нуля G54 не задано"),
+        (job(&turned), 1, "G54 is turned by 15 degrees about Z", "G54 повёрнуто вокруг Z на 15 градусов"),
+        (
+            job(&far),
+            1,
+            "the program's zero is at X 10160.000 mm: is the work offset",
+            "нуль программы в X 10160.000 мм: смещение нуля",
+        ),
+    ];
+    for (arguments, status, english, russian) in cases {
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let [en, ru] = ["en", "ru"].map(|language| run(&[&arguments[..], &["--lang", language]].concat()));
+        assert_eq!((en.status.code(), ru.status.code()), (Some(status), Some(status)), "{arguments:?}");
+        let (en, ru) = (messages(&en), messages(&ru));
+        assert!(en.contains(english), "{arguments:?}: {en}");
+        assert!(ru.contains(russian), "{arguments:?}: {ru}");
+        assert_eq!(fault(&en, &ru), None, "{arguments:?}: {ru}");
+    }
+}
