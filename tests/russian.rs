@@ -55,6 +55,8 @@ pub(crate) fn fault(english: &str, russian: &str) -> Option<String> {
 #[test]
 fn a_latin_sentence_is_found_and_names_are_none() {
     assert_eq!(latin_sentence("ошибка: the arc has no centre").as_deref(), Some("the arc has"));
+    assert_eq!(decimal_point("шум 1,2 мкм\nвсего 10.5 мкм"), Some("всего 10.5 мкм"));
+    assert_eq!(decimal_point("G1 X10.5 F200\nversion 0.1.0 и"), None);
     let fine = "напишите G90 G0 X10 раздел [tool] профиля CUTTING_EDGE_DEFAULT MD TRANS ATRANS, Renishaw XL";
     assert_eq!(latin_sentence(fine), None);
 }
@@ -162,6 +164,19 @@ fn latin_line(text: &str) -> Option<&str> {
     text.lines().find(|line| {
         let line = NAMES.iter().fold((*line).to_owned(), |line, name| line.replace(name, ""));
         latin_sentence(&line).is_some()
+    })
+}
+
+/// The first line with a decimal point in a number before a Russian word, as its unit.
+fn decimal_point(text: &str) -> Option<&str> {
+    let is_pointed = |word: &str| {
+        let number = word.trim_matches(|c: char| !c.is_ascii_digit());
+        number.contains('.') && number.parse::<f64>().is_ok()
+    };
+    let is_russian = |word: &str| word.starts_with(|c: char| ('а'..='я').contains(&c) || c == '%');
+    text.lines().find(|line| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        words.windows(2).any(|two| is_pointed(two[0]) && is_russian(two[1]))
     })
 }
 
@@ -282,7 +297,9 @@ fn results_and_pages_are_said_in_russian() {
             if let Some(html) = command.contains(&file.as_str()).then(|| std::fs::read_to_string(file)) {
                 let html = html.expect("written");
                 assert!(html.contains("<html lang=\"ru\">"), "{command:?}");
-                said.push((name, texts_of(&html)));
+                let text = texts_of(&html);
+                failed.extend(decimal_point(&text).map(|line| format!("{command:?}, {name}: {line}")));
+                said.push((name, text));
             }
         }
         for (what, text) in said {

@@ -126,6 +126,9 @@ pub trait Numbers: Copy {
     /// A text made for the terminal, where numbers have a point, as a page of this language shows it.
     fn prose(self, text: &Text) -> String;
 
+    /// The same of a text that is in this language already.
+    fn of_terminal(self, text: &str) -> String;
+
     /// A whole number.
     fn count(self, count: impl TryInto<u64>) -> String {
         self.figures(count.try_into().map_or_else(|_| "\u{2014}".to_owned(), |count| count.to_string()))
@@ -141,9 +144,13 @@ impl Numbers for Language {
     }
 
     fn prose(self, text: &Text) -> String {
+        self.of_terminal(text.in_language(self))
+    }
+
+    fn of_terminal(self, text: &str) -> String {
         match self {
-            Self::English => text.english().to_owned(),
-            Self::Russian => with_commas(text.in_language(self)),
+            Self::English => text.to_owned(),
+            Self::Russian => with_commas(text),
         }
     }
 }

@@ -109,7 +109,7 @@ pub(super) fn html(study: &Study, facts: &Facts, json: &str, language: Language)
         });
     }
     if let Some(found) = &study.second_order {
-        let body = html! { @for line in super::text::second_order_lines(found, language) { p { (line) } } };
+        let body = html! { @for line in super::text::second_order_lines(found, language) { p { (language.of_terminal(&line)) } } };
         sections.push(Section {
             id: "second-order",
             title: Text::pair("Second order of rotations", "Второй порядок поворотов"),
@@ -565,7 +565,7 @@ fn zero_points_of(study: &Study, part: &Part, language: Language) -> Markup {
         (table(language, &header, &[1, 2, 3, 4, 5, 6, 7], &rows))
         details {
             summary { (say!(language, "How good these answers are", "Насколько хороши эти ответы")) }
-            ul { @for zero in &part.zero_points { li { (proof(zero, part, language)) } } }
+            ul { @for zero in &part.zero_points { li { (language.of_terminal(&proof(zero, part, language))) } } }
         }
         @if let Some(zero) = chosen.filter(|_| !study.work_offsets.is_empty()) {
             p { (say!(language, "To enter for the geometric median:", "Ввести для геометрической медианы:")) }
