@@ -149,7 +149,7 @@ const PHRASES: &[(&str, &str)] = &[
     ("home the machine before the program and delete the block", "выведите станок в исходное положение до программы и удалите кадр"),
     ("inserts an arc at a corner under cutter compensation", "вставляет дугу на углу при коррекции на радиус"),
     ("is no code of this control", "у этой стойки такой функции нет"),
-    ("is not in ISO 6983-1: what it does here is not published", "в ИСО 6983-1 её нет, а что она делает здесь, не опубликовано"),
+    ("is not in ISO 6983-1: what it does here is not published", "в ISO 6983-1 её нет, а что она делает здесь, не опубликовано"),
     ("is taken by the interpreter, but its G-code reference calls what it does undefined", "принимается интерпретатором, но по его справочнику её действие не определено"),
     ("jumps", "делает переход"),
     ("jumps by a pallet of the machine", "переходит в зависимости от палеты на станке"),

@@ -348,7 +348,8 @@ impl Evidence {
             "ни у одного размера нет десятичной точки, и, если это дискреты, в наибольшем их {}",
             self.largest_bare
         );
-        let label = both!("the first: so small is no program", "первый; таких маленьких программ не бывает");
+        let label =
+            both!("the first: so small is no program", "первый; таких малых размеров в программах не бывает");
         let diagnostic = Diagnostic::error(codes::BARE_LENGTHS, message).at(bare.span.clone(), label).help(both!(
             "`--decimal millimetres` where X40 is forty millimetres, or the dialect that the program was posted for (`--dialect`); `--decimal increments` where it is 0.040 mm",
             "`--decimal millimetres`, если X40 — сорок миллиметров, или диалект, для которого выведена программа (`--dialect`); `--decimal increments`, если это 0.040 мм"

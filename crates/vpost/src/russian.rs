@@ -243,7 +243,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("Report progress: linuxcnc", "Сообщать о ходе работы: linuxcnc"),
     ("Rewrites NC programs so that a measured machine goes where the program says", "Переписывает управляющие программы так, чтобы измеренный станок шёл туда, куда велит программа"),
     ("Rows that no fit sees judge the profile; one that makes them worse is not written", "Отложенные строки проверяют профиль; тот, с которым они хуже, не записывается"),
-    ("Runs of an interferometer, or tables of a control: eighteen functions, squareness, ISO 230-2", "Проходы интерферометра или таблицы стойки: восемнадцать функций, перпендикулярность, ИСО 230-2"),
+    ("Runs of an interferometer, or tables of a control: eighteen functions, squareness, ISO 230-2", "Проходы интерферометра или таблицы стойки: восемнадцать функций, перпендикулярность, ISO 230-2"),
     ("Say what a profile means", "Сказать, что значит профиль"),
     ("Seed of the random relabellings behind the p values of places", "Начальное число случайных перестановок для p мест"),
     ("Show the cosines without their signs, as Tables 2.6 to 2.12 of Pimushkin 2023 print them. The profile keeps the signs", "Показать косинусы без знаков, как в таблицах 2.6–2.12 Пимушкина (2023). В профиле знаки остаются"),

@@ -515,7 +515,7 @@ fn styli_of_a_head(
     let names: Vec<Text> = heads.iter().map(|axis| Text::same(axis.to_string())).collect();
     Err(CalibrationError::Unobservable(both!(
         "what {} of the head does beside one line: the balls of all rows lie on it ({aside_mm:.1} mm beside it at most); read with styli that do not, {ASIDE_MM} mm or more beside the others",
-        "что делают {:#} головы в стороне от одной линии: шары всех строк лежат на ней (не дальше {aside_mm:.1} мм); снимите щупами, которые стоят в стороне на {ASIDE_MM} мм и больше",
+        "как влияют {:#} головы в стороне от одной прямой: шары всех строк лежат на ней (не дальше {aside_mm:.1} мм); снимите щупами, которые стоят в стороне на {ASIDE_MM} мм и больше",
         and(&names)
     )))
 }

@@ -27,7 +27,7 @@ impl Writer<'_> {
         let (Some(a), Some(b)) = (self.state.at[u], self.state.at[v]) else {
             return Err(call.fault(
                 words,
-                both!("HOLES1 from a place that is not known", "HOLES1 из неизвестного места"),
+                both!("HOLES1 from a place that is not known", "HOLES1 из неизвестного положения"),
                 both!(
                     "it begins at the nearer end: name both axes of the plane before it",
                     "он начинается с ближнего конца: назовите до него обе оси плоскости"

@@ -251,7 +251,7 @@ impl Writer<'_, '_> {
                     ),
                     both!(
                         "the tool would go across it in a rapid, {:.4} too low",
-                        "инструмент прошёл бы над ним на быстром ходу, на {:.4} ниже",
+                        "инструмент прошёл бы его на быстром ходу слишком низко, на {:.4}",
                         -chain.depth(ridge.point)
                     ),
                 ));

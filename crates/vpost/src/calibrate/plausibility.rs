@@ -173,7 +173,7 @@ pub(super) fn conditions_of_the_standard(name: &str, found: &iso230_2::Evaluatio
     if !missing.is_empty() {
         let message = both!(
             "{name} is evaluated after ISO 230-2 but was not measured so: {}",
-            "{name} оценена по ИСО 230-2, а измерена не так: {:#}",
+            "{name} оценена по ISO 230-2, а измерена не так: {:#}",
             Text::join(&missing, "; ")
         );
         warn(

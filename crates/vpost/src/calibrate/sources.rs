@@ -59,7 +59,7 @@ pub(super) fn series(spec: &str, values: Option<Values>, ignore: &[String]) -> R
                 ),
                 both!(
                     "write a symbol of ISO 230-1 as in `x.rtl=EXX:um`",
-                    "напишите обозначение по ИСО 230-1, например `x.rtl=EXX:um`"
+                    "напишите обозначение по ISO 230-1, например `x.rtl=EXX:um`"
                 ),
             )
         })?;

@@ -51,7 +51,7 @@ pub(super) fn from_the_user(
                 ),
                 both!(
                     "add `--squareness-convention right-handed` (ISO 230-1: ZX positive where the angle between +Z and +X is below 90°) or `--squareness-convention larger-than90` (positive above 90° in every plane)",
-                    "добавьте `--squareness-convention right-handed` (ИСО 230-1: ZX положительна, если угол между +Z и +X меньше 90°) или `--squareness-convention larger-than90` (положительна при угле больше 90° в каждой плоскости)"
+                    "добавьте `--squareness-convention right-handed` (ISO 230-1: ZX положительна, если угол между +Z и +X меньше 90°) или `--squareness-convention larger-than90` (положительна при угле больше 90° в каждой плоскости)"
                 ),
             ));
         }

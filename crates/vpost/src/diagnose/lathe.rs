@@ -265,8 +265,10 @@ impl Said<'_> {
         line(meaning(found.verdict));
         if let Some((sheet, row)) = found.outlier.and_then(|row| self.parts.places.get(row)) {
             let place = self.parts.sheets.get(*sheet).and_then(|sheet| sheet.row(*row));
-            let message =
-                both!("it does not belong to its part's others", "оно не вяжется с другими той же детали");
+            let message = both!(
+                "it does not belong to its part's others",
+                "оно не вяжется с остальными показаниями той же детали"
+            );
             let help = both!("measure it again, or take the row out", "измерьте снова или уберите строку");
             if let Some(row) = place {
                 let part = row.text("part");
@@ -370,7 +372,7 @@ impl Said<'_> {
             ),
             Cause::Runout => both!(
                 "Look at the spindle's bearings: no correction of X and Z takes roundness away.",
-                "Смотрите подшипники шпинделя: коррекцией X и Z некруглость не снять."
+                "Проверьте подшипники шпинделя: коррекцией X и Z некруглость не снять."
             ),
             Cause::Growth => both!(
                 "Warm the spindle up before finishing, or correct the offset of X as it grows.",
@@ -378,7 +380,7 @@ impl Said<'_> {
             ),
             Cause::Wear => both!(
                 "Take it off the wear offset of X from part to part (twice of it on the diameter), or change the edge earlier.",
-                "Снимайте её с износа X от детали к детали (по диаметру вдвое больше) либо раньше меняйте кромку."
+                "Вычитайте её из износа X от детали к детали (по диаметру вдвое больше) либо раньше меняйте кромку."
             ),
             Cause::Straightness => both!(
                 "`vpost calibrate turning` writes it as EXZ.",
@@ -427,7 +429,7 @@ fn meaning(verdict: Verdict) -> Text {
         Verdict::NoGap => both!("        nothing but noise is left", "        кроме шума ничего нет"),
         Verdict::Named => both!(
             "        every cause that is told can be nothing else in the list",
-            "        каждая названная причина — ни одна другая из списка"
+            "        ни одну из названных причин не принять за другую из списка"
         ),
         Verdict::Ambiguous => {
             both!(

@@ -144,7 +144,7 @@ fn text(arguments: &New, machine: &Answers, language: Language) -> Result<String
     let signs = say!(
         language,
         "Signs of ISO 230-1: a positive number means this angle between the axes.",
-        "Знаки по ИСО 230-1: у положительного числа между осями такой угол."
+        "Знаки по ISO 230-1: у положительного числа между осями такой угол."
     );
     let (above, below) =
         (say!(language, "above 90°", "больше 90°"), say!(language, "below 90°", "меньше 90°"));

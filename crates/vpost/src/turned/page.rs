@@ -318,7 +318,7 @@ impl Shown<'_> {
             (table_of(self.language, &header, &[0, 1, 2, 3, 4, 5, 6, 7], &rows))
             p.muted { (self.say(&both!(
                 "Before and, behind the arrow, after the correction. Size: mean deviation of the diameter. Cone: growth of the diameter from the end at the chuck to the other. Barrel: diameter in the middle less that at both ends, a saddle below zero. Straightness of the generatrix about its least-squares line, on the radius. CYLt: cylindricity by least squares and by the minimum zone (ISO 12180), spindle included.",
-                "До исправления и, за стрелкой, после него. Размер: среднее отклонение диаметра. Конус: рост диаметра от конца у патрона к другому. Бочка: диаметр в середине минус диаметр на концах, ниже нуля — седло. Прямолинейность образующей относительно её средней линии, по радиусу. CYLt: отклонение от цилиндричности по среднему цилиндру и по минимальной зоне (ИСО 12180), вместе со шпинделем."
+                "До исправления и, за стрелкой, после него. Размер: среднее отклонение диаметра. Конус: рост диаметра от конца у патрона к другому. Бочка: диаметр в середине минус диаметр на концах, ниже нуля — седло. Прямолинейность образующей относительно её средней линии, по радиусу. CYLt: отклонение от цилиндричности по среднему цилиндру и по минимальной зоне (ISO 12180), вместе со шпинделем."
             ))) }
         }
     }
