@@ -14,7 +14,7 @@ const MARKER: &[u8] = b"CORRECTED BY VPOST";
 /// The comment that marks a program as corrected: `(CORRECTED BY VPOST text)` or `; CORRECTED …`.
 ///
 /// Upper case without brackets, `%`, `:` or anything beyond ASCII, which some controls take for the end
-/// of the comment, the start of a program or an alarm: letters of other alphabets as [`ascii`] spells them; cut at the dialect's longest block. Empty where
+/// of the comment, the start of a program or an alarm: letters of other alphabets as [`ascii()`] spells them; cut at the dialect's longest block. Empty where
 /// the dialect has no comments. No line end.
 #[must_use]
 pub fn provenance_comment(dialect: &Dialect, text: &str) -> Vec<u8> {

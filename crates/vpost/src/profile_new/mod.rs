@@ -143,8 +143,8 @@ fn text(arguments: &New, machine: &Answers, language: Language) -> Result<String
     }
     let signs = say!(
         language,
-        "Signs of ISO 230-1: a positive number means this angle between the axes.",
-        "Знаки по ISO 230-1: у положительного числа между осями такой угол."
+        "Signs of ISO 230-1: where the number is above zero, the angle between the axes is this.",
+        "Знаки по ISO 230-1: если число больше нуля, угол между осями такой."
     );
     let (above, below) =
         (say!(language, "above 90°", "больше 90°"), say!(language, "below 90°", "меньше 90°"));
