@@ -470,36 +470,41 @@ impl RotaryChain {
     ) -> Result<[f64; 3], NoAngles> {
         let ways = self.ways(direction)?;
         let (first, second) = (&self.0[0], &self.0[1]);
-        let (mut reachable, mut open): (Vec<[f64; 3]>, Option<NoAngles>) = (Vec::new(), None);
+        // Where each way has the reference axis, and its angles; not certain counts only of the way that is taken.
+        let mut reachable: Vec<(Option<f64>, Result<[f64; 3], NoAngles>)> = Vec::new();
         for (first_deg, second_deg) in ways {
             let first_deg = first_deg.map_or_else(|| self.free(rule, stand_deg), Ok)?;
             let chosen = [(first, first_deg), (second, second_deg)]
                 .map(|(link, deg)| link.choose(deg, rule, stand_deg[link.axis]));
+            let of_reference = [first, second].iter().position(|link| Some(link.axis) == rule.reference);
+            let reference_deg = of_reference.and_then(|at| chosen[at].ok().flatten());
             match chosen {
                 [Ok(Some(first_deg)), Ok(Some(second_deg))] => {
                     let mut angles = [0.0; 3];
                     (angles[first.axis], angles[second.axis]) = (first_deg, second_deg);
-                    reachable.push(angles);
+                    reachable.push((reference_deg, Ok(angles)));
                 }
                 [Ok(None), _] | [_, Ok(None)] => {}
-                [Err(why), _] | [_, Err(why)] => open = Some(why),
+                [Err(why), _] | [_, Err(why)] => reachable.push((reference_deg, Err(why))),
             }
         }
-        match (open, reachable.as_slice()) {
-            (Some(why), _) => Err(why),
-            (None, []) => Err(NoAngles::OutOfReach),
-            (None, [only]) => Ok(*only),
-            (None, [one, other, ..]) => {
-                let reference = rule.reference.ok_or(NoAngles::TwoWays)?;
-                let link = self.0.iter().find(|link| link.axis == reference).ok_or(NoAngles::TwoWays)?;
-                let (one_deg, other_deg) = (one[reference], other[reference]);
+        match reachable.as_slice() {
+            [] => Err(NoAngles::OutOfReach),
+            [(_, only)] => *only,
+            [(one_deg, one), (other_deg, other), ..] => {
+                let (Some(one_deg), Some(other_deg), Some(reference)) =
+                    (*one_deg, *other_deg, rule.reference)
+                else {
+                    return one.and(*other).and(Err(NoAngles::TwoWays));
+                };
+                let link = if first.axis == reference { first } else { second };
                 if [one_deg, other_deg].into_iter().any(|deg| link.has_other_turns(deg)) {
                     return Err(NoAngles::Turns(reference));
                 }
                 if (one_deg - other_deg).abs() < NEARER_DEG {
                     return Err(NoAngles::TwoWays);
                 }
-                Ok(if (one_deg > other_deg) == higher { *one } else { *other })
+                if (one_deg > other_deg) == higher { *one } else { *other }
             }
         }
     }
@@ -596,6 +601,22 @@ mod tests {
         assert_eq!(ask(UP, rule, [Some(0.0), None, Some(7.0)]), Ok([0.0, 0.0, 7.0]));
         let one = RotaryChain(vec![link(0, X, true, 110.0)]);
         assert_eq!(one.angles_for(UP, &rule, [Some(0.0); 3]), Err(NoAngles::NotTwoAxes));
+    }
+
+    #[test]
+    fn a_tie_on_the_way_that_is_not_taken_does_not_count() {
+        // Tilted about X by 30: A 30 at C 0, or A -30 at half a turn of C, which is as near to either side.
+        let chain = RotaryChain(vec![link(2, [0.0, 0.0, 1.0], true, 360.0), link(0, X, true, 120.0)]);
+        let rule = TiltRule { reference: Some(0), turns: Some(WholeTurns::Shortest), branch: None };
+        let ask = |higher: bool| {
+            let tilted = [0.0, -0.5, 0.75f64.sqrt()];
+            chain.angles_by_value(tilted, higher, &rule, [Some(0.0), None, Some(0.0)])
+        };
+        let [one, other] = [ask(true), ask(false)];
+        let (taken, tied) = if one.is_ok() { (one, other) } else { (other, one) };
+        let taken = taken.expect("certain");
+        assert!(taken[2].abs() < 1e-9 && (taken[0].abs() - 30.0).abs() < 1e-9, "{taken:?}");
+        assert!(matches!(tied, Err(NoAngles::Turns(2))), "{tied:?}");
     }
 
     #[test]
