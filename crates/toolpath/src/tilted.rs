@@ -318,17 +318,24 @@ impl RotaryChain {
         if size(plus(self.tool_direction(stand_deg), -1.0, direction)) < SAME_RAD {
             return Ok(stand_deg);
         }
-        let mut found: Vec<[f64; 3]> = Vec::new();
+        let (mut found, mut tied): (Vec<[f64; 3]>, Option<NoAngles>) = (Vec::new(), None);
         for positive in [true, false] {
             let branch = Some((second.axis, positive));
             let one = TiltRule { branch, turns: Some(WholeTurns::Shortest), ..TiltRule::default() };
             match self.angles_for(direction, &one, stand_deg.map(Some)) {
                 Ok(angles) => found.push(angles),
                 Err(NoAngles::OutOfReach) => {}
+                // Half a turn away to either side, as the other way is wherever the tool tilts alone.
+                Err(why @ NoAngles::Turns(_)) => tied = Some(why),
                 Err(why) => return Err(why),
             }
         }
         let far = |angles: &[f64; 3]| -> f64 { (0..3).map(|i| (angles[i] - stand_deg[i]).abs()).sum() };
+        if let Some(why) = tied
+            && !found.iter().any(|angles| far(angles) < 180.0 - NEARER_DEG)
+        {
+            return Err(why);
+        }
         let along = cross(self.tool_direction(stand_deg), first.direction);
         found.sort_by(|a, b| far(a).total_cmp(&far(b)));
         // Along the first axis the two ways are one.
@@ -601,6 +608,20 @@ mod tests {
         assert_eq!(ask(UP, rule, [Some(0.0), None, Some(7.0)]), Ok([0.0, 0.0, 7.0]));
         let one = RotaryChain(vec![link(0, X, true, 110.0)]);
         assert_eq!(one.angles_for(UP, &rule, [Some(0.0); 3]), Err(NoAngles::NotTwoAxes));
+    }
+
+    #[test]
+    fn a_vector_that_tilts_the_tool_alone_is_followed() {
+        // C goes on for turns: by the other way it would be half a turn away, to either side.
+        let chain = RotaryChain(vec![link(2, [0.0, 0.0, 1.0], true, 7200.0), link(0, X, true, 110.0)]);
+        let stand_deg = [-20.0, 0.0, 40.0];
+        let wanted_deg = [-18.0, 0.0, 40.0];
+        let near =
+            |stand_deg| chain.angles_near(chain.tool_direction(wanted_deg), &TiltRule::default(), stand_deg);
+        let found = near(stand_deg).expect("certain");
+        assert!((0..3).all(|i| (found[i] - wanted_deg[i]).abs() < 1e-9), "{found:?}");
+        // From half a turn of C away both sides are as near, and the other way is nearer.
+        assert!(near([20.0, 0.0, 220.0]).is_ok_and(|found| (found[0] - 18.0).abs() < 1e-9), "the other way");
     }
 
     #[test]
