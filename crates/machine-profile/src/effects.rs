@@ -70,6 +70,8 @@ impl Profile {
         for (to, from) in geometry.rotary_centre_mm.iter_mut().zip(&self.description.rotary) {
             *to = from.centre_mm;
         }
+        geometry.rotary_direction = [0, 1, 2].map(|axis| self.description.rotary[axis].direction);
+        geometry.rotary_tilt = [0, 1, 2].map(|axis| self.description.rotary[axis].tilt);
         if let Some(temperature_c) = self.calibrated.as_ref().and_then(|calibrated| calibrated.temperature_c)
         {
             geometry.reference_temp_c = temperature_c;

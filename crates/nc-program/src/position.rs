@@ -141,14 +141,32 @@ pub(crate) fn end(words: &Words<'_, '_, '_>, state: &Modal, frame: &Frame) -> Ou
     Ok(end)
 }
 
-/// Where `C=DC(90)` leads, degrees: the shortest way, in the turn from 0 to 360 that a control shows.
+/// How far ACP and ACN turn at least, degrees: behind an angle that was corrected a shorter way could be a whole turn.
+const LEAST_WAY_DEG: f64 = 2.0;
+
+/// Where `C=DC(90)`, `C=ACP(90)`, `C=ACN(90)` lead, degrees: by the shortest way, upwards, downwards, in the turn from 0 to
+/// 360 that a control shows; `C=AC(90)`: as without a name under G90.
 ///
-/// Across 0 nobody could write the angle without DC so that it is the same; from where nobody knows only a rapid goes, whose
-/// way does not matter.
+/// Across 0 nobody could write the angle without a name so that it is the same; from where nobody knows only a rapid goes,
+/// whose way does not matter.
 fn direct(words: &Words<'_, '_, '_>, span: Span, value_deg: f64, axis: usize, state: &Modal) -> Outcome<f64> {
+    let text = words.block.text(span).to_ascii_uppercase();
+    let names = |name: &[u8]| text.windows(name.len()).any(|part| part == name);
+    let (up, down) = (names(b"ACP"), names(b"ACN"));
+    if names(b"AC") && !up && !down {
+        return Ok(value_deg);
+    }
     let in_turn = |deg: f64| (0.0..360.0).contains(&deg);
     let stays_in_turn = match state.axes.rotary[axis] {
-        Axis::At(stands_deg) => in_turn(stands_deg) && (stands_deg - value_deg).abs() < 180.0,
+        Axis::At(stands_deg) => {
+            let way_deg = value_deg - stands_deg;
+            in_turn(stands_deg)
+                && match (up, down) {
+                    (true, _) => way_deg >= LEAST_WAY_DEG,
+                    (_, true) => way_deg <= -LEAST_WAY_DEG,
+                    _ => way_deg.abs() < 180.0,
+                }
+        }
         Axis::Unknown(_) => matches!(state.motion, MotionMode::Rapid(_)),
     };
     if in_turn(value_deg) && stays_in_turn {
@@ -166,8 +184,8 @@ fn direct(words: &Words<'_, '_, '_>, span: Span, value_deg: f64, axis: usize, st
         }
     };
     Err(words.refuse(codes::BAD_NUMBER, message, span, label).help(both!(
-        "write the angle without DC, counted on over whole turns, or turn the axis by a rapid of its own before",
-        "напишите угол без DC, со счётом полных оборотов, или поверните ось раньше отдельным быстрым ходом"
+        "write the angle without a name, counted on over whole turns, or turn the axis by a rapid of its own before",
+        "напишите угол без имени, со счётом полных оборотов, или поверните ось раньше отдельным быстрым ходом"
     )))
 }
 

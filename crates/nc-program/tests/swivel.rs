@@ -143,11 +143,24 @@ fn direct_angles_stay_within_a_turn() {
     };
     assert_eq!(c("G0 C=DC(90)"), 90.0);
     assert_eq!(c("G91\nG0 C=dc( 179.5 )"), 179.5);
+    // Upwards, downwards, and as G90 has it.
+    for (said, deg) in [
+        ("G0 C=ACP(200)", 200.0),
+        ("G0 C=200\nG0 C=acn( 10 )", 10.0),
+        ("G0 C=350\nG0 C=AC(10)", 10.0),
+        ("G91\nG0 C=AC(-20)", -20.0),
+    ] {
+        assert_eq!(c(said), deg, "{said}");
+    }
+    // Across 0; a way that may be none or a whole turn.
+    for wrong in ["G0 C=ACN(200)", "G0 C=200\nG0 C=ACP(10)", "G0 C=ACP(1)", "G0 C=ACN(0)", "G0 C=ACP(400)"] {
+        assert!(refused(wrong).1.contains("between 0 and 360"), "{wrong}");
+    }
     for wrong in ["G0 C=DC(180)", "G0 C=DC(360)", "G0 C=DC(-10)", "G0 C=350\nG0 C=DC(10)"] {
         assert!(refused(wrong).1.contains("between 0 and 360"), "{wrong}");
     }
     // Of other axes, of calculations and of other ways nothing is read.
-    for wrong in ["G0 X=DC(10)", "G0 C=DC(R1)", "G0 C=ACP(10)"] {
+    for wrong in ["G0 X=DC(10)", "G0 C=DC(R1)", "G0 C=IC(10)", "G0 X=ACP(10)"] {
         assert_eq!(refused(wrong).0, 202, "{wrong}");
     }
 }

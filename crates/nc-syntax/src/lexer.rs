@@ -515,13 +515,14 @@ fn identifier(text: &[u8]) -> usize {
     1 + text[1..].iter().take_while(|byte| byte.is_ascii_alphanumeric() || **byte == b'_').count()
 }
 
-/// `=DC(90)` of a rotary axis: its angle.
+/// `=DC(90)`, `=AC(90)`, `=ACP(90)`, `=ACN(90)` of a rotary axis: its angle.
 fn direct(text: &[u8]) -> Option<Number> {
     let inside = text.trim_ascii_start().strip_prefix(b"=")?.trim_ascii();
-    let (name, inside) = inside.split_at_checked(2)?;
+    let (name, inside) = inside.split_at_checked(identifier(inside))?;
     let inside = inside.trim_ascii_start().strip_prefix(b"(")?.strip_suffix(b")")?.trim_ascii();
     let (plain, end) = number(inside, 0, false);
-    plain.ok().filter(|_| name.eq_ignore_ascii_case(b"DC") && end == inside.len())
+    let is_way = [&b"DC"[..], b"AC", b"ACP", b"ACN"].iter().any(|way| way.eq_ignore_ascii_case(name));
+    plain.ok().filter(|_| is_way && end == inside.len())
 }
 
 /// How many ASCII letters stand at the start.

@@ -318,17 +318,24 @@ impl RotaryChain {
         if size(plus(self.tool_direction(stand_deg), -1.0, direction)) < SAME_RAD {
             return Ok(stand_deg);
         }
-        let mut found: Vec<[f64; 3]> = Vec::new();
+        let (mut found, mut tied): (Vec<[f64; 3]>, Option<NoAngles>) = (Vec::new(), None);
         for positive in [true, false] {
             let branch = Some((second.axis, positive));
             let one = TiltRule { branch, turns: Some(WholeTurns::Shortest), ..TiltRule::default() };
             match self.angles_for(direction, &one, stand_deg.map(Some)) {
                 Ok(angles) => found.push(angles),
                 Err(NoAngles::OutOfReach) => {}
+                // Half a turn away to either side, as the other way is wherever the tool tilts alone.
+                Err(why @ NoAngles::Turns(_)) => tied = Some(why),
                 Err(why) => return Err(why),
             }
         }
         let far = |angles: &[f64; 3]| -> f64 { (0..3).map(|i| (angles[i] - stand_deg[i]).abs()).sum() };
+        if let Some(why) = tied
+            && !found.iter().any(|angles| far(angles) < 180.0 - NEARER_DEG)
+        {
+            return Err(why);
+        }
         let along = cross(self.tool_direction(stand_deg), first.direction);
         found.sort_by(|a, b| far(a).total_cmp(&far(b)));
         // Along the first axis the two ways are one.
@@ -470,36 +477,41 @@ impl RotaryChain {
     ) -> Result<[f64; 3], NoAngles> {
         let ways = self.ways(direction)?;
         let (first, second) = (&self.0[0], &self.0[1]);
-        let (mut reachable, mut open): (Vec<[f64; 3]>, Option<NoAngles>) = (Vec::new(), None);
+        // Where each way has the reference axis, and its angles; not certain counts only of the way that is taken.
+        let mut reachable: Vec<(Option<f64>, Result<[f64; 3], NoAngles>)> = Vec::new();
         for (first_deg, second_deg) in ways {
             let first_deg = first_deg.map_or_else(|| self.free(rule, stand_deg), Ok)?;
             let chosen = [(first, first_deg), (second, second_deg)]
                 .map(|(link, deg)| link.choose(deg, rule, stand_deg[link.axis]));
+            let of_reference = [first, second].iter().position(|link| Some(link.axis) == rule.reference);
+            let reference_deg = of_reference.and_then(|at| chosen[at].ok().flatten());
             match chosen {
                 [Ok(Some(first_deg)), Ok(Some(second_deg))] => {
                     let mut angles = [0.0; 3];
                     (angles[first.axis], angles[second.axis]) = (first_deg, second_deg);
-                    reachable.push(angles);
+                    reachable.push((reference_deg, Ok(angles)));
                 }
                 [Ok(None), _] | [_, Ok(None)] => {}
-                [Err(why), _] | [_, Err(why)] => open = Some(why),
+                [Err(why), _] | [_, Err(why)] => reachable.push((reference_deg, Err(why))),
             }
         }
-        match (open, reachable.as_slice()) {
-            (Some(why), _) => Err(why),
-            (None, []) => Err(NoAngles::OutOfReach),
-            (None, [only]) => Ok(*only),
-            (None, [one, other, ..]) => {
-                let reference = rule.reference.ok_or(NoAngles::TwoWays)?;
-                let link = self.0.iter().find(|link| link.axis == reference).ok_or(NoAngles::TwoWays)?;
-                let (one_deg, other_deg) = (one[reference], other[reference]);
+        match reachable.as_slice() {
+            [] => Err(NoAngles::OutOfReach),
+            [(_, only)] => *only,
+            [(one_deg, one), (other_deg, other), ..] => {
+                let (Some(one_deg), Some(other_deg), Some(reference)) =
+                    (*one_deg, *other_deg, rule.reference)
+                else {
+                    return one.and(*other).and(Err(NoAngles::TwoWays));
+                };
+                let link = if first.axis == reference { first } else { second };
                 if [one_deg, other_deg].into_iter().any(|deg| link.has_other_turns(deg)) {
                     return Err(NoAngles::Turns(reference));
                 }
                 if (one_deg - other_deg).abs() < NEARER_DEG {
                     return Err(NoAngles::TwoWays);
                 }
-                Ok(if (one_deg > other_deg) == higher { *one } else { *other })
+                if (one_deg > other_deg) == higher { *one } else { *other }
             }
         }
     }
@@ -596,6 +608,36 @@ mod tests {
         assert_eq!(ask(UP, rule, [Some(0.0), None, Some(7.0)]), Ok([0.0, 0.0, 7.0]));
         let one = RotaryChain(vec![link(0, X, true, 110.0)]);
         assert_eq!(one.angles_for(UP, &rule, [Some(0.0); 3]), Err(NoAngles::NotTwoAxes));
+    }
+
+    #[test]
+    fn a_vector_that_tilts_the_tool_alone_is_followed() {
+        // C goes on for turns: by the other way it would be half a turn away, to either side.
+        let chain = RotaryChain(vec![link(2, [0.0, 0.0, 1.0], true, 7200.0), link(0, X, true, 110.0)]);
+        let stand_deg = [-20.0, 0.0, 40.0];
+        let wanted_deg = [-18.0, 0.0, 40.0];
+        let near =
+            |stand_deg| chain.angles_near(chain.tool_direction(wanted_deg), &TiltRule::default(), stand_deg);
+        let found = near(stand_deg).expect("certain");
+        assert!((0..3).all(|i| (found[i] - wanted_deg[i]).abs() < 1e-9), "{found:?}");
+        // From half a turn of C away both sides are as near, and the other way is nearer.
+        assert!(near([20.0, 0.0, 220.0]).is_ok_and(|found| (found[0] - 18.0).abs() < 1e-9), "the other way");
+    }
+
+    #[test]
+    fn a_tie_on_the_way_that_is_not_taken_does_not_count() {
+        // Tilted about X by 30: A 30 at C 0, or A -30 at half a turn of C, which is as near to either side.
+        let chain = RotaryChain(vec![link(2, [0.0, 0.0, 1.0], true, 360.0), link(0, X, true, 120.0)]);
+        let rule = TiltRule { reference: Some(0), turns: Some(WholeTurns::Shortest), branch: None };
+        let ask = |higher: bool| {
+            let tilted = [0.0, -0.5, 0.75f64.sqrt()];
+            chain.angles_by_value(tilted, higher, &rule, [Some(0.0), None, Some(0.0)])
+        };
+        let [one, other] = [ask(true), ask(false)];
+        let (taken, tied) = if one.is_ok() { (one, other) } else { (other, one) };
+        let taken = taken.expect("certain");
+        assert!(taken[2].abs() < 1e-9 && (taken[0].abs() - 30.0).abs() < 1e-9, "{taken:?}");
+        assert!(matches!(tied, Err(NoAngles::Turns(2))), "{tied:?}");
     }
 
     #[test]

@@ -57,7 +57,7 @@ def run(vpost, folder, has, correct):
         for one in spec["axes"].values():
             one.pop("backlash_um", None), one.pop("table", None)
         for one in spec["rotary"].values():
-            one.pop("table", None)
+            one.pop("table", None), one.pop("table_negative", None), one.pop("backlash_urad", None)
             one["location"] = {}
         where = os.path.join(folder, f"perfect-{number}")
         os.makedirs(where, exist_ok=True)

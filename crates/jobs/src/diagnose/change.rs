@@ -119,11 +119,7 @@ fn key(kind: EffectKind, profile: &Profile) -> Option<Key> {
             let name = both!("play of {}", "люфт {}", LINEAR[axis]);
             Key { name, value, factor: 2.0, unit: "µm" }
         }
-        // The effect moves the axis' line, the profile what the table carries: alike but for a set-up. Of a head the
-        // profile's shift is none of its line's.
-        EffectKind::Rotary { component, axis }
-            if machine.chain.table().iter().any(|table| table.direction() == axis) =>
-        {
+        EffectKind::Rotary { component, axis } => {
             let rotary = &machine.rotary[axis];
             let (value, unit) = match component {
                 0..=2 => (1e3 * rotary.shift_mm[component], "µm"),

@@ -45,7 +45,7 @@ impl Model {
                 ),
             )
         })?;
-        let geometry = geometry(&profile);
+        let geometry = profile.effect_geometry();
         let effects = profile
             .effects
             .iter()
@@ -60,16 +60,4 @@ impl Model {
         let effects = effects.into_iter().map(|term| term.with_geometry(geometry.clone())).collect();
         Ok(Self { profile, hash, files, engine, effects, geometry })
     }
-}
-
-/// Where effects of a profile act.
-pub(super) fn geometry(profile: &Profile) -> EffectGeometry {
-    let mut geometry = EffectGeometry::from_chain(profile.chain());
-    for (to, from) in geometry.rotary_centre_mm.iter_mut().zip(&profile.description.rotary) {
-        *to = from.centre_mm;
-    }
-    if let Some(temperature) = profile.calibrated.as_ref().and_then(|c| c.temperature_c) {
-        geometry.reference_temp_c = temperature;
-    }
-    geometry
 }

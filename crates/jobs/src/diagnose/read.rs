@@ -6,7 +6,7 @@ use machine_profile::Profile;
 
 use super::books;
 use super::measurements;
-use super::model::{Model, geometry};
+use super::model::Model;
 use crate::message::Failure;
 use crate::settings::setup_tool;
 
@@ -92,7 +92,7 @@ pub fn of_one_machine(name: &str, measured: &Measured, held: &Measured) -> Resul
 /// What is wrong with the table.
 pub fn readable(bytes: &[u8], profile: &Profile) -> Result<(), Failure> {
     let (data, sheet) =
-        measurements::read("measurements", bytes, setup_tool(profile), &[], &geometry(profile))?;
+        measurements::read("measurements", bytes, setup_tool(profile), &[], &profile.effect_geometry())?;
     measurements::commands_and_frames(&sheet, &data, profile, Books::Checked)
 }
 

@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix3, Rotation3};
 
-use crate::{Chain, Command, Vector};
+use crate::rotation::of_any_size;
+use crate::{Chain, Command, Tilt, Vector};
 
 /// One joint of the chain, workpiece to tool.
 ///
@@ -41,6 +42,10 @@ pub struct EffectGeometry {
     joints: Vec<Joint>,
     /// A point on each of the axes A, B, C, machine coordinates, mm.
     pub rotary_centre_mm: [Vector; 3],
+    /// Where the axes A, B, C point, unit vectors; `None` for that of the letter.
+    pub rotary_direction: [Option<Vector>; 3],
+    /// What a location tilt of A, B, C means.
+    pub rotary_tilt: [Tilt; 3],
     /// Temperature at which the machine is as its tables say, °C.
     pub reference_temp_c: f64,
 }
@@ -51,6 +56,8 @@ impl Default for EffectGeometry {
         Self {
             joints: vec![Joint::Linear(0), Joint::Linear(1), Joint::Linear(2)],
             rotary_centre_mm: [Vector::zeros(); 3],
+            rotary_direction: [None; 3],
+            rotary_tilt: [Tilt::Body; 3],
             reference_temp_c: 20.0,
         }
     }
@@ -82,10 +89,16 @@ impl EffectGeometry {
     }
 
     /// Lever arm of the rotation errors of a linear axis: commands of the linear axes beyond it plus the
-    /// tool vector, mm (first-order sum of methods §2; rotary joints at zero).
+    /// tool vector as the heads turn it, mm (first-order sum of methods §2).
     #[must_use]
     pub fn lever_mm(&self, axis: usize, command: &Command) -> Vector {
         let mut lever = command.tool_mm;
+        for joint in self.joints.iter().rev() {
+            if let (Joint::Head(_), Some((head, turn))) = (*joint, self.rotation(*joint, command)) {
+                let centre = self.rotary_centre_mm[head];
+                lever = centre + turn * (lever - centre);
+            }
+        }
         let beyond = self.joints.iter().skip_while(|j| **j != Joint::Linear(axis)).skip(1);
         for joint in beyond {
             if let Joint::Linear(other) = *joint {
@@ -96,12 +109,15 @@ impl EffectGeometry {
     }
 
     /// Rotation of everything on the tool side of a rotary joint as the workpiece side sees it.
-    fn rotation(joint: Joint, command: &Command) -> Option<(usize, Rotation3<f64>)> {
+    fn rotation(&self, joint: Joint, command: &Command) -> Option<(usize, Rotation3<f64>)> {
         let (axis, angle_rad) = match joint {
             Joint::Linear(_) => return None,
             Joint::Table(axis) => (axis, -command.rotary_rad[axis]),
             Joint::Head(axis) => (axis, command.rotary_rad[axis]),
         };
+        if let Some(along) = self.rotary_direction[axis] {
+            return Some((axis, Rotation3::from_matrix_unchecked(of_any_size(&(along * angle_rad)))));
+        }
         let (sin, cos) = units::math::sin_cos(angle_rad);
         let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
         let mut matrix = Matrix3::identity();
@@ -116,7 +132,7 @@ impl EffectGeometry {
     #[must_use]
     pub fn table_turn(&self, command: &Command) -> Matrix3<f64> {
         let tables = self.joints.iter().filter(|joint| matches!(joint, Joint::Table(_)));
-        tables.filter_map(|joint| Self::rotation(*joint, command)).fold(
+        tables.filter_map(|joint| self.rotation(*joint, command)).fold(
             Matrix3::identity(),
             |turn, (_, own)| {
                 // From the workpiece on, each table turns what lies beyond it.
@@ -137,7 +153,7 @@ impl EffectGeometry {
     pub fn nominal_tip_mm(&self, command: &Command) -> Vector {
         let mut point = command.linear_mm + command.tool_mm;
         for joint in self.joints.iter().rev() {
-            if let Some((axis, turn)) = Self::rotation(*joint, command) {
+            if let Some((axis, turn)) = self.rotation(*joint, command) {
                 let centre = self.centre_mm(*joint, axis, command);
                 point = centre + turn * (point - centre);
             }
@@ -145,8 +161,9 @@ impl EffectGeometry {
         point
     }
 
-    /// Displacement of the tip, workpiece frame, mm, by a small motion of a rotary axis' line: `offset_mm`
-    /// and `tilt_rad` act as a conjugation, so nothing is displaced while the axis stands at zero.
+    /// Displacement of the tip, workpiece frame, mm, by location errors of a rotary axis as a profile has them: equation
+    /// (9) to first order. Offset and tilt displace what the axis carries at every angle, under [`Tilt::Axis`] the tilt
+    /// turns with it.
     #[must_use]
     pub fn rotary_location_mm(
         &self,
@@ -155,14 +172,23 @@ impl EffectGeometry {
         tilt_rad: Vector,
         command: &Command,
     ) -> Vector {
+        let is_table = self.joints.contains(&Joint::Table(axis));
+        let turns_upright = self.rotary_tilt[axis] == Tilt::Axis;
         self.through(axis, command, |turn, arm| {
-            let turned = turn * arm;
-            (offset_mm - turn * offset_mm) + (tilt_rad.cross(&turned) - turn * tilt_rad.cross(&arm))
+            let ahead = tilt_rad.cross(&(turn * arm));
+            let behind = turn * tilt_rad.cross(&arm);
+            match (is_table, turns_upright) {
+                // A table is seen from what it carries: the inverse.
+                (true, false) => -(turn * offset_mm) - behind,
+                (true, true) => -(turn * offset_mm) + ahead - behind,
+                (false, false) => offset_mm + ahead,
+                (false, true) => offset_mm + ahead - behind,
+            }
         })
     }
 
-    /// Displacement of the tip, workpiece frame, mm, where a rotary axis turns by `error_rad` too much and
-    /// its centre has moved by `radial_mm`.
+    /// Displacement of the tip, workpiece frame, mm, where a rotary axis turns by `error_rad` too much and what it
+    /// carries has moved by `radial_mm`, in the directions that do not turn with it, like an error table's.
     #[must_use]
     pub fn rotary_motion_mm(
         &self,
@@ -172,9 +198,13 @@ impl EffectGeometry {
         command: &Command,
     ) -> Vector {
         let mut direction = Vector::zeros();
-        direction[axis] = error_rad;
-        let sign = if self.joints.contains(&Joint::Table(axis)) { -1.0 } else { 1.0 };
-        self.through(axis, command, |turn, arm| direction.cross(&(turn * arm)) * sign + radial_mm)
+        direction[axis] = 1.0;
+        let direction = self.rotary_direction[axis].unwrap_or(direction) * error_rad;
+        let is_table = self.joints.contains(&Joint::Table(axis));
+        self.through(axis, command, |turn, arm| {
+            let turned = direction.cross(&(turn * arm));
+            if is_table { -turned - turn * radial_mm } else { turned + radial_mm }
+        })
     }
 
     /// Carries a small displacement that arises at one rotary joint through the joints on its workpiece side.
@@ -187,7 +217,7 @@ impl EffectGeometry {
         let mut point = command.linear_mm + command.tool_mm;
         let mut displacement = Vector::zeros();
         for joint in self.joints.iter().rev() {
-            if let Some((this, turn)) = Self::rotation(*joint, command) {
+            if let Some((this, turn)) = self.rotation(*joint, command) {
                 let centre = self.centre_mm(*joint, this, command);
                 let arm = point - centre;
                 displacement = turn * displacement;
@@ -237,17 +267,53 @@ mod tests {
     }
 
     #[test]
-    fn a_moved_table_axis_is_the_difference_of_two_machines() {
+    fn location_errors_are_those_of_a_profile() {
         let mut geometry = EffectGeometry::from_chain(&Chain::parse("[w C A Y X b Z t]").unwrap());
         geometry.rotary_centre_mm =
             [Vector::new(0.0, 3.0, -20.0), Vector::zeros(), Vector::new(7.0, 3.0, 0.0)];
         let q = command(Vector::new(0.3, 0.0, 1.1));
-        let offset = Vector::new(1e-4, -2e-4, 0.0);
-        let mut moved = geometry.clone();
-        moved.rotary_centre_mm[2] += offset;
-        let expected = moved.nominal_tip_mm(&q) - geometry.nominal_tip_mm(&q);
-        let found = geometry.rotary_location_mm(2, offset, Vector::zeros(), &q);
-        assert!((found - expected).norm() < 1e-12, "{found} {expected}");
+        // The real machine of a profile with the same error, on a chain with a table upon another and on one with heads.
+        for (chain, axes) in [("[w C A Y X b Z t]", [2, 0]), ("[w b X Y Z C A t]", [2, 0])] {
+            geometry = EffectGeometry {
+                rotary_centre_mm: geometry.rotary_centre_mm,
+                ..EffectGeometry::from_chain(&Chain::parse(chain).unwrap())
+            };
+            for axis in axes {
+                for tilt in [Tilt::Body, Tilt::Axis] {
+                    geometry.rotary_tilt[axis] = tilt;
+                    let machine = |shift_mm: Vector, tilt_rad: Vector| {
+                        let perfect = |a: usize| crate::RotaryAxis::perfect(geometry.rotary_centre_mm[a]);
+                        let mut rotary = [perfect(0), perfect(1), perfect(2)];
+                        rotary[axis] = crate::RotaryAxis { shift_mm, tilt_rad, tilt, ..rotary[axis].clone() };
+                        let linear = [(); 3]
+                            .map(|()| crate::LinearAxis::perfect(crate::Range { low: -500.0, high: 500.0 }));
+                        let squareness = crate::Squareness::default();
+                        let description = crate::Description {
+                            chain: Chain::parse(chain).unwrap(),
+                            linear,
+                            rotary,
+                            squareness,
+                        };
+                        crate::RigidBody::new(description).unwrap().predict(&q).error_mm
+                    };
+                    for (shift, lean) in [
+                        (Vector::new(1e-5, -2e-5, 0.0), Vector::zeros()),
+                        (Vector::zeros(), Vector::new(1e-7, 2e-7, 0.0)),
+                    ] {
+                        let expected = machine(shift, lean);
+                        let found = geometry.rotary_location_mm(axis, shift, lean, &q);
+                        assert!(
+                            (found - expected).norm() < 1e-9,
+                            "{chain} {axis} {tilt:?}: {found} {expected}"
+                        );
+                    }
+                }
+            }
+        }
+        let geometry = EffectGeometry {
+            rotary_centre_mm: geometry.rotary_centre_mm,
+            ..EffectGeometry::from_chain(&Chain::parse("[w C A Y X b Z t]").unwrap())
+        };
         // An angle too large is the same as another command.
         let mut further = q;
         further.rotary_rad[0] += 1e-6;
