@@ -273,8 +273,9 @@ fn a_hole_is_drilled_on_the_axis() {
         assert_eq!(refused(&lathe, &hole(words)).0, 143, "{words}");
     }
     for program in [
-        "G0 X0 Z2.\nG83 Z-28. R3. F0.1\n",
         "G0 X0 Z2.\nG83 Z-28. F0.1\n",
+        // The manual counts W from R, every other W counts from where the tool stands.
+        "G0 X0 Z2.\nG83 W-28. R-3. F0.1\n",
         "G0 X0 Z2.\nG83 Z-2. R-5. F0.1\n",
         "G0 X0 Z2.\nG83 Z-28. R-3. F0.1\nZ-30.\n",
         // 5 in a program without points are 5 increments.
@@ -282,6 +283,27 @@ fn a_hole_is_drilled_on_the_axis() {
     ] {
         assert_eq!(refused(&lathe, program).0, 143, "{program}");
     }
+}
+
+/// R above the start: by Fanuc's manual a way up, by controls that follow it a place.
+#[test]
+fn r_of_a_hole_that_leads_up_is_asked_for() {
+    let mut lathe = dialect("A");
+    let program = "G0 X0. Z5.\nG83 Z-20. R5. F0.1\n";
+    let (code, message) = refused(&lathe, program);
+    assert!(code == 145 && message.contains("whether R of a hole"), "{message}");
+    let mut drilled = |r, program: &str| {
+        lathe.turning.as_mut().unwrap().cycles.drill_r = Some(r);
+        lines(&lathe, program)
+    };
+    let from_five = ["G0 X0. Z5.", "F0.1 G1 Z-20.", "G0 X0. Z5."];
+    assert_eq!(drilled(DrillR::Place, program), from_five);
+    let from_ten = ["G0 X0. Z5.", "F0.1 G0 X0. Z10.", "G1 Z-20.", "G0 X0. Z10.", "G0 X0. Z5."];
+    assert_eq!(drilled(DrillR::Way, program), from_ten);
+    assert_eq!(drilled(DrillR::Way, "G0 X0. Z5.\nG83 W-25. R0 F0.1\n"), from_five);
+    // Beyond the bottom there is nothing to drill.
+    lathe.turning.as_mut().unwrap().cycles.drill_r = Some(DrillR::Place);
+    assert_eq!(refused(&lathe, "G0 X0. Z5.\nG83 Z-20. R-25. F0.1\n").0, 143);
 }
 
 #[test]
