@@ -127,3 +127,10 @@ fn what_is_not_certain_is_refused() {
     let unsaid = written("G1 X20. F0.2\nZ-10. ,R2.\nX30.\n", None);
     assert_eq!(unsaid, Err("142 whether X is a diameter or a radius is not said".to_owned()));
 }
+
+/// G90 of system A without a place is no pass, and where the tool stands in another frame nobody knows.
+#[test]
+fn a_pass_without_a_place_keeps_no_place() {
+    let why = written("G55 G90\nG1 Z-10. ,R2.\nX70.\n", Some(true)).expect_err("another frame");
+    assert!(why.contains("not known"), "{why}");
+}

@@ -306,6 +306,25 @@ fn r_of_a_hole_that_leads_up_is_asked_for() {
     assert_eq!(refused(&lathe, "G0 X0. Z5.\nG83 Z-20. R-25. F0.1\n").0, 143);
 }
 
+/// People used to mills write G90 at the head; a lathe of system A has a cycle by that name.
+#[test]
+fn a_pass_without_a_place_is_left_out() {
+    let lathe = dialect("A");
+    let program = "N5 G21 G18 G90 G99 G40 (head)\nG54 G90\nG90\nG0 X50. Z2.\n";
+    assert_eq!(lines(&lathe, program), ["N5 G21 G18 G99 G40", "G54", "G0 X50. Z2."]);
+    for program in [
+        // Its words may still be held.
+        "G90 X50. Z-30. F0.2\nG0 X60.\nG90\n",
+        "G90 R1.\n",
+        "G92\n",
+        "G94\n",
+        // Which motion?
+        "G0 X50. Z2.\nG90\nX40.\n",
+    ] {
+        assert_eq!(refused(&lathe, program).0, 143, "{program}");
+    }
+}
+
 #[test]
 fn a_thread_of_several_passes() {
     let passes = lines(&dialect("A"), "G76 P010000 Q100 R0.1\nG76 X50. Z-30. P1000 Q500 F2.\n");
@@ -404,7 +423,7 @@ fn what_is_not_certain_is_refused() {
     let rough = |contour: &str| format!("G71 U2. R1.\nG71 P10 Q20 U0.4 W0.2\n{contour}");
     for (program, code) in [
         // No place, or only one of two.
-        ("G90\n".to_owned(), 143),
+        ("G94\n".to_owned(), 143),
         ("G92 S2000\n".to_owned(), 143),
         ("G90 X50.\n".to_owned(), 143),
         ("/G90 X50. Z-30.\n".to_owned(), 143),

@@ -107,7 +107,9 @@ impl<'b, 'a> Drawing<'b, 'a> {
     fn step(&mut self, words: &Words<'_, '_>) {
         let stood = self.state.at;
         let repeats = matches!(self.state.motion, Motion::Pass(_)) && !self.state.owns_motion(words);
-        let cycle = cycle_of(words);
+        // A pass without a place is none, and may stand beside a work offset.
+        let is_idle = |cycle: TurningCycle| cycle == TurningCycle::TurnPass && !self.state.moves(words);
+        let cycle = cycle_of(words).filter(|(cycle, _)| !is_idle(*cycle));
         self.state.step(words);
         if let Some((cycle, _)) = cycle {
             self.state.at = stood;

@@ -92,6 +92,7 @@ pub(crate) fn write_out(text: &[u8], dialect: &Dialect, routines: &[Range<u64>])
         out: Output::new(dialect, text),
         state: State::initial(dialect, turning),
         pass: None,
+        passed: false,
         routines,
         first_blocks: rough::FirstBlocks::default(),
         unsure_feed: false,
@@ -112,6 +113,8 @@ struct Writer<'b, 'a> {
     state: State,
     /// The single pass in force.
     pass: Option<Pass>,
+    /// The program has made a single pass, whose words may still be held.
+    passed: bool,
     /// Where contours stand that are subroutines.
     routines: &'b [Range<u64>],
     /// What the blocks without P and Q said, which hold for those with them.
