@@ -92,8 +92,15 @@ fn a_thread_ends_in_the_chamfer_that_the_profile_says() {
     set(&mut dialect, None, None);
     let (code, message) = refused(&dialect, "G92 X50. Z-30. F1.5\n");
     assert_eq!(code, 145, "{message}");
+    // Longer than there is room up to the start of the cycle: along it to the end, where nothing stands.
     set(&mut dialect, Some(9.0), None);
-    assert_eq!(refused(&dialect, "G92 X50. Z-30. F1.5\n").0, 143);
+    assert_eq!(
+        lines(&dialect, "G92 X50. Z-30. F1.5\n"),
+        ["F1.5 G0 X50. Z2.", "G32 Z-16.5", "G32 X60. Z-21.5", "G0 X60. Z-30.", "G0 X60. Z2."]
+    );
+    set(&mut dialect, Some(22.0), None);
+    let (code, message) = refused(&dialect, "G92 X50. Z-30. F1.5\n");
+    assert!(code == 143 && message.contains("shorter than its chamfer"), "{message}");
 }
 
 #[test]

@@ -288,16 +288,31 @@ impl Writer<'_, '_> {
         let clear_mm = self.plane([clear, 0])[0];
         let share = 1.0 - length / whole;
         let begins = [r0 + share * (r1 - r0), z0 + share * (z1 - z0)];
-        if share < 0.0 || outwards > (clear_mm - begins[0]).abs() {
+        if share < 0.0 {
             return Err(words.cycle_fault(
                 words.whole(),
                 both!("a thread shorter than its chamfer", "резьба короче своей фаски"),
-                both!("its chamfer is {length} long and leads {outwards:.4} outwards", "длина фаски {length}, и она уводит наружу на {outwards:.4}"),
-                both!("correct `thread_chamfer_leads` or `thread_chamfer_deg` in the profile, or start further out", "исправьте `thread_chamfer_leads` или `thread_chamfer_deg` в профиле или начните дальше от детали"),
+                both!("its chamfer is {length} long", "длина фаски {length}"),
+                both!(
+                    "correct `thread_chamfer_leads` in the profile, or start further out",
+                    "исправьте `thread_chamfer_leads` в профиле или начните дальше от детали"
+                ),
             ));
         }
-        let ends = [begins[0] + outwards * (clear_mm - begins[0]).signum(), z1];
-        let (begins, ends) = (self.spot(begins), [self.spot(ends)[0], to[1]]);
+        // Where the cycle starts nothing stands along the thread: every pass comes back there in a rapid. A chamfer that gets
+        // there before its end goes on along it.
+        let room = (clear_mm - begins[0]).abs();
+        let made = if outwards > room { room / outwards } else { 1.0 };
+        let ends = [
+            begins[0] + made * outwards * (clear_mm - begins[0]).signum(),
+            begins[1] + made * (z1 - begins[1]),
+        ];
+        let (begins, mut ends) = (self.spot(begins), self.spot(ends));
+        if outwards > room {
+            ends[0] = clear;
+        } else {
+            ends[1] = to[1];
+        }
         self.go_with(moves, Code::Thread, begins, further);
         self.go(moves, Code::Thread, ends);
         Ok(())
