@@ -15,8 +15,8 @@ use units::{Angle, Length};
 use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, span};
 use crate::field::Around;
 use crate::format::{
-    self, ChangePlace, ContourCompensation, DecimalName, Document, DrillRName, Finite, FlankName,
-    InterpolationName, OutsideName, PecksName, ToolChange, XName,
+    self, ChangePlace, ContourCompensation, DecimalName, Document, DrawingWords, DrillRName, Finite,
+    FlankName, InterpolationName, OutsideName, PecksName, ToolChange, XName,
 };
 use crate::profile::{
     AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics,
@@ -458,6 +458,7 @@ impl Loader<'_> {
                 &Text::pair("per cent", "процентов"),
             ),
             nose_in_finishing: matches!(program.contour_compensation, Some(ContourCompensation::Finishing)),
+            plain_drawing: matches!(program.drawing_words, Some(DrawingWords::Plain)),
         }
     }
 

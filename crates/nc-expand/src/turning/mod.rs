@@ -57,9 +57,12 @@ const MILLION: f64 = 1e6;
 /// X and Z.
 const AXES: [u8; 2] = *b"XZ";
 
-/// True where the block has a cycle that is written out.
+/// True where the block has a cycle that is written out, or may have words of a drawing without a comma.
 pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
-    dialect.turning.is_some() && cycle_of(&Words { block, dialect }).is_some()
+    dialect.turning.as_ref().is_some_and(|turning| {
+        let draws = turning.cycles.plain_drawing && drawing::may_draw(block, turning);
+        draws || cycle_of(&Words { block, dialect }).is_some()
+    })
 }
 
 /// The cycle whose code stands in a block.
