@@ -326,6 +326,10 @@ pub(crate) struct Tool {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Nose>")]
     pub(crate) noses: BTreeMap<String, Spanned<Nose>>,
+    /// H number → by how much its station of the turret stands off where lengths_mm has the tip: X (of the radius) and Z, µm.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, [Finite; 2]>")]
+    pub(crate) turret_um: BTreeMap<String, Spanned<[Finite; 2]>>,
     /// A turning tool's holder, turned about Z against where it was measured: γ.
     pub(crate) gamma_urad: Option<Finite>,
     /// About Y: ω.

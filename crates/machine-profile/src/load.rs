@@ -165,6 +165,7 @@ impl Loader<'_> {
         let description = Description { chain: chain?, linear, rotary, squareness };
         let lathe = lathe.map(|mut parts| {
             parts.noses = self.noses(&document.tool, &mut tools);
+            parts.stations = self.stations(&document.tool, &tools);
             parts
         });
         let rigid_body = match RigidBody::new(description.clone()) {

@@ -201,6 +201,8 @@ pub struct LatheParts {
     pub bar: Option<turning::Workpiece>,
     /// How the tool's holder stands.
     pub tip: turning::Tip,
+    /// Stations of the turret that err.
+    pub stations: Vec<turning::Station>,
     /// By H number.
     pub noses: Vec<(u32, Nose)>,
 }
