@@ -2,6 +2,7 @@
 
 use crate::browser::{Report, chromium, data_of, nothing_acted, pictures, text};
 use crate::browser_calibrate::opens_prints_and_fits;
+use crate::calibrate_turning::{BAR, diagnosed};
 use crate::common::{messages, run};
 
 pub(crate) const LATHE: &str = "machine-profiles/generic_lathe.toml";
@@ -51,6 +52,30 @@ fn pieces(more: &[&str]) -> Report {
     let html = page.to_str().expect("a plain path").to_owned();
     let all = ["calibrate", "turning", &parts, "-m", &lathe, "--holdout", &third, "--html", &html, "-q"];
     let ran = run(&[&all, more].concat());
+    assert!(ran.status.success(), "{}", messages(&ran));
+    Report { folder, page }
+}
+
+/// A lathe with a bar, and eight parts that lean by so much.
+pub(crate) fn written_diagnosis(folder: &std::path::Path, taper_urad: f64) -> [String; 2] {
+    let file = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).expect("writable");
+        path.to_str().expect("a plain path").to_owned()
+    };
+    [
+        file("held.toml", &format!("{}{BAR}", crate::calibrate_turning::LATHE)),
+        file("leaning.csv", &diagnosed(taper_urad, 0.0, true)),
+    ]
+}
+
+/// What `diagnose` says of them.
+fn diagnosis(taper_urad: f64, more: &[&str]) -> Report {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [lathe, parts] = written_diagnosis(folder.path(), taper_urad);
+    let page = folder.path().join("diagnosis.html");
+    let html = page.to_str().expect("a plain path").to_owned();
+    let ran = run(&[&["diagnose", &parts, "-m", &lathe, "--html", &html], more].concat());
     assert!(ran.status.success(), "{}", messages(&ran));
     Report { folder, page }
 }
@@ -150,13 +175,42 @@ fn the_page_of_test_pieces_says_what_their_report_says() {
 }
 
 #[test]
+fn the_page_of_a_diagnosis_says_what_the_summary_says() {
+    let page = text(&diagnosis(-30.0, &[]).page);
+    let data = data_of(&page);
+    assert_eq!(
+        (data["schema"].as_str(), data["verdict"].as_str()),
+        (Some("vpost.diagnosis/1"), Some("NAMED"))
+    );
+    let head = page.split("<nav").next().expect("a head");
+    assert!(head.contains("NAMED") && head.contains("the axis of the part leans against Z"), "{head}");
+    assert!(head.contains("tailstock"), "what to do: {head}");
+    let rows = number(&data["gap"]["rows"]) as usize;
+    for class in ["s0", "s1"] {
+        let path = page.split(&format!("class=\"dots {class}\"")).nth(1).expect("dots");
+        assert_eq!(path.split('>').next().expect("a path").matches("h0").count(), rows, "{class}");
+    }
+    let russian = text(&diagnosis(-30.0, &["--lang", "ru"]).page);
+    assert!(russian.contains("ось детали наклонена к Z") && russian.contains("Радиусы деталей"), "{russian}");
+    assert!(!russian.contains("Unseen") && !russian.contains("the causes"), "{russian}");
+    let quiet = text(&diagnosis(0.0, &[]).page);
+    assert!(quiet.contains("NO GAP") && quiet.contains("nothing but noise is left"), "{quiet}");
+    assert_eq!(page.len(), text(&diagnosis(-30.0, &[]).page).len());
+}
+
+#[test]
 fn pages_of_lathes_open_print_and_fit_a_telephone() {
     let Some(browser) = chromium() else {
         println!("skipped: chromium is not installed");
         return;
     };
     let russian = ["--lang", "ru"];
-    let reports = [(turned(SHAFT, &[]), 5, 4), (turned(SHAFT, &russian), 5, 4), (pieces(&[]), 4, 1)];
+    let reports = [
+        (turned(SHAFT, &[]), 5, 4),
+        (turned(SHAFT, &russian), 5, 4),
+        (pieces(&[]), 4, 1),
+        (diagnosis(-30.0, &russian), 4, 1),
+    ];
     for (report, sections, drawings) in reports {
         opens_prints_and_fits(browser, &report, sections, drawings, 1..8);
     }
@@ -185,4 +239,5 @@ fn pictures_of_lathes() {
     };
     pictures(browser, &turned(SHAFT, &[]), "turned");
     pictures(browser, &pieces(&[]), "turning");
+    pictures(browser, &diagnosis(-30.0, &[]), "turned-diagnosis");
 }

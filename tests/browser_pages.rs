@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use crate::browser::{SPACE, browse, chromium, text};
-use crate::browser_lathe::{LATHE, SHAFT, written_pieces};
+use crate::browser_lathe::{LATHE, SHAFT, written_diagnosis, written_pieces};
 use crate::common::{messages, root, run};
 
 const AXE: &str = "axe-core@4.14.1";
@@ -50,8 +50,9 @@ fn pages(folder: &Path, language: &str) -> Vec<PathBuf> {
     std::fs::write(&shaft, SHAFT).expect("writable");
     let [lathe, parts, third] = written_pieces(folder);
     let made =
-        ["map", "check", "viewer", "diagnosis", "positioning", "ballbar", "turned", "pieces"].map(path);
-    let [map, check, viewer, diagnosis, positioning, ballbar, turned, pieces] =
+        ["map", "check", "viewer", "diagnosis", "positioning", "ballbar", "turned", "pieces", "leaning"]
+            .map(path);
+    let [map, check, viewer, diagnosis, positioning, ballbar, turned, pieces, leaning] =
         made.each_ref().map(|page| plain(page));
     make(&["map", "-m", STAN, "--grid", "9x9x9", "--clamp", "120,80,40", "--second-order", "--html", &map]);
     let plate = "samples/plate_linuxcnc.nc";
@@ -76,6 +77,8 @@ fn pages(folder: &Path, language: &str) -> Vec<PathBuf> {
     make(&["calibrate", "ballbar", "samples/calibration/ballbar_circles.csv", "--html", &ballbar]);
     make(&["predict", "--lathe", &shaft, "-m", LATHE, "--section", "190", "--html", &turned]);
     make(&["calibrate", "turning", &parts, "-m", &lathe, "--holdout", &third, "--html", &pieces]);
+    let [held, leant] = written_diagnosis(folder, -30.0);
+    make(&["diagnose", &leant, "-m", &held, "--html", &leaning]);
     made.to_vec()
 }
 

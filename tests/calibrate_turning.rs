@@ -2,7 +2,7 @@
 
 use crate::common::{messages, run};
 
-const LATHE: &str = "format = 1\nname = \"L\"\ncontrol = \"fanuc-lathe\"\nchain = \"[w S b Z X t]\"\n[program]\ng_code_system = \"A\"\nx = \"diameter\"\ndecimal = \"millimetres\"\n[axis.X]\ntravel_mm = [-20, 160]\nresolution_mm = 0.001\n[axis.Z]\ntravel_mm = [-20, 520]\nresolution_mm = 0.001\n[work_offsets_mm]\nG54 = [0, 0, 0]\n";
+pub(crate) const LATHE: &str = "format = 1\nname = \"L\"\ncontrol = \"fanuc-lathe\"\nchain = \"[w S b Z X t]\"\n[program]\ng_code_system = \"A\"\nx = \"diameter\"\ndecimal = \"millimetres\"\n[axis.X]\ntravel_mm = [-20, 160]\nresolution_mm = 0.001\n[axis.Z]\ntravel_mm = [-20, 520]\nresolution_mm = 0.001\n[work_offsets_mm]\nG54 = [0, 0, 0]\n";
 
 const TURNED: &str = "%\nO1\nG21 G18 G40 G99 G54\nG0 X80. Z400.\nX40.\nG1 Z80. F0.2\nG0 X80.\nM30\n%\n";
 
@@ -61,8 +61,11 @@ fn test_pieces_become_a_profile_that_predicts_and_one_that_is_refuted_is_not_wri
     assert!(by_tool("T0101-2").status.success(), "{}", messages(&by_tool("T0101-2")));
 }
 
+/// A bar of 40 mm between chuck and tailstock.
+pub(crate) const BAR: &str = "[tailstock]\nat_mm = 400.0\n[workpiece]\ndiameters_mm = [[0, 40], [400, 40]]\ne_gpa = 210.0\nclamping = \"chuck-tailstock\"\nradial_force_n = 0.0\n";
+
 /// Parts of a lathe that wears its tip by 2 µm a part on the radius, or leans, or both.
-fn diagnosed(taper_urad: f64, wear_um: f64, is_timed: bool) -> String {
+pub(crate) fn diagnosed(taper_urad: f64, wear_um: f64, is_timed: bool) -> String {
     let mut text = String::from("part,z_mm,diameter_mm,d_um,tool");
     text.push_str(if is_timed { ",time_s\n" } else { "\n" });
     for part in 0..8u32 {
@@ -87,8 +90,7 @@ fn diagnose_names_a_taper_and_never_a_wear_that_may_be_growth() {
         std::fs::write(&path, text).expect("written");
         path.to_str().expect("a plain name").to_owned()
     };
-    let bar = "[tailstock]\nat_mm = 400.0\n[workpiece]\ndiameters_mm = [[0, 40], [400, 40]]\ne_gpa = 210.0\nclamping = \"chuck-tailstock\"\nradial_force_n = 0.0\n";
-    let lathe = file("lathe.toml", &format!("{LATHE}{bar}"));
+    let lathe = file("lathe.toml", &format!("{LATHE}{BAR}"));
     let json = folder.path().join("d.json").to_str().expect("a plain name").to_owned();
     let answer = |text: &str| -> (serde_json::Value, String) {
         let parts = file("parts.csv", text);
@@ -122,6 +124,6 @@ fn diagnose_names_a_taper_and_never_a_wear_that_may_be_growth() {
     let (found, said) = answer(&diagnosed(0.0, 0.0, true));
     assert_eq!((found["verdict"].as_str(), ids(&found).len()), (Some("NO GAP"), 0), "{said}");
     let refused =
-        run(&["diagnose", &file("p.csv", &diagnosed(0.0, 0.0, true)), "-m", &lathe, "--html", &json]);
-    assert!(!refused.status.success() && messages(&refused).contains("--html"), "{}", messages(&refused));
+        run(&["diagnose", &file("p.csv", &diagnosed(0.0, 0.0, true)), "-m", &lathe, "--viewer", &json]);
+    assert!(!refused.status.success() && messages(&refused).contains("--viewer"), "{}", messages(&refused));
 }

@@ -22,6 +22,7 @@ fn base() -> TurningBase {
         spindle: Spindle { centre_mm: Vector::new(0.0, 0.0, 60.0), ..Spindle::default() },
         bending: Bending::default(),
         tip: Tip::default(),
+        stations: Vec::new(),
     }
 }
 

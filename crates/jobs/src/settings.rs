@@ -297,6 +297,7 @@ fn declare_cycles(profile: &Profile, dialect: &mut Dialect) {
         drill_r_is_place,
         bore_return_percent,
         nose_in_finishing,
+        plain_drawing,
     } = profile.program.turning;
     turning.diameters = profile.program.diameters;
     turning.cycles = TurningParameters {
@@ -317,6 +318,7 @@ fn declare_cycles(profile: &Profile, dialect: &mut Dialect) {
         drill_r: drill_r_is_place.map(|is_place| if is_place { DrillR::Place } else { DrillR::Way }),
         bore_return_percent,
         nose_in_finishing,
+        plain_drawing,
     };
 }
 

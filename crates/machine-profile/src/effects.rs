@@ -134,8 +134,8 @@ impl Profile {
         };
         let tools = self.tools.iter().map(|(_, length)| -Vector::from(*length));
         let tools: Vec<Vector> = tools.chain([Vector::from(self.default_tool_mm)]).collect();
-        let LatheParts { spindle, bending, tip, .. } = parts.clone();
-        Ok(Some(Lathe::new(linear, spindle, bending, tip, &tools)))
+        let LatheParts { spindle, bending, tip, stations, .. } = parts.clone();
+        Ok(Some(Lathe::new(linear, spindle, bending, tip, &tools).with_stations(stations)))
     }
 
     /// An engine for this profile under these conditions, effects included.

@@ -326,6 +326,10 @@ pub(crate) struct Tool {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Nose>")]
     pub(crate) noses: BTreeMap<String, Spanned<Nose>>,
+    /// H number → by how much its station of the turret stands off where lengths_mm has the tip: X (of the radius) and Z, µm.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, [Finite; 2]>")]
+    pub(crate) turret_um: BTreeMap<String, Spanned<[Finite; 2]>>,
     /// A turning tool's holder, turned about Z against where it was measured: γ.
     pub(crate) gamma_urad: Option<Finite>,
     /// About Y: ω.
@@ -512,13 +516,15 @@ pub(crate) struct Program {
     /// By how much pecks of G83 go back, or stay off what is drilled (parameter 5114).
     #[schemars(with = "Option<f64>")]
     pub(crate) drill_return_mm: Option<Spanned<Finite>>,
-    /// What R of G83 and G85 is in systems B and C: "place" (under G90) or "way" from the start; parameter 5102.6.
+    /// What R of G83 and G85 is: "place" (in systems B and C under G90) or "way" from the start; parameter 5102.6.
     pub(crate) drill_r: Option<DrillRName>,
     /// Feed at which G85 leaves the hole, in per cent of F (parameter 5121).
     #[schemars(with = "Option<f64>")]
     pub(crate) bore_return_percent: Option<Spanned<Finite>>,
     /// Where G41 and G42 between P and Q of G70 to G73 hold: "finishing" (G70 alone).
     pub(crate) contour_compensation: Option<ContourCompensation>,
+    /// How corners and angles of a drawing are written: "comma" (,A ,C ,R) or "plain" (A C R of a line too); parameter 3405.4.
+    pub(crate) drawing_words: Option<DrawingWords>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
@@ -541,6 +547,13 @@ pub(crate) enum DrillRName {
 pub(crate) enum PecksName {
     Full,
     Chip,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum DrawingWords {
+    Comma,
+    Plain,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]

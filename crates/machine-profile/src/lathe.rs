@@ -4,7 +4,8 @@ use diagnostic::{Diagnostic, Speaks, both};
 use machine_model::Vector;
 use toml::Spanned;
 use turning::{
-    Bending, Clamping, ErrorMotion, Force, Harmonic, Spindle, Tailstock, Tip, Workpiece, WorkpieceError,
+    Bending, Clamping, ErrorMotion, Force, Harmonic, Spindle, Station, Tailstock, Tip, Workpiece,
+    WorkpieceError,
 };
 use units::{Angle, Length};
 
@@ -124,6 +125,7 @@ impl Loader<'_> {
             ("[tailstock]", tailstock.as_ref().map(Spanned::span)),
             ("[workpiece]", workpiece.as_ref().map(Spanned::span)),
             ("noses", document.tool.noses.values().next().map(Spanned::span)),
+            ("turret_um", document.tool.turret_um.values().next().map(Spanned::span)),
         ];
         for (name, span) in spans.into_iter().filter_map(|(name, span)| Some((name, span?))) {
             let diagnostic = Diagnostic::error(
@@ -193,7 +195,15 @@ impl Loader<'_> {
             gamma_rad: urad(document.tool.gamma_urad),
             omega_rad: urad(document.tool.omega_urad),
         };
-        LatheParts { chain: document.chain.get_ref().clone(), spindle, bending, bar, tip, noses: Vec::new() }
+        LatheParts {
+            chain: document.chain.get_ref().clone(),
+            spindle,
+            bending,
+            bar,
+            tip,
+            stations: Vec::new(),
+            noses: Vec::new(),
+        }
     }
 
     /// How far the workpiece bends, whether the tailstock bears it, and the bar itself.
@@ -324,6 +334,59 @@ impl Loader<'_> {
                 (Bending::default(), bears, None)
             }
         }
+    }
+
+    /// Stations of the turret that err; `tools` with the heights of their noses.
+    ///
+    /// A station is known by the vector of its tool: two of one vector that err otherwise cannot be told apart.
+    pub(crate) fn stations(&mut self, written: &format::Tool, tools: &[(u32, [f64; 3])]) -> Vec<Station> {
+        let vector = |length: &[f64; 3]| -Vector::from(*length);
+        let mut stations: Vec<Station> = Vec::new();
+        for (name, shift) in &written.turret_um {
+            let number = name.strip_prefix('H').and_then(|digits| digits.parse::<u32>().ok());
+            let Some((own, length)) = tools.iter().find(|(known, _)| Some(*known) == number) else {
+                let diagnostic = Diagnostic::error(
+                    KEY,
+                    both!(
+                        "`{name}` under turret_um is no tool of lengths_mm",
+                        "`{name}` в turret_um — не инструмент из lengths_mm"
+                    ),
+                )
+                .help(both!(
+                    "write the same H number in both, like H1",
+                    "напишите в обоих один номер H, например H1"
+                ));
+                self.refuse(shift, diagnostic, both!("of this entry", "в этой записи"));
+                continue;
+            };
+            let station = Station { tool_mm: vector(length), shift_mm: pair(Some(*shift.get_ref())) };
+            let told_apart = |(other, other_length): &&(u32, [f64; 3])| {
+                let other_shift =
+                    written.turret_um.get(&format!("H{other}")).map(|shift| pair(Some(*shift.get_ref())));
+                other != own
+                    && vector(other_length) == station.tool_mm
+                    && other_shift != Some(station.shift_mm)
+            };
+            let default = written.default_mm.map_or([0.0; 3], |default| default.map(|Finite(mm)| mm));
+            let twin = tools.iter().find(told_apart).map(|(other, _)| format!("H{other}"));
+            let twin = twin.or((Vector::from(default) == station.tool_mm).then(|| "default_mm".to_owned()));
+            if let Some(twin) = twin {
+                let diagnostic = Diagnostic::error(
+                    CONFLICT,
+                    both!(
+                        "{name} under turret_um has the length of {twin}, whose station errs otherwise",
+                        "у {name} в turret_um та же длина, что у {twin}, а погрешность позиции другая"
+                    ),
+                )
+                .help(both!(
+                    "a station is known by its tool: write the lengths that the tools have",
+                    "позиция узнаётся по инструменту: впишите настоящие вылеты инструментов"
+                ));
+                self.refuse(shift, diagnostic, both!("which of the two is it?", "какая из двух?"));
+            }
+            stations.push(station);
+        }
+        stations
     }
 
     /// Noses by number; a tip's height becomes the Y of its tool's vector.

@@ -15,8 +15,8 @@ use units::{Angle, Length};
 use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, span};
 use crate::field::Around;
 use crate::format::{
-    self, ChangePlace, ContourCompensation, DecimalName, Document, DrillRName, Finite, FlankName,
-    InterpolationName, OutsideName, PecksName, ToolChange, XName,
+    self, ChangePlace, ContourCompensation, DecimalName, Document, DrawingWords, DrillRName, Finite,
+    FlankName, InterpolationName, OutsideName, PecksName, ToolChange, XName,
 };
 use crate::profile::{
     AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics,
@@ -165,6 +165,7 @@ impl Loader<'_> {
         let description = Description { chain: chain?, linear, rotary, squareness };
         let lathe = lathe.map(|mut parts| {
             parts.noses = self.noses(&document.tool, &mut tools);
+            parts.stations = self.stations(&document.tool, &tools);
             parts
         });
         let rigid_body = match RigidBody::new(description.clone()) {
@@ -458,6 +459,7 @@ impl Loader<'_> {
                 &Text::pair("per cent", "процентов"),
             ),
             nose_in_finishing: matches!(program.contour_compensation, Some(ContourCompensation::Finishing)),
+            plain_drawing: matches!(program.drawing_words, Some(DrawingWords::Plain)),
         }
     }
 

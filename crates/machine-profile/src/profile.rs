@@ -130,12 +130,14 @@ pub struct TurningRules {
     pub drill_chips: Option<bool>,
     /// By how much they do, or stay off what is drilled, mm.
     pub drill_return_mm: Option<f64>,
-    /// R of drilling cycles is a place under G90 in systems B and C; false: a way; `None`: not said.
+    /// R of drilling cycles is a place, in systems B and C under G90; false: a way; `None`: not said.
     pub drill_r_is_place: Option<bool>,
     /// Feed out of a bored hole, per cent of F.
     pub bore_return_percent: Option<f64>,
     /// G41 and G42 within the contour of a cycle hold in finishing alone; false: not said.
     pub nose_in_finishing: bool,
+    /// A, C and R of a line are words of a drawing without a comma too; false: not said.
+    pub plain_drawing: bool,
 }
 
 /// Tool centre point control: the tip runs straight from end to end of a block.
@@ -199,6 +201,8 @@ pub struct LatheParts {
     pub bar: Option<turning::Workpiece>,
     /// How the tool's holder stands.
     pub tip: turning::Tip,
+    /// Stations of the turret that err.
+    pub stations: Vec<turning::Station>,
     /// By H number.
     pub noses: Vec<(u32, Nose)>,
 }

@@ -6,19 +6,24 @@ use common::blocks;
 use nc_expand::{Environment, Limits, expand};
 use nc_syntax::Dialect;
 
-fn dialect(diameters: Option<bool>) -> Dialect {
+fn dialect(diameters: Option<bool>, plain: bool) -> Dialect {
     let mut dialect =
         nc_dialect::builtin("fanuc-lathe").and_then(|dialect| dialect.in_system("A")).expect("a system");
-    dialect.turning.as_mut().expect("a lathe").diameters = diameters;
+    let turning = dialect.turning.as_mut().expect("a lathe");
+    (turning.diameters, turning.cycles.plain_drawing) = (diameters, plain);
     dialect
 }
 
 /// The lines that are no comments, behind the start; or the message.
 fn written(program: &str, diameters: Option<bool>) -> Result<Vec<String>, String> {
+    written_in(program, &dialect(diameters, false))
+}
+
+fn written_in(program: &str, dialect: &Dialect) -> Result<Vec<String>, String> {
     let text = format!("G0 X60. Z2.\n{program}");
     let environment =
         Environment { variables: &[], read_external: &common::nothing, limits: Limits::default() };
-    match expand(text.as_bytes(), &dialect(diameters), &environment) {
+    match expand(text.as_bytes(), dialect, &environment) {
         Ok(expanded) => {
             let flat = String::from_utf8(expanded.text().to_vec()).expect("text");
             Ok(blocks(&flat).into_iter().skip(1).map(str::to_owned).collect())
@@ -126,4 +131,34 @@ fn what_is_not_certain_is_refused() {
     }
     let unsaid = written("G1 X20. F0.2\nZ-10. ,R2.\nX30.\n", None);
     assert_eq!(unsaid, Err("142 whether X is a diameter or a radius is not said".to_owned()));
+}
+
+/// Parameter 3405.4 takes the comma away; R of arcs and of cycles stays what it is.
+#[test]
+fn without_a_comma_where_the_profile_says_so() {
+    let plain = |program: &str| written_in(program, &dialect(Some(true), true));
+    let lines_and_arcs =
+        "G1 X20. F0.2\nZ-10. ,R2.\nX30. ,C1. M8\nZ-20.\nX54. ,A160.\nZ-80.\nG2 X60. Z-83. R3.\nM30\n";
+    let without = lines_and_arcs.replace(',', "");
+    assert_eq!(plain(&without).expect("written"), lines(lines_and_arcs));
+    assert_eq!(plain(lines_and_arcs).expect("written"), lines(lines_and_arcs));
+    let contour = |comma: &str| {
+        format!(
+            "G71 U5. R0.5\nG71 P10 Q20 U0. W0. F0.2\nN10 G0 X20.\nG1 Z-10. {comma}R2.\nX40. {comma}C1.\nN20 Z-20.\nG70 P10 Q20 F0.1\n"
+        )
+    };
+    assert_eq!(plain(&contour("")).expect("written"), lines(&contour(",")));
+    // Roughing that passed over it would cut into the rounded corner: 144 where nobody says what it is.
+    let why = written(&contour(""), Some(true)).expect_err("R of a line");
+    assert!(why.starts_with("144 a corner"), "{why}");
+    for program in ["G1 Z-10. R-2.\nX70.\n", "G1 Z-10. A90. A80.\n", "G1 X50. Z-10. R2.\nG0 X70.\n"] {
+        assert!(plain(program).expect_err(program).starts_with("142 "), "{program}");
+    }
+}
+
+/// G90 of system A without a place is no pass, and where the tool stands in another frame nobody knows.
+#[test]
+fn a_pass_without_a_place_keeps_no_place() {
+    let why = written("G55 G90\nG1 Z-10. ,R2.\nX70.\n", Some(true)).expect_err("another frame");
+    assert!(why.contains("not known"), "{why}");
 }

@@ -92,8 +92,15 @@ fn a_thread_ends_in_the_chamfer_that_the_profile_says() {
     set(&mut dialect, None, None);
     let (code, message) = refused(&dialect, "G92 X50. Z-30. F1.5\n");
     assert_eq!(code, 145, "{message}");
+    // Longer than there is room up to the start of the cycle: along it to the end, where nothing stands.
     set(&mut dialect, Some(9.0), None);
-    assert_eq!(refused(&dialect, "G92 X50. Z-30. F1.5\n").0, 143);
+    assert_eq!(
+        lines(&dialect, "G92 X50. Z-30. F1.5\n"),
+        ["F1.5 G0 X50. Z2.", "G32 Z-16.5", "G32 X60. Z-21.5", "G0 X60. Z-30.", "G0 X60. Z2."]
+    );
+    set(&mut dialect, Some(22.0), None);
+    let (code, message) = refused(&dialect, "G92 X50. Z-30. F1.5\n");
+    assert!(code == 143 && message.contains("shorter than its chamfer"), "{message}");
 }
 
 #[test]
@@ -273,12 +280,53 @@ fn a_hole_is_drilled_on_the_axis() {
         assert_eq!(refused(&lathe, &hole(words)).0, 143, "{words}");
     }
     for program in [
-        "G0 X0 Z2.\nG83 Z-28. R3. F0.1\n",
         "G0 X0 Z2.\nG83 Z-28. F0.1\n",
+        // The manual counts W from R, every other W counts from where the tool stands.
+        "G0 X0 Z2.\nG83 W-28. R-3. F0.1\n",
         "G0 X0 Z2.\nG83 Z-2. R-5. F0.1\n",
         "G0 X0 Z2.\nG83 Z-28. R-3. F0.1\nZ-30.\n",
         // 5 in a program without points are 5 increments.
         "G0 X0 Z2.\nG83 Z-28. R-3. Q5 F0.1\n",
+    ] {
+        assert_eq!(refused(&lathe, program).0, 143, "{program}");
+    }
+}
+
+/// R above the start: by Fanuc's manual a way up, by controls that follow it a place.
+#[test]
+fn r_of_a_hole_that_leads_up_is_asked_for() {
+    let mut lathe = dialect("A");
+    let program = "G0 X0. Z5.\nG83 Z-20. R5. F0.1\n";
+    let (code, message) = refused(&lathe, program);
+    assert!(code == 145 && message.contains("whether R of a hole"), "{message}");
+    let mut drilled = |r, program: &str| {
+        lathe.turning.as_mut().unwrap().cycles.drill_r = Some(r);
+        lines(&lathe, program)
+    };
+    let from_five = ["G0 X0. Z5.", "F0.1 G1 Z-20.", "G0 X0. Z5."];
+    assert_eq!(drilled(DrillR::Place, program), from_five);
+    let from_ten = ["G0 X0. Z5.", "F0.1 G0 X0. Z10.", "G1 Z-20.", "G0 X0. Z10.", "G0 X0. Z5."];
+    assert_eq!(drilled(DrillR::Way, program), from_ten);
+    assert_eq!(drilled(DrillR::Way, "G0 X0. Z5.\nG83 W-25. R0 F0.1\n"), from_five);
+    // Beyond the bottom there is nothing to drill.
+    lathe.turning.as_mut().unwrap().cycles.drill_r = Some(DrillR::Place);
+    assert_eq!(refused(&lathe, "G0 X0. Z5.\nG83 Z-20. R-25. F0.1\n").0, 143);
+}
+
+/// People used to mills write G90 at the head; a lathe of system A has a cycle by that name.
+#[test]
+fn a_pass_without_a_place_is_left_out() {
+    let lathe = dialect("A");
+    let program = "N5 G21 G18 G90 G99 G40 (head)\nG54 G90\nG90\nG0 X50. Z2.\n";
+    assert_eq!(lines(&lathe, program), ["N5 G21 G18 G99 G40", "G54", "G0 X50. Z2."]);
+    for program in [
+        // Its words may still be held.
+        "G90 X50. Z-30. F0.2\nG0 X60.\nG90\n",
+        "G90 R1.\n",
+        "G92\n",
+        "G94\n",
+        // Which motion?
+        "G0 X50. Z2.\nG90\nX40.\n",
     ] {
         assert_eq!(refused(&lathe, program).0, 143, "{program}");
     }
@@ -382,7 +430,7 @@ fn what_is_not_certain_is_refused() {
     let rough = |contour: &str| format!("G71 U2. R1.\nG71 P10 Q20 U0.4 W0.2\n{contour}");
     for (program, code) in [
         // No place, or only one of two.
-        ("G90\n".to_owned(), 143),
+        ("G94\n".to_owned(), 143),
         ("G92 S2000\n".to_owned(), 143),
         ("G90 X50.\n".to_owned(), 143),
         ("/G90 X50. Z-30.\n".to_owned(), 143),

@@ -277,7 +277,7 @@ fn run<'d>(
     let words = &*words;
     let demand = settings::apply(env, words, before, state)?;
     if env.dialect.turning.is_some() {
-        turning::check(words, &demand, state)?;
+        turning::check(env, words, &demand, state)?;
     }
     state.feed_is_inverse_time = state.feed_mode == FeedMode::InverseTime
         || (state.feed_is_inverse_time && (demand.owner == Owner::Dwell || !words.has(Letters::of(b"F"))));

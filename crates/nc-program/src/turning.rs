@@ -109,14 +109,34 @@ pub(crate) fn check_motions(words: &Words<'_, '_, '_>, state: &Modal, motions: &
 }
 
 /// What no lathe of two axes does, and what nobody said.
-pub(crate) fn check(words: &Words<'_, '_, '_>, demand: &Demand<'_>, state: &Modal) -> Outcome<()> {
+pub(crate) fn check(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    demand: &Demand<'_>,
+    state: &Modal,
+) -> Outcome<()> {
     const X: Letters = Letters::of(b"X");
     const Y: Letters = Letters::of(b"Y");
+    const ANGLE_AND_CHAMFER: Letters = Letters::of(b"AC");
     let places = !matches!(demand.owner, Owner::Dwell | Owner::DwellBySetting | Owner::Arguments);
     let absent = Y.or(ROTARY_LETTERS);
     if places && words.has(absent) {
         let message =
             both!("{} on a lathe of two axes", "{} на двухосевом токарном станке", words.names(absent));
+        let on_a_line = matches!(state.motion, MotionMode::Line(_)) && env.dialect.flow.corner_words;
+        let help = if on_a_line && words.has(ANGLE_AND_CHAMFER) && !words.has(Y) {
+            both!(
+                "write `drawing_words = \"plain\"` under `[program]` in the profile where A and C of lines are angles and chamfers \
+                 without a comma (parameter 3405.4); else correct the turning apart from what is milled",
+                "впишите `drawing_words = \"plain\"` в раздел `[program]` профиля, если A и C прямых без запятой — углы и фаски \
+                 (параметр 3405.4); иначе исправляйте точение отдельно от фрезерования"
+            )
+        } else {
+            both!(
+                "correct the turning apart from what is milled or drilled off the axis",
+                "исправляйте точение отдельно от того, что фрезеруется или сверлится вне оси"
+            )
+        };
         return Err(words
             .refuse(
                 codes::NO_TURNING,
@@ -124,10 +144,7 @@ pub(crate) fn check(words: &Words<'_, '_, '_>, demand: &Demand<'_>, state: &Moda
                 words.span(absent),
                 both!("the axes are X and Z", "оси — X и Z"),
             )
-            .help(both!(
-                "correct the turning apart from what is milled or drilled off the axis",
-                "исправляйте точение отдельно от того, что фрезеруется или сверлится вне оси"
-            )));
+            .help(help));
     }
     if places && words.has(X) && state.x_words == XWords::Unstated {
         return Err(words

@@ -1012,12 +1012,14 @@ pub struct TurningParameters {
     pub drill_pecks: Option<DrillPecks>,
     /// By how much it does, or stays off what is drilled, mm (parameter 5114).
     pub drill_return_mm: Option<f64>,
-    /// What R of drilling cycles is in systems B and C (parameter 5102.6).
+    /// What R of drilling cycles is (parameter 5102.6 of systems B and C; controls that follow Fanuc have theirs in A).
     pub drill_r: Option<DrillR>,
     /// Feed out of a hole that G85 bores, in per cent of F (parameter 5121; 0 there is 200).
     pub bore_return_percent: Option<f64>,
     /// G41 and G42 between P and Q hold in finishing alone: roughing leaves its allowance at the tip as programmed.
     pub nose_in_finishing: bool,
+    /// A, C and R of a line are words of a drawing without a comma too (parameter 3405.4).
+    pub plain_drawing: bool,
 }
 
 /// A G-code system of a lathe's control: what its table has in place of the dialect's own rows.

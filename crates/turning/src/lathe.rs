@@ -21,6 +21,18 @@ pub struct Tip {
     pub omega_rad: f64,
 }
 
+/// A station of the turret: where its tool really stands.
+///
+/// The index of a turret repeats, and each station stands off by its own error; what of it is across the plane of X and Z is
+/// the tip's height.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Station {
+    /// The vector of the tool in it, by which it is known.
+    pub tool_mm: Vector,
+    /// Along X (of the radius) and Z, mm.
+    pub shift_mm: [f64; 2],
+}
+
 /// A lathe: where a command leaves the turned surface.
 ///
 /// As a [`PathModel`] its target is (r, z) of the workpiece in X and Z; Y is never commanded.
@@ -60,6 +72,7 @@ pub struct Lathe {
     to_axis: Matrix3<f64>,
     bending: Bending,
     tip: Tip,
+    stations: Vec<Station>,
     /// Nearer to the axis than this the radius is no longer promised, mm: see [`Lathe::near_axis_mm`].
     near_axis_mm: f64,
 }
@@ -84,7 +97,9 @@ impl Lathe {
     ) -> Self {
         let (chuck_mm, turn) = spindle.frame();
         let to_axis = turn.transpose();
-        let mut lathe = Self { linear, spindle, chuck_mm, to_axis, bending, tip, near_axis_mm: 0.0 };
+        let stations = Vec::new();
+        let mut lathe =
+            Self { linear, spindle, chuck_mm, to_axis, bending, tip, stations, near_axis_mm: 0.0 };
         let volume = lathe.linear.volume();
         let along =
             |range: Range, k: usize| range.low + (range.high - range.low) * k as f64 / (LOOKS - 1) as f64;
@@ -105,6 +120,12 @@ impl Lathe {
         let highest = heights.map(|command| lathe.height_mm(&command).abs()).fold(0.0, f64::max);
         lathe.near_axis_mm = NEAR * highest;
         lathe
+    }
+
+    /// The same with a turret whose stations err.
+    #[must_use]
+    pub fn with_stations(self, stations: Vec<Station>) -> Self {
+        Self { stations, ..self }
     }
 
     /// Its spindle.
@@ -129,7 +150,9 @@ impl Lathe {
         command.linear_mm.y = 0.0;
         let tip =
             command.linear_mm + turned + self.linear.error_mm(&command) + Vector::new(0.0, height_mm, 0.0);
-        let mut seen = self.to_axis * (tip - self.chuck_mm);
+        let station = self.stations.iter().find(|station| station.tool_mm == command.tool_mm);
+        let [x, z] = station.map_or([0.0; 2], |station| station.shift_mm);
+        let mut seen = self.to_axis * (tip + Vector::new(x, 0.0, z) - self.chuck_mm);
         seen.x += self.bending.at_mm(seen.z);
         seen
     }

@@ -9,7 +9,7 @@ mod section;
 mod spindle;
 mod workpiece;
 
-pub use lathe::{Lathe, Tip};
+pub use lathe::{Lathe, Station, Tip};
 pub use roughness::{Roughness, roughness};
 pub use section::{Circle, Cylinder, Section, Wave};
 pub use spindle::{ErrorMotion, Harmonic, Spindle, Tailstock};

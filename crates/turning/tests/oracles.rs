@@ -9,8 +9,8 @@ use machine_model::{
     RigidBody, RotaryAxis, Squareness, Table, Vector,
 };
 use turning::{
-    Bending, Clamping, Cylinder, ErrorMotion, Force, Harmonic, Lathe, Section, Spindle, Tailstock, Tip,
-    Workpiece,
+    Bending, Clamping, Cylinder, ErrorMotion, Force, Harmonic, Lathe, Section, Spindle, Station, Tailstock,
+    Tip, Workpiece,
 };
 
 /// 1e-6 µm.
@@ -63,6 +63,18 @@ fn a_tailstock_aside_turns_a_cone() {
     }
     let cone = 2.0 * (lathe.turned_mm(&at(20.0, 300.0))[0] - 20.0);
     assert!((cone - 0.049_999_86).abs() < 5e-9, "{cone}");
+}
+
+#[test]
+fn a_station_of_the_turret_shifts_its_own_tool_alone() {
+    let [own, other] = [Vector::new(-12.5, 0.03, -41.25), Vector::new(-12.5, 0.0, -41.25)];
+    let station = Station { tool_mm: own, shift_mm: [0.008, -0.005] };
+    let lathe = lathe(Spindle::default(), Bending::default(), Tip::default()).with_stations(vec![station]);
+    let turned = |tool_mm: Vector| lathe.turned_mm(&Command { tool_mm, ..at(32.5, 141.25) });
+    let [r, z] = turned(own);
+    assert!((r - (20.008f64 * 20.008 + 0.03 * 0.03).sqrt()).abs() < NEAR_MM && (z - 99.995).abs() < NEAR_MM);
+    let [r, z] = turned(other);
+    assert!((r - 20.0).abs() < NEAR_MM && (z - 100.0).abs() < NEAR_MM);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! From a change of the lathe to what would be read: equations (71) to (73), exactly.
 
 use machine_model::{Axis, Description, Interpolation, PathModel, Range, RigidBody, Unusable, Vector};
-use turning::{Bending, Lathe, Spindle, Tip};
+use turning::{Bending, Lathe, Spindle, Station, Tip};
 
 use super::rows::{Feature, TurnedReading};
 use crate::ChangedAxis;
@@ -20,6 +20,8 @@ pub struct TurningBase {
     pub bending: Bending,
     /// How the tool stands.
     pub tip: Tip,
+    /// Stations of the turret that err: known, never fitted.
+    pub stations: Vec<Station>,
 }
 
 /// A change of the lathe.
@@ -129,7 +131,8 @@ impl TurningBase {
         let mut tools: Vec<Vector> = rows.iter().map(|row| row.command.tool_mm).collect();
         tools.dedup();
         let linear = Box::new(RigidBody::new(description)?);
-        Ok(Lathe::new(linear, spindle, self.bending.clone(), self.tip, &tools))
+        let lathe = Lathe::new(linear, spindle, self.bending.clone(), self.tip, &tools);
+        Ok(lathe.with_stations(self.stations.clone()))
     }
 
     /// What would be read with a change, size of the tool, growth and wear apart, mm.

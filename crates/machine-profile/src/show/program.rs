@@ -137,6 +137,9 @@ impl Profile {
                 Text::pair("R of holes is a way", "R отверстий — расстояние")
             });
         }
+        if turning.plain_drawing {
+            said.push(Text::pair("A, C and R of lines without a comma", "A, C и R прямых без запятой"));
+        }
         if turning.nose_in_finishing {
             said.push(Text::pair(
                 "G41 and G42 of contours in finishing alone",

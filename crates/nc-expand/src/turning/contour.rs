@@ -241,6 +241,12 @@ impl Writer<'_, '_> {
                     ));
                 }
             };
+            let of_an_arc = matches!(code, Code::Clockwise | Code::CounterClockwise);
+            if let Some((_, span)) =
+                b"IKR".iter().find_map(|letter| block.number(*letter).filter(|_| !of_an_arc))
+            {
+                return Err(corner_fault(&block, span));
+            }
             let [Some(x), Some(z)] = state.at else {
                 return Err(block.contour_fault(
                     block.whole(),
@@ -377,6 +383,11 @@ impl Writer<'_, '_> {
                     value: Value::Number(_),
                 }
                 | ItemKind::Word { letter: b'N' | b'F' | b'S' | b'E', value: Value::Number(_) } => {}
+                ItemKind::Word { letter: b'A' | b'C', value: Value::Number(_) }
+                    if words.dialect.flow.corner_words =>
+                {
+                    return Err(corner_fault(words, item.span));
+                }
                 ItemKind::Skip => {
                     return refuse(
                         item.span,
@@ -480,6 +491,23 @@ impl Writer<'_, '_> {
         }
         Ok(())
     }
+}
+
+/// A corner of a drawing, or a slip: roughing that passed over it would cut into a rounded corner.
+fn corner_fault(words: &Words<'_, '_>, span: Span) -> Fault {
+    let text = String::from_utf8_lossy(words.block.text(span)).into_owned();
+    words.fault(
+        codes::CONTOUR,
+        span,
+        both!("{text} on a line of a contour", "{text} на прямой контура"),
+        both!("a corner, by a parameter of the control (3405.4)", "сопряжение по параметру стойки (3405.4)"),
+        both!(
+            "write `drawing_words = \"plain\"` under `[program]` in the profile where A, C and R of lines are angles, chamfers and \
+             roundings without a comma, or remove it",
+            "впишите `drawing_words = \"plain\"` в раздел `[program]` профиля, если A, C и R прямых без запятой — углы, фаски и \
+             скругления, или уберите слово"
+        ),
+    )
 }
 
 fn math_sqrt(square: f64) -> f64 {

@@ -9,7 +9,7 @@
 
 use diagnostic::{Text, both};
 use nc_syntax::dialect::CornerForm;
-use nc_syntax::dialect::{Action, TurningCycle};
+use nc_syntax::dialect::{Action, Turning, TurningCycle};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value};
 use units::math;
 
@@ -30,7 +30,7 @@ pub(super) fn write_out(text: &[u8], dialect: &Dialect) -> Result<Option<Written
     while reader.next(&mut block) {
         blocks.push(block.clone());
     }
-    if !dialect.flow.corner_words || !blocks.iter().any(|block| commas(block).next().is_some()) {
+    if !dialect.flow.corner_words || !blocks.iter().any(|block| may_draw(block, turning)) {
         return Ok(None);
     }
     let mut drawing = Drawing {
@@ -39,6 +39,7 @@ pub(super) fn write_out(text: &[u8], dialect: &Dialect) -> Result<Option<Written
         out: Output::new(dialect, text),
         state: State::initial(dialect, turning),
         contour: None,
+        plain: turning.cycles.plain_drawing,
     };
     let mut at = 0;
     while at < blocks.len() {
@@ -47,8 +48,18 @@ pub(super) fn write_out(text: &[u8], dialect: &Dialect) -> Result<Option<Written
     Ok(Some((drawing.out.text, drawing.out.segments)))
 }
 
-fn commas<'b>(block: &'b Block<'_>) -> impl Iterator<Item = &'b Item> {
-    block.items.iter().filter(|item| matches!(item.kind, ItemKind::CommaWord { .. }))
+/// True where a block may have words of a drawing: a line's it has, what R of other blocks is their codes say.
+pub(super) fn may_draw(block: &Block<'_>, turning: &Turning) -> bool {
+    block.items.iter().any(|item| drawn(item, turning.cycles.plain_drawing).is_some())
+}
+
+/// Letter and value of a drawing's word; `plain`: without a comma too.
+fn drawn(item: &Item, plain: bool) -> Option<(u8, Value)> {
+    match item.kind {
+        ItemKind::CommaWord { letter, value } => Some((letter, value)),
+        ItemKind::Word { letter: letter @ (b'A' | b'C' | b'R'), value } if plain => Some((letter, value)),
+        _ => None,
+    }
 }
 
 /// The blocks of a contour that follow.
@@ -66,6 +77,8 @@ struct Drawing<'b, 'a> {
     out: Output,
     state: State,
     contour: Option<Ahead>,
+    /// A, C and R of lines need no comma.
+    plain: bool,
 }
 
 /// A corner to the next line.
@@ -95,19 +108,42 @@ impl<'b, 'a> Drawing<'b, 'a> {
     /// Writes a block, or the lines that it begins; says which block is next.
     fn block(&mut self, at: usize) -> Result<usize, Fault> {
         let words = self.words(at);
-        if let Some(comma) = commas(words.block).next() {
-            return self.lines(at, comma.span);
+        if let Some(first) = self.first_drawn(&words) {
+            return self.lines(at, first);
         }
         self.step(&words);
         self.out.copy(words.block.bytes, from(words.block));
         Ok(at + 1)
     }
 
+    fn drawn<'i>(&self, block: &'i Block<'_>) -> impl Iterator<Item = (&'i Item, u8, Value)> + use<'i> {
+        let plain = self.plain;
+        block
+            .items
+            .iter()
+            .filter_map(move |item| drawn(item, plain).map(|(letter, value)| (item, letter, value)))
+    }
+
+    /// Where the first word of a drawing stands: behind a comma anywhere, without one in a line.
+    fn first_drawn(&self, words: &Words<'_, '_>) -> Option<Span> {
+        let (first, ..) = self.drawn(words.block).next()?;
+        let is_line = || {
+            let mut state = self.state.clone();
+            state.step(words);
+            state.motion == Motion::Line && cycle_of(words).is_none()
+        };
+        let behind_a_comma =
+            self.drawn(words.block).any(|(item, ..)| matches!(item.kind, ItemKind::CommaWord { .. }));
+        (behind_a_comma || is_line()).then_some(first.span)
+    }
+
     /// After a block as it stands.
     fn step(&mut self, words: &Words<'_, '_>) {
         let stood = self.state.at;
         let repeats = matches!(self.state.motion, Motion::Pass(_)) && !self.state.owns_motion(words);
-        let cycle = cycle_of(words);
+        // A pass without a place is none, and may stand beside a work offset.
+        let is_idle = |cycle: TurningCycle| cycle == TurningCycle::TurnPass && !self.state.moves(words);
+        let cycle = cycle_of(words).filter(|(cycle, _)| !is_idle(*cycle));
         self.state.step(words);
         if let Some((cycle, _)) = cycle {
             self.state.at = stood;
@@ -230,7 +266,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
         start: Point,
         lines: &[Line],
     ) -> Result<Line, Fault> {
-        let span = commas(words.block).next().map_or_else(|| words.whole(), |item| item.span);
+        let span = self.drawn(words.block).next().map_or_else(|| words.whole(), |(item, ..)| item.span);
         let refuse = |label: Text| Err(refusal(words, span, label));
         let before = lines.last();
         let stands = before.map_or(start, |line| line.to);
@@ -255,15 +291,16 @@ impl<'b, 'a> Drawing<'b, 'a> {
                 "по обе стороны ожидалось G1 и никаких других функций в кадре"
             ));
         }
-        if words.skipped() || b"IKRT".iter().any(|letter| words.number(*letter).is_some()) {
+        let strange: &[u8] = if self.plain { b"IKT" } else { b"IKRT" };
+        if words.skipped() || strange.iter().any(|letter| words.number(*letter).is_some()) {
             return refuse(both!(
                 "block delete, T, or a word of an arc stands beside it",
                 "рядом с ним пропуск кадра, T или слово дуги"
             ));
         }
         let (mut angle_rad, mut corner) = (None, None);
-        for item in commas(words.block) {
-            let ItemKind::CommaWord { letter, value: Value::Number(number) } = item.kind else {
+        for (item, letter, value) in self.drawn(words.block) {
+            let Value::Number(number) = value else {
                 return refuse(both!("a number was expected", "ожидалось число"));
             };
             let size = self.dialect.numbers.length(number, self.state.inch).to_f64();
@@ -390,7 +427,8 @@ impl<'b, 'a> Drawing<'b, 'a> {
     fn replaced(&mut self, block: &Block<'_>, to: Point, says_line: bool) {
         self.out.comment(shown(block), from(block));
         let own = |item: &&Item| match item.kind {
-            ItemKind::CommaWord { .. } | ItemKind::Word { letter: b'X' | b'Z' | b'U' | b'W', .. } => true,
+            _ if drawn(item, self.plain).is_some() => true,
+            ItemKind::Word { letter: b'X' | b'Z' | b'U' | b'W', .. } => true,
             ItemKind::Word { letter: b'G', value: Value::Number(_) } => {
                 let words = Words { block, dialect: self.dialect };
                 words.actions().any(|(action, span)| span == item.span && *action == Action::Line)

@@ -5,6 +5,8 @@
 //! down again a rapid ends d above what is drilled. Q is a depth, without a point in least increments. G85 comes back to R in
 //! a feed, by parameter 5121 (0 there doubles F), and from there in a rapid. In system A R counts from where the cycle starts,
 //! and the tool goes back there; in B and C R is a place or a way by parameter 5102.6 (RAB), and G99 leaves the tool at R.
+//! Controls that follow Fanuc take it for a place in system A too: the profile may say so, and has to where a way of R would
+//! lead off the hole. The manual's W counts from R, a word of the block from where the tool stands: with W alone nobody knows.
 
 use diagnostic::{Text, both};
 use nc_syntax::dialect::{DrillPecks, DrillR};
@@ -180,13 +182,29 @@ impl Writer<'_, '_> {
                 ),
             );
         };
-        let level = if self.r_is_place(words, span)? { r } else { start[1] + r };
+        if words.number(b'W').is_some() && r != 0 {
+            return refuse(
+                both!(
+                    "a hole whose depth W counts from an unknown place",
+                    "отверстие, глубина W которого отсчитывается неизвестно откуда"
+                ),
+                both!(
+                    "from R by the manual, from the start as every other W does",
+                    "по руководству от R, а как любое W — от начала цикла"
+                ),
+                both!("write the bottom as a place, with Z", "напишите дно координатой Z"),
+            );
+        }
+        let sign_to =
+            |level: i64| (if self.state.absolute { target - level } else { target - start[1] }).signum();
+        let level =
+            if self.r_is_place(words, span, sign_to(start[1]) * r.signum())? { r } else { start[1] + r };
         // Under G91 Z counts from R.
         let bottom = if self.state.absolute { target } else { target - start[1] + level };
         let sign = (bottom - level).signum();
-        if sign == 0 || (level - start[1]) * sign < 0 {
+        if sign == 0 || sign != sign_to(start[1]) {
             return refuse(
-                both!("R does not lie between the start and the bottom", "R не лежит между началом и дном"),
+                both!("R does not lie above the bottom", "R лежит не над дном отверстия"),
                 both!(
                     "from Z {} it would lead to {}",
                     "от Z {} он привёл бы к {}",
@@ -202,14 +220,16 @@ impl Writer<'_, '_> {
         Ok(Hole { x, start: start[1], level, sign, deep: (bottom - level) * sign })
     }
 
-    /// True where R is a place, false where it is a way from the start.
-    fn r_is_place(&self, words: &Words<'_, '_>, span: Span) -> Result<bool, Fault> {
-        // System A knows U and W, and no G91.
-        if self.turning.increments || !self.state.absolute {
+    /// True where R is a place, false where it is a way from the start; `onwards`: that way leads towards the bottom (1), or
+    /// off it (-1).
+    fn r_is_place(&self, words: &Words<'_, '_>, span: Span, onwards: i64) -> Result<bool, Fault> {
+        if !self.state.absolute {
             return Ok(false);
         }
         match self.turning.cycles.drill_r {
             Some(r) => Ok(r == DrillR::Place),
+            // System A knows U and W, and no G91.
+            None if self.turning.increments && onwards >= 0 => Ok(false),
             None => Err(words.parameter_fault(
                 span,
                 &both!(

@@ -57,9 +57,12 @@ const MILLION: f64 = 1e6;
 /// X and Z.
 const AXES: [u8; 2] = *b"XZ";
 
-/// True where the block has a cycle that is written out.
+/// True where the block has a cycle that is written out, or may have words of a drawing without a comma.
 pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
-    dialect.turning.is_some() && cycle_of(&Words { block, dialect }).is_some()
+    dialect.turning.as_ref().is_some_and(|turning| {
+        let draws = turning.cycles.plain_drawing && drawing::may_draw(block, turning);
+        draws || cycle_of(&Words { block, dialect }).is_some()
+    })
 }
 
 /// The cycle whose code stands in a block.
@@ -92,6 +95,7 @@ pub(crate) fn write_out(text: &[u8], dialect: &Dialect, routines: &[Range<u64>])
         out: Output::new(dialect, text),
         state: State::initial(dialect, turning),
         pass: None,
+        passed: false,
         routines,
         first_blocks: rough::FirstBlocks::default(),
         unsure_feed: false,
@@ -112,6 +116,8 @@ struct Writer<'b, 'a> {
     state: State,
     /// The single pass in force.
     pass: Option<Pass>,
+    /// The program has made a single pass, whose words may still be held.
+    passed: bool,
     /// Where contours stand that are subroutines.
     routines: &'b [Range<u64>],
     /// What the blocks without P and Q said, which hold for those with them.

@@ -10,14 +10,14 @@
 //! not what it makes of one during moves.
 
 use diagnostic::both;
-use nc_syntax::Span;
 use nc_syntax::dialect::{Action, TurningCycle};
+use nc_syntax::{ItemKind, Span};
 use units::math;
 
 use super::emit::{Code, Moves};
 use super::state::Motion;
 use super::{Fault, MILLION, Spot, Writer};
-use crate::shorthand::Words;
+use crate::shorthand::{Words, from, shown};
 
 /// What a pass holds.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +39,11 @@ impl Writer<'_, '_> {
     pub(super) fn first_pass(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
         if !self.state.moves(&words) {
+            let holds_a_place = self.passed || taper_word(&words, cycle).is_some();
+            if !holds_a_place && cycle == TurningCycle::TurnPass {
+                self.idle_pass(&words);
+                return Ok(());
+            }
             return Err(words.cycle_fault(
                 span,
                 both!("a cycle without a place", "цикл без конечной точки"),
@@ -65,6 +70,27 @@ impl Writer<'_, '_> {
         let to = held.map_or([None; 2], |pass| if pass.cycle == cycle { pass.to } else { [None; 2] });
         self.pass = Some(Pass { cycle, start, to, taper: 0 });
         self.repeated(at)
+    }
+
+    /// G90 of system A among the codes at a program's head, where people are used to it as the code of places.
+    ///
+    /// It has no place and none is held from a pass before it, so nothing moves; and what a control might make of it all the
+    /// same would come back to where the tool stands. It is left out, and which motion is in force behind it nobody knows.
+    fn idle_pass(&mut self, words: &Words<'_, '_>) {
+        self.unsure_feed &= words.number(b'F').is_none();
+        self.state.step(words);
+        (self.state.motion, self.pass) = (Motion::Unknown, None);
+        let block = words.block;
+        let is_pass = |span: Span| {
+            words.actions().any(|(action, other)| other == span && matches!(action, Action::Turning(_)))
+        };
+        let kept =
+            block.items.iter().filter(|item| !matches!(item.kind, ItemKind::Comment) && !is_pass(item.span));
+        let kept: Vec<&[u8]> = kept.map(|item| block.text(item.span)).collect();
+        self.out.comment(shown(block), from(block));
+        if !kept.is_empty() {
+            self.out.line(&kept.join(&b' '), from(block));
+        }
     }
 
     /// True where a block repeats the pass in force, or cannot stand behind one.
@@ -143,7 +169,7 @@ impl Writer<'_, '_> {
                 both!("write X and Z of the end of the cut", "напишите X и Z конца резания"),
             ));
         };
-        self.pass = Some(pass);
+        (self.pass, self.passed) = (Some(pass), true);
         let own: &[u8] = match pass.cycle {
             TurningCycle::FacePass => b"XZUWRK",
             TurningCycle::ThreadPass => b"XZUWRIQE",
@@ -262,16 +288,31 @@ impl Writer<'_, '_> {
         let clear_mm = self.plane([clear, 0])[0];
         let share = 1.0 - length / whole;
         let begins = [r0 + share * (r1 - r0), z0 + share * (z1 - z0)];
-        if share < 0.0 || outwards > (clear_mm - begins[0]).abs() {
+        if share < 0.0 {
             return Err(words.cycle_fault(
                 words.whole(),
                 both!("a thread shorter than its chamfer", "резьба короче своего сбега"),
-                both!("its chamfer is {length} long and leads {outwards:.4} outwards", "длина сбега {length}, и он уводит наружу на {outwards:.4}"),
-                both!("correct `thread_chamfer_leads` or `thread_chamfer_deg` in the profile, or start further out", "исправьте `thread_chamfer_leads` или `thread_chamfer_deg` в профиле или начните дальше от детали"),
+                both!("its chamfer is {length} long", "длина сбега {length}"),
+                both!(
+                    "correct `thread_chamfer_leads` in the profile, or start further out",
+                    "исправьте `thread_chamfer_leads` в профиле или начните дальше от детали"
+                ),
             ));
         }
-        let ends = [begins[0] + outwards * (clear_mm - begins[0]).signum(), z1];
-        let (begins, ends) = (self.spot(begins), [self.spot(ends)[0], to[1]]);
+        // Where the cycle starts nothing stands along the thread: every pass comes back there in a rapid. A chamfer that gets
+        // there before its end goes on along it.
+        let room = (clear_mm - begins[0]).abs();
+        let made = if outwards > room { room / outwards } else { 1.0 };
+        let ends = [
+            begins[0] + made * outwards * (clear_mm - begins[0]).signum(),
+            begins[1] + made * (z1 - begins[1]),
+        ];
+        let (begins, mut ends) = (self.spot(begins), self.spot(ends));
+        if outwards > room {
+            ends[0] = clear;
+        } else {
+            ends[1] = to[1];
+        }
         self.go_with(moves, Code::Thread, begins, further);
         self.go(moves, Code::Thread, ends);
         Ok(())

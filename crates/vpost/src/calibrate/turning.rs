@@ -379,6 +379,7 @@ pub(crate) fn base_of(profile: &Profile, lathe: &LatheParts) -> TurningBase {
         spindle: lathe.spindle.clone(),
         bending: lathe.bending.clone(),
         tip: lathe.tip,
+        stations: lathe.stations.clone(),
     }
 }
 

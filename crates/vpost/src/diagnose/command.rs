@@ -69,7 +69,10 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
             .reads_all(&both!("the measurements", "измерения"), &arguments.measurements)
             .reads_all(&both!("the hold-out", "контрольные измерения"), &arguments.holdout)
             .reads_all(&both!("read by the profile", "файл, который читает профиль"), &whole.files);
-        roles.writes("--json", arguments.json.as_deref()).are_apart()?;
+        roles
+            .writes("--json", arguments.json.as_deref())
+            .writes("--html", arguments.html.as_deref())
+            .are_apart()?;
         return super::lathe::run(arguments, &whole.profile, parts, shared, messages);
     }
     let model = Model::load(&shared.job)?;

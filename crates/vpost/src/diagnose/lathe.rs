@@ -20,6 +20,8 @@ use crate::figures::round;
 use crate::file;
 use crate::message::{Failure, Messages};
 
+mod page;
+
 const COLUMNS: &str = "part z_mm diameter_mm d_um deviation_um angle_deg tool time_s u_um temp_c note";
 const EXPECTED: Text = Text::pair(
     "expected: part,z_mm,diameter_mm,d_um, or deviation_um with angle_deg",
@@ -72,8 +74,14 @@ pub(super) fn run(
         )
     })?;
     let said = Said { found: &found, rows, lathe, parts: &parts };
+    let json = jobs::summary::json(&said.json());
     if let Some(path) = &arguments.json {
-        file::write(path, &jobs::summary::json(&said.json()))?;
+        file::write(path, &json)?;
+    }
+    if let Some(path) = &arguments.html {
+        let facts = page::Facts { measurements, holdout: arguments.holdout.as_deref(), profile };
+        let page = page::html(&said, &facts, &String::from_utf8_lossy(&json), messages.language())?;
+        file::write(path, page.as_bytes())?;
     }
     file::print(said.text().in_language(messages.language()).as_bytes())
 }
@@ -83,7 +91,6 @@ fn only_what_a_lathe_has(arguments: &Diagnose) -> Result<(), Failure> {
     let given = [
         ("--plan", arguments.plan.is_some()),
         ("--next", arguments.next.is_some()),
-        ("--html", arguments.html.is_some()),
         ("--viewer", arguments.viewer.is_some()),
         ("--write-profile", arguments.write_profile.is_some()),
         ("--without", !arguments.without.is_empty()),
@@ -96,8 +103,8 @@ fn only_what_a_lathe_has(arguments: &Diagnose) -> Result<(), Failure> {
                 "`{option}` для деталей токарного станка нет"
             ),
             both!(
-                "leave it out; `vpost calibrate turning` writes taper and barrel to a profile and shows them as a page",
-                "уберите его; конус и бочку в профиль записывает и на странице показывает `vpost calibrate turning`"
+                "leave it out; `vpost calibrate turning` writes taper and barrel to a profile",
+                "уберите его; конус и бочку в профиль записывает `vpost calibrate turning`"
             ),
         )),
     }
@@ -262,7 +269,7 @@ impl Said<'_> {
             found.noise_mm * 1e3,
             self.rows.len()
         ));
-        line(meaning(found.verdict));
+        line(both!("        {}", "        {:#}", meaning(found.verdict)));
         if let Some((sheet, row)) = found.outlier.and_then(|row| self.parts.places.get(row)) {
             let place = self.parts.sheets.get(*sheet).and_then(|sheet| sheet.row(*row));
             let message = both!(
@@ -426,36 +433,36 @@ impl Said<'_> {
 /// A verdict in a sentence.
 fn meaning(verdict: Verdict) -> Text {
     match verdict {
-        Verdict::NoGap => both!("        nothing but noise is left", "        кроме шума ничего нет"),
+        Verdict::NoGap => both!("nothing but noise is left", "кроме шума ничего нет"),
         Verdict::Named => both!(
-            "        every cause that is told can be nothing else in the list",
-            "        ни одну из названных причин не принять за другую из списка"
+            "every cause that is told can be nothing else in the list",
+            "ни одну из названных причин не принять за другую из списка"
         ),
         Verdict::Ambiguous => {
             both!(
-                "        a cause may be another: do not repair by it yet",
-                "        причина может быть и другой: чинить по ней рано"
+                "a cause may be another: do not repair by it yet",
+                "причина может быть и другой: чинить по ней рано"
             )
         }
         Verdict::Partial => {
             both!(
-                "        something is left that no cause explains",
-                "        остаётся то, чего ни одна причина не объясняет"
+                "something is left that no cause explains",
+                "остаётся то, чего ни одна причина не объясняет"
             )
         }
         Verdict::Unknown => both!(
-            "        something is there that no cause of the list explains, or unseen parts refute what was found",
-            "        есть то, чего ни одна причина из списка не объясняет, или контрольные детали опровергают найденное"
+            "something is there that no cause of the list explains, or unseen parts refute what was found",
+            "есть то, чего ни одна причина из списка не объясняет, или контрольные детали опровергают найденное"
         ),
         Verdict::NoiseModelSuspect => {
             both!(
-                "        a reading is none: look at it first",
-                "        одно из показаний неверно: сначала разберитесь с ним"
+                "a reading is none: look at it first",
+                "одно из показаний неверно: сначала разберитесь с ним"
             )
         }
         Verdict::Underpowered => both!(
-            "        too few readings or parts: twelve rows of two parts at least, several places along Z",
-            "        мало показаний или деталей: не меньше двенадцати строк двух деталей, несколько мест вдоль Z"
+            "too few readings or parts: twelve rows of two parts at least, several places along Z",
+            "мало показаний или деталей: не меньше двенадцати строк двух деталей, несколько мест вдоль Z"
         ),
     }
 }

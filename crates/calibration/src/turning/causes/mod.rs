@@ -144,6 +144,8 @@ pub struct LatheDiagnosis {
     pub outlier: Option<usize>,
     /// Of the hold-out.
     pub unseen: Option<Unseen>,
+    /// By row, what the causes do to it, mm on the radius; sizes and clampings are not among them.
+    pub explained_mm: Vec<f64>,
 }
 
 /// Chance of a name that is none, over all causes.
@@ -372,6 +374,7 @@ impl<'a> Asked<'a> {
             leftover_p: 1.0,
             outlier: None,
             unseen: None,
+            explained_mm: vec![0.0; self.weights.len()],
         };
         let rows = self.columns.rows.len();
         if rows < LEAST_ROWS || parts.len() < LEAST_PARTS || self.mixed.freedom(&everything) < LEAST_FREEDOM {
@@ -424,6 +427,7 @@ impl<'a> Asked<'a> {
             });
             place += own.len();
         }
+        answer.explained_mm = self.effect_mm(&selected, &found, |_| true).iter().copied().collect();
         answer.unseen = self.unseen(held, &selected, &found, bar);
         let is_refuted = answer.unseen.is_some_and(|unseen| unseen.rms_mm[1] > unseen.rms_mm[0]);
         answer.verdict = match (selected.is_empty(), is_left) {
@@ -491,18 +495,29 @@ impl<'a> Asked<'a> {
         rivals.into_iter().map(str::to_owned).collect()
     }
 
-    /// How much a cause that was found changes the radius, from least to most, mm.
-    fn extent_mm(&self, cause: Cause, selected: &[usize], found: &Fitted) -> f64 {
+    /// What causes that were found do to each row, mm.
+    fn effect_mm(
+        &self,
+        selected: &[usize],
+        found: &Fitted,
+        is_asked: impl Fn(Cause) -> bool,
+    ) -> DVector<f64> {
         let mut place = 0;
         let mut sum = DVector::zeros(self.weights.len());
         for k in selected {
             let (own, columns) = &self.all[*k];
-            for (i, column) in columns.iter().enumerate().filter(|_| *own == cause) {
+            for (i, column) in columns.iter().enumerate().filter(|_| is_asked(*own)) {
                 let value = found.values[place + i];
                 sum += DVector::from_fn(column.len(), |row, _| column[row] * self.weights[row] * value);
             }
             place += columns.len();
         }
+        sum
+    }
+
+    /// How much a cause that was found changes the radius, from least to most, mm.
+    fn extent_mm(&self, cause: Cause, selected: &[usize], found: &Fitted) -> f64 {
+        let sum = self.effect_mm(selected, found, |own| own == cause);
         sum.max() - sum.min()
     }
 
