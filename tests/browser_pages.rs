@@ -208,12 +208,9 @@ fn each_page_says_where_its_numbers_come_from() {
         all.split("<nav").next().expect("a head").to_owned()
     };
     let map = head("map");
-    for said in [
-        "What makes most of it: E",
-        "What to do: correct programs",
-        "as far as the model knows",
-        "date 2023-05-15",
-    ] {
+    for said in
+        ["What makes most of it: E", "What to do: correct programs", "as far as the model knows", CALIBRATED]
+    {
         assert!(map.contains(said), "{said}: {map}");
     }
     let check = head("check");

@@ -555,6 +555,34 @@ impl Profile {
             );
             doubts.push(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help));
         }
+        doubts.extend(self.passed_over(&measured.file));
         doubts
+    }
+
+    /// Errors of axes that stand beside the vectors: whoever wrote them may take them for corrected as well.
+    fn passed_over(&self, file: &str) -> Option<Diagnostic> {
+        let mut named: Vec<Text> = Vec::new();
+        for (axis, name) in self.description.linear.iter().zip(["X", "Y", "Z"]) {
+            if axis.errors.is_some() || axis.errors_negative.is_some() || axis.backlash_mm != 0.0 {
+                named.push(Text::same(format!("[axis.{name}]")));
+            }
+        }
+        let square = &self.description.squareness;
+        if [square.ec0y_rad, square.eb0z_rad, square.ea0z_rad].iter().any(|angle| *angle != 0.0) {
+            named.push(Text::same("[squareness]".to_owned()));
+        }
+        if named.is_empty() {
+            return None;
+        }
+        let named = Text::join(&named, ", ");
+        let message = both!(
+            "the errors in {named} are not used: the engine field knows the vectors of {file} alone",
+            "погрешности из {named:#} не используются: метод field знает только векторы из {file}"
+        );
+        let help = both!(
+            "the vectors hold what bends the machine already; take the errors of the axes out, or correct by them: --engine rigid-body",
+            "всё, что искривляет станок, уже в векторах; уберите погрешности осей или исправляйте по ним: --engine rigid-body"
+        );
+        Some(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help))
     }
 }

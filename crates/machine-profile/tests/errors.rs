@@ -573,3 +573,27 @@ fn program_rules() {
         assert!(said.contains(code), "{text}: {said}");
     }
 }
+
+/// A field knows its vectors alone; whoever wrote errors of axes beside them may take both for corrected.
+#[test]
+fn errors_of_axes_beside_a_field_are_said_to_be_unused() {
+    let mut vectors = "x_mm,y_mm,z_mm,dx_um,dy_um,dz_um\n".to_owned();
+    for k in 0..8 {
+        let [x, y, z] = [400 * (k & 1), 280 * (k >> 1 & 1), 200 * (k >> 2)];
+        vectors.push_str(&format!("{x},{y},{z},1,2,3\n"));
+    }
+    let with = |axes: &str| {
+        let more = "[field]\nfile = \"vectors.csv\"\nnoise_um = 0\n[correction]\nengine = \"field\"\n";
+        let text = format!("{axes}{more}");
+        let profile = load(&text, &|name| match name {
+            "vectors.csv" => Ok(vectors.clone().into_bytes()),
+            other => read(other),
+        });
+        let doubts = profile.unwrap().doubts(machine_model::EngineId::Field);
+        doubts.iter().map(|d| format!("{} {}", d.message.english(), d.help.is_some())).collect::<Vec<_>>()
+    };
+    assert_eq!(with(&base()), Vec::<String>::new());
+    let square = format!("{}[squareness]\nEC0Y_urad = 20\n", with_table("good.csv"));
+    let [said] = with(&square).try_into().unwrap();
+    assert!(said.starts_with("the errors in [axis.X], [squareness] are not used"), "{said}");
+}

@@ -98,12 +98,13 @@ fn right_and_up(language: Language, [right, up]: [&str; 2]) -> String {
 
 /// Squares with words: what the colours mean.
 fn legend(x: f64, y: f64, entries: &[(&str, &str)]) -> Markup {
-    let mut at = x;
+    // One text, so that entries follow one another however large the page writes them: on telephones larger.
     html! {
-        @for (class, words) in entries {
-            (rect(class, (at, y - 9.0), 10.0, 10.0))
-            (text(at + 14.0, y, "", words))
-            @let () = at += 26.0 + 7.6 * words.chars().count() as f64;
+        text x=(px(x)) y=(px(y)) {
+            @for (k, (class, words)) in entries.iter().enumerate() {
+                tspan class=(class) dx=[(k > 0).then_some("14")] { "\u{25a0}" }
+                tspan dx="4" { (shown(words)) }
+            }
         }
     }
 }

@@ -21,11 +21,84 @@
   const times = value => String(value >= 10 ? Math.round(value) : Math.round(value * 10) / 10)
     .replace(/\B(?=(\d{3})+(?!\d))/g, '\u202f') + '\u00d7';
 
+  // ---------------------------------------------------------------- shaders
+  // First of all: the graphics process compiles them while the numbers are read here.
+  const n = data.places, MANY = 8000;
+  const canvas = $('canvas');
+  const gl = canvas.getContext('webgl2', { antialias: n < MANY, alpha: true, premultipliedAlpha: true });
+  root.dataset.webgl = gl ? 'yes' : 'no';
+  const links = gl && (() => {
+    const ROW = 2048; // places in a row of a texture; a power of two
+    const GIVEN = `#version 300 es
+      precision highp float;
+      precision highp sampler2D;
+      uniform sampler2D places, shifts; // X, Y, Z, and 1 where nothing leads here; X, Y, Z, and 1 where it is not known
+      uniform mat3 turn; uniform vec3 target; uniform vec2 half_size; uniform float zoom, by, width, depth, front, upto; uniform bool ribbon;
+      out float amount; out float late;`;
+    // Two triangles for every two places that follow one another, made in the shader: drawing them as instances is slow
+    // where there is no graphics card, and expanding them here takes memory.
+    const WIDE = GIVEN + `
+      void main() {
+        int segment = gl_VertexID / 6, k = gl_VertexID % 6;
+        vec2 corner = vec2(k == 1 || k == 3 || k == 4 ? 1.0 : 0.0, k == 2 || k == 4 || k == 5 ? 1.0 : -1.0);
+        ivec2 one = ivec2(segment & ROW - 1, segment / ROW), two = ivec2(segment + 1 & ROW - 1, (segment + 1) / ROW);
+        vec4 p0 = texelFetch(places, one, 0), p1 = texelFetch(places, two, 0), d0 = texelFetch(shifts, one, 0), d1 = texelFetch(shifts, two, 0);
+        vec3 a = turn * (p0.xyz + d0.xyz * by - target), b = turn * (p1.xyz + d1.xyz * by - target);
+        if (ribbon && corner.y < 0.0) { a = turn * (p0.xyz - target); b = turn * (p1.xyz - target); }
+        vec2 from = a.xy * zoom, to = b.xy * zoom, way = to - from;
+        float far = length(way);
+        way = far > 1e-4 ? way / far : vec2(1.0, 0.0);
+        vec2 aside = vec2(-way.y, way.x) * corner.y + way * (corner.x * 2.0 - 1.0) * 0.5;
+        vec2 place = mix(from, to, corner.x) + (ribbon ? vec2(0.0) : aside * width * 0.5);
+        gl_Position = vec4(place / half_size, -mix(a.z, b.z, corner.x) * depth - front, 1.0);
+        amount = mix(length(d0.xyz), length(d1.xyz), corner.x);
+        late = float(segment) + corner.x > upto ? 1.0 : 0.0;
+        if (p1.w > 0.5 || d0.w > 0.5 || d1.w > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+      }`.replaceAll('ROW', ROW);
+    // One pixel wide: a twelfth of the work, for many places while they move.
+    const THIN = GIVEN + `
+      void main() {
+        ivec2 one = ivec2(gl_VertexID & ROW - 1, gl_VertexID / ROW);
+        vec4 d = texelFetch(shifts, one, 0);
+        vec3 p = turn * (texelFetch(places, one, 0).xyz + d.xyz * by - target);
+        gl_Position = vec4(p.xy * zoom / half_size, -p.z * depth - front, 1.0);
+        amount = length(d.xyz);
+        late = float(gl_VertexID) > upto ? 1.0 : 0.0;
+      }`.replaceAll('ROW', ROW);
+    const INK = `#version 300 es
+      precision highp float;
+      in float amount; in float late;
+      uniform vec3 low, high; uniform float most, alpha;
+      out vec4 ink;
+      void main() {
+        float a = alpha * (late > 0.5 ? 0.13 : 1.0);
+        ink = vec4(mix(low, high, clamp(amount / most, 0.0, 1.0)) * a, a);
+      }`;
+    const linked = space => {
+      const program = gl.createProgram();
+      for (const [type, text] of [[gl.VERTEX_SHADER, space], [gl.FRAGMENT_SHADER, INK]]) {
+        const shader = gl.createShader(type);
+        gl.shaderSource(shader, text);
+        gl.compileShader(shader);
+        gl.attachShader(program, shader);
+      }
+      gl.linkProgram(program);
+      return program;
+    };
+    const made = { ROW, wide: linked(WIDE), thin: n < MANY ? null : linked(THIN) };
+    gl.flush();
+    return made;
+  })();
+
   // ---------------------------------------------------------------- numbers
   // Rows of differences, seven bits a byte, negative ones folded between: see encode.rs.
-  const packed = atob($('places').textContent.trim()), bytes = new Uint8Array(packed.length);
-  for (let k = 0; k < bytes.length; k++) bytes[k] = packed.charCodeAt(k);
-  const n = data.places;
+  const unpacked = text => {
+    if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
+    const packed = atob(text), bytes = new Uint8Array(packed.length);
+    for (let k = 0; k < bytes.length; k++) bytes[k] = packed.charCodeAt(k);
+    return bytes;
+  };
+  const bytes = unpacked($('places').textContent.trim());
   let byte = 0;
   const next = () => {
     let b = bytes[byte++];
@@ -45,7 +118,19 @@
   let row = 1;
   const numbers = (into, offset, stride, step) => {
     if (data.rows[row++] === '0') return;
-    for (let i = 0, at = 0; i < n; i++) into[offset + i * stride] = (at += unfold(next())) * step;
+    for (let i = offset, end = offset + n * stride, at = 0; i < end; i += stride) {
+      // Most have one byte or two.
+      const a = bytes[byte], b = bytes[byte + 1];
+      if (a < 128) {
+        at += (a >> 1) ^ -(a & 1);
+        byte++;
+      } else if (b < 128) {
+        const v = (a & 127) | (b << 7);
+        at += (v >> 1) ^ -(v & 1);
+        byte += 2;
+      } else at += unfold(next());
+      into[i] = at * step;
+    }
   };
   const vectors = (make, step) => {
     const all = new make(3 * n);
@@ -53,6 +138,19 @@
     return all;
   };
   const at = vectors(Float64Array, data.place_um / 1000);
+  if (gl) {
+    // A draw of nothing: what is made ready for the first one, is so while the rest of the numbers is read.
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 1, 1, 0, gl.RGBA, gl.FLOAT, new Float32Array(4));
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+    gl.useProgram(links.thin || links.wide);
+    gl.drawArrays(links.thin ? gl.LINES : gl.TRIANGLES, 0, links.thin ? 2 : 3);
+    gl.flush();
+  }
   const off = [0, 1].map(() => {
     const all = new Float32Array(n);
     numbers(all, 0, 1, data.displaced_um);
@@ -64,9 +162,14 @@
   const blocks = new Map();
   data.lines.reduce((sum, step, k) => (blocks.set(sum + step, data.blocks[k]), sum + step), 0);
 
-  const size = (v, i) => Math.hypot(v[3 * i], v[3 * i + 1], v[3 * i + 2]);
-  const largest = v => { let most = 0; for (let i = 0; i < n; i++) most = Math.max(most, size(v, i)); return most; };
-  const worst = v => { let most = 0; for (let i = 1; i < n; i++) if (size(v, i) > size(v, most)) most = i; return most; };
+  const norm = (x, y, z) => Math.sqrt(x * x + y * y + z * z); // Math.hypot is many times slower
+  const size = (v, i) => norm(v[3 * i], v[3 * i + 1], v[3 * i + 2]);
+  const worst = v => {
+    let [most, at] = [-1, 0];
+    for (let i = 0; i < n; i++) { const s = size(v, i); if (s > most) [most, at] = [s, i]; }
+    return at;
+  };
+  const largest = v => size(v, worst(v));
   const largestAfter = largest(after);
   let largestReal = largest(real);
   const scaleUm = largestReal || 1;
@@ -80,7 +183,7 @@
   const reach = Math.hypot(...low.map((v, a) => high[a] - v)) / 2 || 1;
   const along = new Float64Array(n);
   for (let i = 1; i < n; i++) {
-    const step = begins[i] ? 0 : Math.hypot(at[3 * i] - at[3 * i - 3], at[3 * i + 1] - at[3 * i - 2], at[3 * i + 2] - at[3 * i - 1]);
+    const step = begins[i] ? 0 : norm(at[3 * i] - at[3 * i - 3], at[3 * i + 1] - at[3 * i - 2], at[3 * i + 2] - at[3 * i - 1]);
     along[i] = along[i - 1] + step;
   }
 
@@ -125,59 +228,19 @@
     const h = colour(name).slice(1);
     return [0, 2, 4].map(k => parseInt(h.slice(k, k + 2), 16) / 255);
   };
-  const canvas = $('canvas');
-  const gl = canvas.getContext('webgl2', { antialias: n < 8000, alpha: true, premultipliedAlpha: true });
-  root.dataset.webgl = gl ? 'yes' : 'no';
-
   /** Draws lines of a width in pixels, and ribbons between a path and what is made of it. */
   const painter = gl && (() => {
-    const ROW = 2048; // places in a row of a texture; a power of two
-    // Two triangles for every two places that follow one another, made in the shader: drawing them as instances is slow
-    // where there is no graphics card, and expanding them here takes memory.
-    const SPACE = `#version 300 es
-      precision highp float;
-      precision highp sampler2D;
-      uniform sampler2D places, shifts; // X, Y, Z, and 1 where nothing leads here; X, Y, Z, and 1 where it is not known
-      uniform mat3 turn; uniform vec3 target; uniform vec2 half_size; uniform float zoom, by, width, depth, front, upto; uniform bool ribbon;
-      out float amount; out float late;
-      void main() {
-        int segment = gl_VertexID / 6, k = gl_VertexID % 6;
-        vec2 corner = vec2(k == 1 || k == 3 || k == 4 ? 1.0 : 0.0, k == 2 || k == 4 || k == 5 ? 1.0 : -1.0);
-        ivec2 one = ivec2(segment & ROW - 1, segment / ROW), two = ivec2(segment + 1 & ROW - 1, (segment + 1) / ROW);
-        vec4 p0 = texelFetch(places, one, 0), p1 = texelFetch(places, two, 0), d0 = texelFetch(shifts, one, 0), d1 = texelFetch(shifts, two, 0);
-        vec3 a = turn * (p0.xyz + d0.xyz * by - target), b = turn * (p1.xyz + d1.xyz * by - target);
-        if (ribbon && corner.y < 0.0) { a = turn * (p0.xyz - target); b = turn * (p1.xyz - target); }
-        vec2 from = a.xy * zoom, to = b.xy * zoom, way = to - from;
-        float far = length(way);
-        way = far > 1e-4 ? way / far : vec2(1.0, 0.0);
-        vec2 aside = vec2(-way.y, way.x) * corner.y + way * (corner.x * 2.0 - 1.0) * 0.5;
-        vec2 place = mix(from, to, corner.x) + (ribbon ? vec2(0.0) : aside * width * 0.5);
-        gl_Position = vec4(place / half_size, -mix(a.z, b.z, corner.x) * depth - front, 1.0);
-        amount = mix(length(d0.xyz), length(d1.xyz), corner.x);
-        late = float(segment) + corner.x > upto ? 1.0 : 0.0;
-        if (p1.w > 0.5 || d0.w > 0.5 || d1.w > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-      }`.replaceAll('ROW', ROW);
-    const INK = `#version 300 es
-      precision highp float;
-      in float amount; in float late;
-      uniform vec3 low, high; uniform float most, alpha;
-      out vec4 ink;
-      void main() {
-        float a = alpha * (late > 0.5 ? 0.13 : 1.0);
-        ink = vec4(mix(low, high, clamp(amount / most, 0.0, 1.0)) * a, a);
-      }`;
-    const program = gl.createProgram();
-    for (const [type, text] of [[gl.VERTEX_SHADER, SPACE], [gl.FRAGMENT_SHADER, INK]]) {
-      const shader = gl.createShader(type);
-      gl.shaderSource(shader, text);
-      gl.compileShader(shader);
-      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
-      gl.attachShader(program, shader);
-    }
-    gl.linkProgram(program);
-    gl.useProgram(program);
-    const uniform = name => gl.getUniformLocation(program, name);
-    const u = Object.fromEntries(['places', 'shifts', 'turn', 'target', 'half_size', 'zoom', 'by', 'width', 'depth', 'front', 'upto', 'ribbon', 'low', 'high', 'most', 'alpha'].map(k => [k, uniform(k)]));
+    const ROW = links.ROW;
+    const NAMES = ['places', 'shifts', 'turn', 'target', 'half_size', 'zoom', 'by', 'width', 'depth', 'front', 'upto', 'ribbon', 'low', 'high', 'most', 'alpha'];
+    /** A program in use, and where its values go. */
+    const pen = program => {
+      if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
+      const u = Object.fromEntries(NAMES.map(k => [k, gl.getUniformLocation(program, k)]));
+      gl.useProgram(program);
+      gl.uniform1i(u.shifts, 1);
+      return { program, u };
+    };
+    const pens = { thin: links.thin && pen(links.thin), wide: pen(links.wide) };
     /** A texture of a vector and a mark for each place. */
     const texture = (vectors, marks, made = gl.createTexture()) => {
       const count = marks.length, rows = Math.ceil(count / ROW), all = new Float32Array(4 * ROW * rows);
@@ -205,13 +268,24 @@
       places: texture(edges, Float32Array.from({ length: corner }, (_, k) => (k + 1) % 2)),
       shifts: texture(new Float32Array(3 * corner), new Float32Array(corner)), count: corner - 1,
     };
-    gl.uniform1i(u.shifts, 1);
-    gl.enable(gl.DEPTH_TEST);
-    gl.depthFunc(gl.LEQUAL);
-    gl.enable(gl.BLEND);
-    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    /** Pairs of places between which a thin line is drawn. */
+    const pairs = (first, count, broken) => {
+      const all = new Uint32Array(2 * count);
+      let k = 0;
+      for (let i = first; i < first + count; i++) if (!broken(i)) { all[k++] = i - 1; all[k++] = i; }
+      const made = gl.createBuffer();
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, made);
+      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, all.subarray(0, k), gl.STATIC_DRAW);
+      return { made, count: k };
+    };
+    if (pens.thin) {
+      path.real.pairs = pairs(1, n - 1, i => begins[i]);
+      box.pairs = pairs(1, corner - 1, k => k % 2 === 0);
+      path.corrected.pairs = unknown.some(Boolean) ? pairs(1, n - 1, i => begins[i] || unknown[i - 1] || unknown[i]) : path.real.pairs;
+    }
 
     const stroke = (chain, o) => {
+      const { u } = o.pen;
       [chain.places, chain.shifts].forEach((bound, unit) => { gl.activeTexture(gl.TEXTURE0 + unit); gl.bindTexture(gl.TEXTURE_2D, bound); });
       gl.uniform1i(u.ribbon, o.ribbon ? 1 : 0);
       gl.uniform1f(u.by, o.by || 0);
@@ -223,29 +297,35 @@
       gl.uniform1f(u.alpha, o.alpha || 1);
       gl.uniform1f(u.upto, o.upto);
       gl.depthMask(!o.ribbon);
-      gl.drawArrays(gl.TRIANGLES, 0, 6 * chain.count);
+      if (o.pen === pens.thin) {
+        gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, chain.pairs.made);
+        gl.drawElements(gl.LINES, chain.pairs.count, gl.UNSIGNED_INT, 0);
+      } else gl.drawArrays(gl.TRIANGLES, 0, 6 * chain.count);
       gl.depthMask(true);
     };
     return {
       changed() {
         texture(real, none, path.real.shifts);
       },
-      draw(axes) {
+      /** * `quick` – in lines of one pixel, where there are many */
+      draw(axes, quick) {
         const ratio = Math.min(devicePixelRatio || 1, 2);
         const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
         if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
         gl.viewport(0, 0, w, h);
         gl.clearColor(0, 0, 0, 0);
         gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+        const by = magnified(), upto = state.cut ? state.here : n;
+        const pen = quick && pens.thin || pens.wide, { u } = pen;
+        gl.useProgram(pen.program);
         gl.uniformMatrix3fv(u.turn, true, axes.flat());
         gl.uniform3fv(u.target, state.target);
         gl.uniform2f(u.half_size, w / 2, h / 2);
         gl.uniform1f(u.zoom, state.zoom * ratio);
-        gl.uniform1f(u.depth, 1 / (4 * reach + 4 * largestReal * magnified()));
-        const by = magnified(), upto = state.cut ? state.here : n;
-        const common = { ratio, by, upto };
+        gl.uniform1f(u.depth, 1 / (4 * reach + 4 * largestReal * by));
+        const common = { ratio, by, upto, pen };
         stroke(box, { ...common, upto: n, width: 1, low: rgb('line'), by: 0 });
-        const few = n < 8000, bold = width < 560 ? 0.6 : 1;
+        const few = n < MANY, bold = width < 560 ? 0.6 : 1;
         // The programmed path is a broad band on which the corrected one lies as a line, as far as it does.
         if (state.shown.commanded) stroke(path.real, { ...common, by: 0, width: (few ? (data.kind === 'map' ? 2.6 : 5) : 2.4) * bold, low: rgb('commanded'), front: 0.0004 });
         if (state.shown.corrected) stroke(path.corrected, { ...common, width: (few ? 1.8 : 1.2) * bold, low: rgb('after'), front: 0.0012 });
@@ -315,29 +395,40 @@
     put('whole', { d: 'M' + foot[0].toFixed(1) + ' ' + foot[1].toFixed(1) + 'L' + tip[0].toFixed(1) + ' ' + tip[1].toFixed(1) });
   };
 
-  /** Notes when the first frame was ready, in ms since the script began: what tests look at. */
-  const drawn = () => {
-    const note = () => { root.dataset.drawn = Math.round(performance.now() - started); };
+  /** Says how many ms the frame took that is being drawn. `data-drawn`, of the first since the script began, is for tests. */
+  const finished = say => {
+    const begun = performance.now(), note = () => say(performance.now() - begun);
     if (!gl) return note();
-    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-    root.dataset.drawn = '';
-    gl.flush();
-    const wait = () => (gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED ? setTimeout(wait, 4) : note());
-    wait();
+    // Behind this frame's commands.
+    Promise.resolve().then(() => {
+      const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+      gl.flush();
+      const wait = () => (gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED ? setTimeout(wait, 4) : note());
+      wait();
+    });
   };
-  let asked = false;
-  const draw = () => {
+  // Of many places thin lines while something moves, and what they are at rest a moment later; unless that is quick, too.
+  const REST_MS = 200, QUICK_MS = 40;
+  let asked = false, still = false, slow = Boolean(gl) && n >= MANY, resting = 0;
+  const ask = () => {
     if (asked) return;
     asked = true;
     requestAnimationFrame(now => {
       asked = false;
       move(now);
-      const axes = turn();
-      (painter || sketch).draw(axes);
+      const axes = turn(), quick = slow && !still;
+      if (slow && still) finished(took => { slow = took > QUICK_MS; });
+      (painter || sketch).draw(axes, quick);
       mark(axes);
-      if (root.dataset.drawn === undefined) drawn();
+      if (root.dataset.drawn === undefined) {
+        root.dataset.drawn = '';
+        finished(() => { root.dataset.drawn = Math.round(performance.now() - started); });
+      }
+      clearTimeout(resting);
+      if (quick) resting = setTimeout(() => { still = true; ask(); }, REST_MS);
     });
   };
+  const draw = () => { still = false; ask(); };
 
   // ---------------------------------------------------------------- what moves
   const SECONDS = 24;
@@ -602,6 +693,7 @@
   root.classList.add('live');
   const measure = () => {
     const first = width === 1, bounds = view.getBoundingClientRect();
+    if (bounds.width === width && bounds.height === height) return;
     [width, height] = [Math.max(1, bounds.width), Math.max(1, bounds.height)];
     overlay.setAttribute('viewBox', '0 0 ' + width + ' ' + height);
     if (first) fit();

@@ -80,13 +80,25 @@ pub(super) fn sentence(all: &[Dominant], language: Language) -> Option<String> {
         // A tenth of the largest is none that one would begin with.
         .filter(|own| own.alone_mm > 0.1 * largest)
         .map(|own| {
-            let (name, um) = (&own.name, um(own.alone_mm, language));
+            let (name, um) = (called(&own.name, language), um(own.alone_mm, language));
             say!(language, "{name} (alone {um} \u{b5}m)", "{name} (одно {um} мкм)")
         })
         .collect();
     let named = named.join(", ");
     (!named.is_empty())
         .then(|| say!(language, "What makes most of it: {named}.", "Больше всего вносят: {named}."))
+}
+
+/// A symbol of ISO 230-1 with its kind in a word, for whoever does not read symbols: `EC0Y squareness`.
+fn called(name: &str, language: Language) -> String {
+    let kind = match name.as_bytes() {
+        [b'E', b'A'..=b'C', b'0', b'X'..=b'Z'] => say!(language, "squareness", "перпендикулярность"),
+        [b'E', a @ b'X'..=b'Z', b] if a == b => say!(language, "positioning", "позиционирование"),
+        [b'E', b'X'..=b'Z', b'X'..=b'Z'] => say!(language, "straightness", "прямолинейность"),
+        [b'E', b'A'..=b'C', b'X'..=b'Z'] => say!(language, "angle", "угол"),
+        _ => return name.to_owned(),
+    };
+    format!("{name} {kind}")
 }
 
 /// All of them as a table.
@@ -103,10 +115,32 @@ pub(super) fn section(all: &[Dominant], language: Language) -> Markup {
         p {
             (say!(
                 language,
-                "Symbols of ISO 230-1. At up to five places along each axis of the map; `vpost budget` says more, and what each deviation may be.",
-                "Обозначения по ISO 230-1. До пяти мест вдоль каждой оси карты; больше, в том числе допуск на каждое отклонение, говорит `vpost budget`."
+                "Symbols of ISO 230-1. At up to five places along each axis of the map; more, and what each deviation may be, says ",
+                "Обозначения по ISO 230-1. До пяти мест вдоль каждой оси карты; больше, в том числе допуск на каждое отклонение, говорит "
             ))
+            code { "vpost budget" }
+            "."
         }
         (table(language, &header, &[1, 2], &rows))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn symbols_are_said_in_a_word() {
+        for (symbol, word) in [
+            ("EC0Y", "EC0Y squareness"),
+            ("EXX", "EXX positioning"),
+            ("EYX", "EYX straightness"),
+            ("EAX", "EAX angle"),
+            ("EX0C", "EX0C"),
+            ("backlash X", "backlash X"),
+        ] {
+            assert_eq!(called(symbol, Language::English), word);
+        }
+        assert_eq!(called("EYX", Language::Russian), "EYX прямолинейность");
     }
 }

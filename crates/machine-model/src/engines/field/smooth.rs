@@ -5,9 +5,12 @@
 //! in which it is not straight, has a variance of its own, which restricted likelihood finds with the noise as stated
 //! ([`super::variances`]). A class that the vectors do not show comes out at nothing: of a machine whose axes have
 //! functions and angles, products of three rough functions.
+//!
+//! Two more classes are swells: fields that know no axes, alike in all directions of the box, as warmth and what bends
+//! without joints make them. Without these such a field has to be put together of 27 classes, which takes far more vectors.
 
 use super::dense::Square;
-use super::modes::Modes;
+use super::modes::{Modes, SWELLS};
 use super::spline::TensorSpline;
 use super::variances::{Found, Model};
 use super::{Doubt, ErrorVector, FieldError, same_place};
@@ -18,6 +21,8 @@ const MOST_INTERVALS: usize = 30;
 /// Modes that are not straight in products of two and of three such functions.
 const MODES_OF_PAIRS: usize = 8;
 const MODES_OF_TRIPLES: usize = 4;
+/// Products of swells whose variance is less than this part of the largest are nothing beside any noise.
+const LEAST_VARIANCE: f64 = 1e-7;
 /// Vectors from which the variances are found: more would tell them little better.
 const MOST_FOR_VARIANCES: usize = 300;
 /// Residuals may be so many of their own standard deviations from what the noise says.
@@ -60,10 +65,11 @@ fn classes(modes: &[Modes; 3]) -> Vec<Class> {
         }
         let most = [0, MOST_INTERVALS + 1, MODES_OF_PAIRS, MODES_OF_TRIPLES][rough];
         classes.push(Class([0, 1, 2].map(|a| match kinds[a] {
-            2 => (2..modes[a].count().min(2 + most)).collect(),
+            2 => (2..modes[a].modes().end.min(2 + most)).collect(),
             kind => vec![kind],
         })));
     }
+    classes.extend((0..SWELLS).map(|kind| Class(modes.each_ref().map(|m| m.swells(kind).collect()))));
     classes
 }
 
@@ -78,9 +84,14 @@ impl Class {
             .product()
     }
 
-    fn products(&self) -> impl Iterator<Item = [usize; 3]> {
+    fn products<'c>(&'c self, modes: &'c [Modes; 3]) -> impl Iterator<Item = [usize; 3]> + 'c {
         let [x, y, z] = &self.0;
-        z.iter().flat_map(move |&k| y.iter().flat_map(move |&j| x.iter().map(move |&i| [i, j, k])))
+        let all = z.iter().flat_map(move |&k| y.iter().flat_map(move |&j| x.iter().map(move |&i| [i, j, k])));
+        // The smoothest of each axis come first. Bent modes are kept whatever their variance: few, and vectors of one place
+        // of an axis have no others.
+        let swells = self.0.iter().zip(modes).all(|(own, modes)| own[0] >= modes.modes().end);
+        let least = if swells { LEAST_VARIANCE * prior(modes, [x[0], y[0], z[0]]) } else { 0.0 };
+        all.filter(move |indices| prior(modes, *indices) >= least)
     }
 }
 
@@ -115,7 +126,7 @@ pub(super) fn smooth(vectors: &[ErrorVector], ranges: [Range; 3]) -> Result<Smoo
     let blind_mm = offsets(vectors, &chosen, &fixed, &kernels, &found)?;
     let (doubt, residuals) = doubt(&found)?;
     let mut of_modes = Coefficients::zeros(&modes);
-    let survey = (chosen.len() < vectors.len()).then(|| Survey::new(vectors, &all, &classes));
+    let survey = (chosen.len() < vectors.len()).then(|| Survey::new(vectors, &all, &modes, &classes));
     // The same for all components, where they are as uncertain.
     let alike = vectors.iter().all(|v| v.uncertainty_mm == Vector::repeat(v.uncertainty_mm.x));
     let shared = survey.as_ref().filter(|_| alike).map(|survey| survey.normal(0));
@@ -267,8 +278,9 @@ struct Survey<'s> {
 }
 
 impl<'s> Survey<'s> {
-    fn new(vectors: &'s [ErrorVector], at: &'s [AtPlace], classes: &[Class]) -> Self {
-        let unknowns = FIXED.into_iter().chain(classes.iter().flat_map(Class::products)).collect();
+    fn new(vectors: &'s [ErrorVector], at: &'s [AtPlace], modes: &[Modes; 3], classes: &[Class]) -> Self {
+        let unknowns =
+            FIXED.into_iter().chain(classes.iter().flat_map(|class| class.products(modes))).collect();
         Self { vectors, at, unknowns }
     }
 
@@ -309,7 +321,7 @@ fn priors(modes: &[Modes; 3], classes: &[Class], variances: &[f64]) -> Vec<Optio
     // What is nothing beside the others stays finite.
     let least = 1e-12 * variances.iter().copied().fold(1e-24, f64::max);
     let of_classes = classes.iter().zip(variances).flat_map(|(class, theta)| {
-        class.products().map(move |indices| Some((theta * prior(modes, indices)).max(least)))
+        class.products(modes).map(move |indices| Some((theta * prior(modes, indices)).max(least)))
     });
     [None; FIXED.len()].into_iter().chain(of_classes).collect()
 }
@@ -344,7 +356,7 @@ impl Coefficients {
             self.of(modes)[component] = *value;
         }
         for (class, theta) in classes.iter().zip(variances) {
-            for indices in class.products() {
+            for indices in class.products(modes) {
                 let sum: f64 = at.iter().zip(&found.weighted).map(|(at, w)| product(at, indices) * w).sum();
                 self.of(indices)[component] = theta * prior(modes, indices) * sum;
             }
@@ -374,15 +386,18 @@ impl Coefficients {
     /// The sum of the products of modes as one of products of splines.
     fn into_spline(self, modes: &[Modes; 3]) -> TensorSpline {
         let mut values = self.values;
-        let counts = self.counts;
-        let strides = [1, counts[0], counts[0] * counts[1]];
+        let mut counts = self.counts;
         for axis in 0..3 {
-            let mut turned = vec![Vector::zeros(); values.len()];
+            // Of functions of this axis splines: there are fewer, since functions of swells are splines as well.
+            let functions = counts[axis];
+            counts[axis] = modes[axis].modes().end;
+            let stride: usize = counts[..axis].iter().product();
+            let mut turned = vec![Vector::zeros(); counts.iter().product()];
             for (at, turned) in turned.iter_mut().enumerate() {
-                let own = at / strides[axis] % counts[axis];
-                let line = at - own * strides[axis];
-                for k in 0..counts[axis] {
-                    *turned += values[line + k * strides[axis]] * modes[axis].coefficient(own, k);
+                let own = at / stride % counts[axis];
+                let line = at % stride + at / (stride * counts[axis]) * stride * functions;
+                for k in 0..functions {
+                    *turned += values[line + k * stride] * modes[axis].coefficient(own, k);
                 }
             }
             values = turned;

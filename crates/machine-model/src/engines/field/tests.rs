@@ -176,3 +176,40 @@ fn another_tool_and_places_without_vectors_are_refused() {
     assert!(field.supports(&near));
     assert_eq!(field.error_mm(&with(370.0, 270.0, 150.0)), field.error_mm(&with(near.x, near.y, 150.0)));
 }
+
+/// Places that were read three times, of a field that no axes make: what bends without joints swells.
+#[test]
+fn few_places_tell_a_field_that_knows_no_axes() {
+    let bumps = [
+        (Vector::new(120.0, 90.0, 60.0), 1.0, Vector::new(14.0, -9.0, 6.0)),
+        (Vector::new(300.0, 200.0, 150.0), 1.3, Vector::new(-7.0, 12.0, 10.0)),
+        (Vector::new(60.0, 260.0, 120.0), 1.1, Vector::new(8.0, 5.0, -13.0)),
+    ];
+    let size = Vector::new(400.0, 300.0, 200.0);
+    let swells = |q: &Vector| -> Vector {
+        let one = |(centre, reach, error_um): &(Vector, f64, Vector)| {
+            let from = (q - centre).component_div(&size) * (2.0 / reach);
+            error_um * (1e-3 * units::math::exp(-1.5 * from.norm_squared()))
+        };
+        bumps.iter().map(one).sum()
+    };
+    let mut vectors = noisy(80, 0.0, 1e-3, 11);
+    vectors.extend_from_within(..);
+    vectors.extend_from_within(..80);
+    let mut rng = ChaCha8Rng::seed_from_u64(12);
+    for vector in &mut vectors {
+        let noise = Vector::from_fn(|_, _| gauss(&mut rng) * 1e-3);
+        vector.error_mm = swells(&vector.place_mm) + noise;
+    }
+    let field = Field::new(&vectors, Vector::zeros()).unwrap();
+    let (mut sum, mut count) = (0.0, 0.0);
+    for vector in noisy(800, 0.0, 1e-3, 13) {
+        if field.supports(&vector.place_mm) {
+            sum += (field.error_mm(&at(vector.place_mm)) - swells(&vector.place_mm)).norm_squared();
+            count += 1.0;
+        }
+    }
+    let left_um = 1e3 * (sum / count as f64).sqrt();
+    println!("{left_um:.3} um left of swells, {:?}", field.made());
+    assert!(left_um < 1.3, "{left_um}");
+}
