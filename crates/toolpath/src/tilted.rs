@@ -289,6 +289,9 @@ impl RotaryLink {
     }
 }
 
+/// Where the reference axis stands for a direction, in degrees, and the angles of the axes A B C, or why they are not certain.
+type Way = (Option<f64>, Result<[f64; 3], NoAngles>);
+
 impl RotaryChain {
     /// The tool's direction in the workpiece on an ideal machine, a unit vector from the tip up: Z with all axes at 0.
     #[must_use]
@@ -478,7 +481,7 @@ impl RotaryChain {
         let ways = self.ways(direction)?;
         let (first, second) = (&self.0[0], &self.0[1]);
         // Where each way has the reference axis, and its angles; not certain counts only of the way that is taken.
-        let mut reachable: Vec<(Option<f64>, Result<[f64; 3], NoAngles>)> = Vec::new();
+        let mut reachable: Vec<Way> = Vec::new();
         for (first_deg, second_deg) in ways {
             let first_deg = first_deg.map_or_else(|| self.free(rule, stand_deg), Ok)?;
             let chosen = [(first, first_deg), (second, second_deg)]
