@@ -210,7 +210,10 @@ fn effects_act_where_they_arise() {
     let kind = EffectKind::Rotary { component: 0, axis: 2 };
     let shifted = WithEffects::new(base, vec![one(kind)], KNOWN).unwrap();
     let seen = one(kind).displacement_mm(&at, &KNOWN).unwrap();
-    assert!((seen - Vector::new(0.0, 0.01, 0.0)).norm() < 1e-15, "what the table carries is displaced: {seen}");
+    assert!(
+        (seen - Vector::new(0.0, 0.01, 0.0)).norm() < 1e-15,
+        "what the table carries is displaced: {seen}"
+    );
     assert!((shifted.predict(&at).error_mm - seen).norm() < 1e-15, "as the workpiece sees it");
 }
 
