@@ -215,7 +215,7 @@ fn the_worst_signs_are_those_of_a_machine() {
 #[test]
 fn five_axes_by_points() {
     let axes = "[axis.X]\ntravel_mm = [-500, 500]\n[axis.Y]\ntravel_mm = [-500, 500]\n[axis.Z]\ntravel_mm = [-500, 500]\n";
-    let rotary = "[rotary.A]\ncentre_mm = [0, 0, 0]\nEY0A_um = 20\ntravel_deg = [-120, 30]\n[rotary.C]\ncentre_mm = [0, 0, 0]\nEX0C_um = 10\nEB0C_urad = 50\n";
+    let rotary = "[rotary.A]\ncentre_mm = [0, 0, 0]\nEY0A_um = 20\ntravel_deg = [-120, 30]\n[rotary.C]\ncentre_mm = [0, 0, 0]\ntilt = \"body\"\nEX0C_um = 10\nEB0C_urad = 50\n";
     let profile = format!("format = 1\nname = \"five\"\nchain = \"[w C A X Y b Z t]\"\n{axes}{rotary}");
     let profile = written("five.toml", &profile);
     let mut points = String::from("x_mm,y_mm,z_mm,a_deg,c_deg\n");

@@ -43,7 +43,10 @@ fn profile(folder: &Path, name: &str, locations: Option<[&str; 2]>) -> String {
     for (k, (axis, centre, low, high)) in
         [('B', "[5, 0, -40]", -100, 40), ('C', "[0, 0, 0]", -360, 360)].into_iter().enumerate()
     {
-        let _ = writeln!(text, "[rotary.{axis}]\ncentre_mm = {centre}\ntravel_deg = [{low}, {high}]");
+        let _ = writeln!(
+            text,
+            "[rotary.{axis}]\ncentre_mm = {centre}\ntilt = \"body\"\ntravel_deg = [{low}, {high}]"
+        );
         if let Some(own) = locations {
             let file = format!("{}.csv", axis.to_ascii_lowercase());
             write(&file, &table(axis, low, high, k as f64));

@@ -231,7 +231,7 @@ fn a_feed_of_rotary_axes_alone_is_judged() {
     let axes: String =
         ["X", "Y", "Z"].map(|axis| format!("[axis.{axis}]\ntravel_mm = [-500, 500]\n")).concat();
     let machine = format!(
-        "format = 1\nname = \"TILTING\"\ncontrol = \"fanuc\"\nchain = \"[w A X Y b Z t]\"\n{axes}[rotary.A]\nEB0A_urad = 100.0\n[work_offsets_mm]\nG54 = [0, 0, 0]\n"
+        "format = 1\nname = \"TILTING\"\ncontrol = \"fanuc\"\nchain = \"[w A X Y b Z t]\"\n{axes}[rotary.A]\ntilt = \"body\"\nEB0A_urad = 100.0\n[work_offsets_mm]\nG54 = [0, 0, 0]\n"
     );
     let machine = written("tilting.toml", &machine);
     let program = written("posted.nc", "G21 G17 G90 G54\nG0 X200. Y0. Z100. A0.\nG1 A60. F500.\nM30\n");
@@ -274,7 +274,7 @@ fn rapids_of_pecks_and_turns_are_judged() {
     let axes: String =
         ["X", "Y", "Z"].map(|axis| format!("[axis.{axis}]\ntravel_mm = [-500, 500]\n")).concat();
     let machine = format!(
-        "format = 1\nname = \"TILTING\"\ncontrol = \"fanuc\"\nchain = \"[w A X Y b Z t]\"\n{axes}[rotary.A]\nEB0A_urad = 100.0\n[work_offsets_mm]\nG54 = [0, 0, 0]\n"
+        "format = 1\nname = \"TILTING\"\ncontrol = \"fanuc\"\nchain = \"[w A X Y b Z t]\"\n{axes}[rotary.A]\ntilt = \"body\"\nEB0A_urad = 100.0\n[work_offsets_mm]\nG54 = [0, 0, 0]\n"
     );
     let machine = written("tilting.toml", &machine);
     let posted = "G21 G17 G90 G54\nG0 X0. Y0. Z100. A0.\nG0 A90.\nG1 X50. F200.\nG0 Z200.\nA0.\nM30\n";

@@ -188,6 +188,7 @@ def circles():
 ROTARY = """[rotary.A]
 centre_mm  = [410, -220, -380]
 travel_deg = [-200, 400]
+tilt       = "body"
 EY0A_um    = {0}
 EZ0A_um    = {1}
 EB0A_urad  = {2}
@@ -195,6 +196,7 @@ EC0A_urad  = {3}
 [rotary.C]
 centre_mm  = [410, -220, -380]
 travel_deg = [-400, 400]
+tilt       = "body"
 EX0C_um    = {4}
 EY0C_um    = {5}
 EA0C_urad  = {6}

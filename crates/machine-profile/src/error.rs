@@ -30,6 +30,8 @@ pub(crate) const EFFECT: Code = Code(311);
 pub(crate) const FIELD: Code = Code(312);
 /// Error vectors that leave something in doubt.
 pub(crate) const DOUBTFUL_FIELD: Code = Code(313);
+/// What a tilt means is not said.
+pub(crate) const TILT: Code = Code(314);
 
 /// One thing wrong with a profile or with a table it names.
 #[derive(Clone, Debug, PartialEq)]

@@ -225,10 +225,9 @@ pub(crate) struct Rotary {
     pub(crate) C: Option<Spanned<RotaryC>>,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum TiltName {
-    #[default]
     Body,
     Axis,
 }
@@ -238,7 +237,7 @@ pub(crate) struct RotaryAxis<'d> {
     pub(crate) centre_mm: Option<Triple>,
     pub(crate) travel_deg: Option<&'d Spanned<[Finite; 2]>>,
     pub(crate) direction: Option<&'d Spanned<Triple>>,
-    pub(crate) tilt: TiltName,
+    pub(crate) tilt: Option<TiltName>,
     pub(crate) resolution_deg: Option<&'d Spanned<Finite>>,
     pub(crate) errors: Option<&'d Spanned<String>>,
     pub(crate) errors_negative: Option<&'d Spanned<String>>,
@@ -261,9 +260,9 @@ macro_rules! rotary {
             /// Direction of the axis, machine frame; that of its letter where left out. Of any length.
             #[schemars(with = "Option<[f64; 3]>")]
             direction: Option<Spanned<Triple>>,
-            /// What its location tilt means: "body" (default) leans with the axis, "axis" turns about the leaning line.
-            #[serde(default)]
-            tilt: TiltName,
+            /// What its location tilt means: "body" leans with the axis, "axis" turns about the leaning line. Needed beside a
+            /// tilt that is not 0.
+            tilt: Option<TiltName>,
             /// Step of the output words; 0.001 where left out.
             #[schemars(with = "Option<f64>")]
             resolution_deg: Option<Spanned<Finite>>,

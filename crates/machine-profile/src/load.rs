@@ -12,7 +12,7 @@ use toml::Spanned;
 use toolpath::{TiltRule, WholeTurns};
 use units::{Angle, Length};
 
-use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, span};
+use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, TILT, VALUE, span};
 use crate::field::Around;
 use crate::format::{
     self, ChangePlace, ContourCompensation, DecimalName, Document, DrawingWords, DrillRName, Finite,
@@ -770,9 +770,27 @@ impl Loader<'_> {
             }
             result.centre_mm = vector(parts.centre_mm);
             result.tilt = match parts.tilt {
-                format::TiltName::Body => Tilt::Body,
-                format::TiltName::Axis => Tilt::Axis,
+                Some(format::TiltName::Axis) => Tilt::Axis,
+                Some(format::TiltName::Body) | None => Tilt::Body,
             };
+            let leans = parts.tilt_urad.iter().any(|tilt| tilt.is_some_and(|Finite(urad)| urad != 0.0));
+            if leans && parts.tilt.is_none() {
+                let diagnostic = Diagnostic::error(
+                    TILT,
+                    both!(
+                        "what the tilt of {axis} does to the workpiece or the tool is not said",
+                        "не сказано, что наклон оси {axis} делает с деталью или инструментом"
+                    ),
+                )
+                .help(both!(
+                    "write tilt = \"body\" in [rotary.{axis}] where what the axis carries leans with it, as vpost calibrate \
+                     measures it, or tilt = \"axis\" where it only turns about the leaning line",
+                    "напишите tilt = \"body\" в [rotary.{axis}], если то, что несёт ось, наклонено вместе с ней (так \
+                     измеряет vpost calibrate), или tilt = \"axis\", если оно лишь вращается вокруг наклонной линии"
+                ))
+                .at(span(&place), both!("a tilt without `tilt`", "наклон без ключа `tilt`"));
+                self.errors.push(ProfileError::profile(diagnostic));
+            }
             if let Some(direction) = parts.direction {
                 let along = vector(Some(*direction.get_ref()));
                 let length = along.norm();

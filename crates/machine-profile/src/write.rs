@@ -86,6 +86,13 @@ impl ProfileText {
         item.is_some()
     }
 
+    /// Says what a tilt of a rotary axis means where the profile does not: what it carries leans with it, as it was fitted.
+    pub fn say_tilt(&mut self, axis: &str) {
+        if !self.says(&["rotary", axis, "tilt"]) {
+            self.set_text(&["rotary", axis, "tilt"], "body");
+        }
+    }
+
     /// Sets the line an axis was measured along: where the other axes stood and the tool vector.
     pub fn set_measured_at(&mut self, axis: char, others: &[(char, f64)], tool_mm: [f64; 3]) {
         let mut table = InlineTable::new();

@@ -291,6 +291,18 @@ fn travel_and_table_have_nothing_in_common() {
 }
 
 #[test]
+fn tilt_whose_meaning_is_not_said() {
+    let turning = base().replace("[w X Y b Z t]", "[w C X Y b Z t]");
+    let tilted = format!("{turning}\n[rotary.C]\ncentre_mm = [0, 0, 0]\nEA0C_urad = 5\n");
+    let said = told(&tilted);
+    assert!(said.contains("error[VP0314]") && said.contains("tilt = \"body\" in [rotary.C]"), "{said}");
+    // Said, or no tilt at all: nothing to ask.
+    for fine in [tilted.replace("EA0C", "tilt = \"axis\"\nEA0C"), tilted.replace("= 5", "= 0")] {
+        assert!(load(&fine, &read).is_ok(), "{fine}");
+    }
+}
+
+#[test]
 fn rotary_axis_the_chain_lacks() {
     assert_snapshot!(told(&format!("{}\n[rotary.C]\ncentre_mm = [0, 0, 0]\n", base())), @r####"
     error[VP0309]: [rotary.C] is described, but the chain lacks C

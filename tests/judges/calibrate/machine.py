@@ -209,7 +209,7 @@ def write_profile(machine, folder, name, interpolation=None, tables=True):
     c, b, a = machine.square * 1e6
     lines += ["[squareness]", f"EC0Y_urad = {c:.5f}", f"EB0Z_urad = {b:.5f}", f"EA0Z_urad = {a:.5f}"]
     for rotary in machine.table + machine.head:
-        lines += [f"[rotary.{rotary.name}]", f"centre_mm = {[float(v) for v in rotary.centre]}"]
+        lines += [f"[rotary.{rotary.name}]", f"centre_mm = {[float(v) for v in rotary.centre]}", 'tilt = "body"']
         lines += [f"{key} = {value:.6f}" for key, value in location(rotary).items()]
     lines += ["[tool]", f"default_mm = {[float(v) for v in machine.tool]}", "[work_offsets_mm]", "G54 = [0, 0, 0]"]
     for axis, letter in enumerate(AXES):

@@ -34,6 +34,7 @@ centre_mm = [100.0, 100.0, 0.0]
 travel_deg = [-360.0, 360.0]
 EX0C_um = 1.5
 EY0C_um = 2.5
+tilt = "body"
 EA0C_urad = 3.5
 EB0C_urad = 4.5
 

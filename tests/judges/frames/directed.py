@@ -55,6 +55,7 @@ centre_mm = [-350, -225, -350]
 travel_deg = [-360, 360]
 EY0A_um = 25.0
 EZ0A_um = -18.0
+tilt = "body"
 EB0A_urad = 60.0
 EC0A_urad = -45.0
 """

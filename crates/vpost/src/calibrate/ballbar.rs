@@ -413,7 +413,11 @@ fn write_locations(output: &mut Output, found: &RotaryCalibration, base: &Base) 
     for f in &found.locations {
         let (unit, scale) = if f.location.is_length { ("um", 1e3) } else { ("urad", 1e6) };
         let key = format!("{}_{unit}", f.location.name());
-        output.text.set_number(&["rotary", &f.location.axis.letter().to_string(), &key], f.value * scale, 3);
+        let axis = f.location.axis.letter().to_string();
+        output.text.set_number(&["rotary", &axis, &key], f.value * scale, 3);
+        if !f.location.is_length {
+            output.text.say_tilt(&axis);
+        }
     }
 }
 

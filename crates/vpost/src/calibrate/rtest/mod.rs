@@ -338,6 +338,9 @@ fn write(output: &mut Output, found: &RotaryTables) {
         let key = format!("{}_{unit}", location.name());
         let axis = location.axis.letter().to_string();
         output.text.set_number(&["rotary", &axis, &key], (term.base + term.change) * scale, 4);
+        if !location.is_length {
+            output.text.say_tilt(&axis);
+        }
     }
     for table in &found.tables {
         let functions: [Option<Vec<f64>>; 6] =
