@@ -20,7 +20,7 @@ use targets::Outcome;
 
 type Target = fn(&[u8]) -> Option<Outcome>;
 
-const TARGETS: [(&str, Target); 5] = [
+const TARGETS: [(&str, Target); 6] = [
     ("parse", |bytes| {
         targets::parse(bytes);
         None
@@ -28,6 +28,7 @@ const TARGETS: [(&str, Target); 5] = [
     ("round_trip", |bytes| Some(targets::round_trip(bytes))),
     ("correct_check", |bytes| Some(targets::correct_check(bytes))),
     ("generated", |bytes| Some(targets::generated(bytes))),
+    ("five_axis", |bytes| Some(targets::five_axis(bytes))),
     ("tables", |bytes| {
         targets::tables(bytes);
         None
@@ -162,6 +163,11 @@ fn seeds_and_their_mutations_keep_every_promise() {
                     bytes[0] = b"fflllpFFLLs"[random.random_range(0..11)];
                     bytes
                 }
+                (_, "five_axis") => {
+                    let mut bytes = vec![0; random.random_range(40..700)];
+                    random.fill_bytes(&mut bytes);
+                    bytes
+                }
                 (Some(seed), _) => seed.clone(),
                 (None, _) => mutated(&seeds, &mut random),
             };
@@ -179,7 +185,7 @@ fn seeds_and_their_mutations_keep_every_promise() {
             }
         }
         println!("{name}: {runs} inputs {outcomes:?}");
-        if name == "generated" {
+        if name == "generated" || name == "five_axis" {
             // A generator of refused programs shows nothing.
             assert!(12 * outcomes.get("Corrected").copied().unwrap_or_default() > runs, "{outcomes:?}");
         }

@@ -3,6 +3,7 @@
 //! A program's first byte says under which dialect and for which machine it is read (see [`split`]); the rest is the
 //! program. The same functions are run by libFuzzer (`targets/`) and by `cargo test -p vpost --test fuzz`.
 
+mod five_axis;
 mod generate;
 mod machines;
 
@@ -94,6 +95,25 @@ pub fn generated(bytes: &[u8]) -> Outcome {
     let text = program(rest, dialect);
     blocks(text.as_bytes(), dialect, &Setup::default());
     judged(dialect, machine, text.as_bytes())
+}
+
+/// Programs with rotary words – axes run evenly, tip led, planes, vectors – for a tilting table: what is corrected passes
+/// `vpost check`; a table without errors gives the program back. Choices past the program damage it.
+pub fn five_axis(bytes: &[u8]) -> Outcome {
+    let (&machine, rest) = bytes.split_first().unwrap_or((&0, &[]));
+    let (dialect, text) = five_axis::program(rest);
+    blocks(&text, dialect, &Setup::default());
+    match machine % 4 {
+        0 | 1 => judged(dialect, Machine::Table, &text),
+        2 => judged(dialect, Machine::Pointed, &text),
+        _ => match session(dialect, Machine::PerfectTable).correct(&text) {
+            Err(refusal) => refused(dialect, &refusal.0),
+            Ok(done) if done.text == text => Outcome::Unchanged,
+            Ok(done) => {
+                panic!("{dialect}: a table without errors changed the program\n{}", both(&text, &done.text))
+            }
+        },
+    }
 }
 
 fn judged(dialect: &str, machine: Machine, text: &[u8]) -> Outcome {

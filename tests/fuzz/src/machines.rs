@@ -30,6 +30,12 @@ pub enum Machine {
     Backlash,
     /// Without errors.
     Perfect,
+    /// A tilting rotary table, crooked in everything; the tip is corrected.
+    Table,
+    /// The same; the tool's direction is corrected too.
+    Pointed,
+    /// A tilting rotary table without errors.
+    PerfectTable,
 }
 
 /// Dialect and machine of an input, and the rest of it. A first byte that is none of the letters chooses too.
@@ -46,11 +52,11 @@ pub fn split(bytes: &[u8]) -> (&'static str, Machine, &[u8]) {
 /// The session of a dialect and machine, loaded once.
 pub(crate) fn session(dialect: &str, machine: Machine) -> &'static Session {
     thread_local! {
-        static LOADED: [OnceCell<&'static Session>; 27] = const { [const { OnceCell::new() }; 27] };
+        static LOADED: [OnceCell<&'static Session>; 54] = const { [const { OnceCell::new() }; 54] };
     }
     let row = DIALECTS.iter().position(|known| *known == dialect).expect("a shipped dialect");
     LOADED.with(|loaded| {
-        *loaded[3 * row + machine as usize].get_or_init(|| Box::leak(Box::new(load(dialect, machine))))
+        *loaded[6 * row + machine as usize].get_or_init(|| Box::leak(Box::new(load(dialect, machine))))
     })
 }
 
@@ -63,11 +69,20 @@ fn load(dialect: &str, machine: Machine) -> Session {
     let offsets = ["--work-offset", "G54=100,80,40", "--work-offset", "G55=110,75,41"];
     let is_lathe = nc_dialect::builtin(dialect).is_some_and(|dialect| dialect.turning.is_some());
     let options = match machine {
+        Machine::Table | Machine::Pointed | Machine::PerfectTable => {
+            let (profile, more): (_, &[&str]) = match machine {
+                Machine::Table => ("tests/profiles/fuzz_five_axis.toml", &[]),
+                Machine::Pointed => ("tests/profiles/five_axis_vectors.toml", &["--orientation", "full"]),
+                _ => ("tests/profiles/perfect_five_axis.toml", &[]),
+            };
+            let profile = file(profile);
+            [&["-m", &profile][..], &tolerance, more].concat().into_iter().map(str::to_owned).collect()
+        }
         _ if is_lathe => {
             let profile = file(match machine {
                 Machine::Crooked => "tests/profiles/lathe.toml",
                 Machine::Backlash => "machine-profiles/generic_lathe.toml",
-                Machine::Perfect => "tests/profiles/perfect_lathe.toml",
+                _ => "tests/profiles/perfect_lathe.toml",
             });
             [&["-m", &profile][..], &tolerance].concat().into_iter().map(str::to_owned).collect()
         }
