@@ -6,7 +6,6 @@
 
 use machine_model::{Command, Vector};
 use smallvec::SmallVec;
-use toolpath::Division;
 
 use crate::corrected::Corrected;
 use crate::corrector::{Corrector, Freedom};
@@ -86,7 +85,7 @@ impl<'m> Corrector<'m> {
         motion: &Whole,
         corrected: &mut Corrected,
     ) -> Result<(), CorrectionError> {
-        if motion.division == Division::One {
+        if motion.division.is_offset() {
             // From where the axes stand the block holds or does not.
             return Ok(());
         }

@@ -36,7 +36,7 @@ impl<'m> Corrector<'m> {
             return Ok(());
         };
         self.require_named(follow, part, self.limit_mm(follow.block))?;
-        if !follow.may_split {
+        if !follow.may_split || follow.least_share(part) > 0.5 {
             return Err(self.not_to_be_split(follow, distance_mm));
         }
         follow.alone = false;
@@ -44,6 +44,9 @@ impl<'m> Corrector<'m> {
         if part.length_mm() < SHORTEST_CHORD_STEPS * step
             || part.length_mm() < 2.0 * self.options.minimum_segment_mm
         {
+            if follow.whole.division.is_offset() {
+                return Err(self.not_to_be_split(follow, distance_mm));
+            }
             return self.follow_line(follow, part);
         }
         let halves = part.split(s);
@@ -131,7 +134,9 @@ impl<'m> Corrector<'m> {
             // A control that offsets the circle does so by one of its radii: what they differ by, beyond what was programmed,
             // may stand off the path at the other end.
             let aside_mm = match follow.whole.division {
-                Division::One => (curve.radii_apart_mm() - part.radii_apart_mm()).max(0.0),
+                Division::One | Division::Long { .. } => {
+                    (curve.radii_apart_mm() - part.radii_apart_mm()).max(0.0)
+                }
                 Division::Any | Division::OneBehindLines => 0.0,
             };
             let limit_mm = limit_mm - aside_mm;

@@ -114,6 +114,26 @@ impl Follow<'_, '_> {
         Freedom::of(self.block.may_have_words()).keeping(self.alone).holding(hold)
     }
 
+    /// The least share of a part that may be a piece of its own; above a half where it must stay one. A line in the place of an
+    /// arc that is offset would be offset to other ends.
+    pub(crate) fn least_share(&self, part: &Curve) -> f64 {
+        let Division::Long { least_um, normal } = self.whole.division else { return 0.0 };
+        let along = |axis: usize| part.at(1.0)[axis] - part.at(0.0)[axis];
+        let mm = match part {
+            Curve::Line(..) => {
+                let [u, v] = match normal {
+                    0 => [1, 2],
+                    1 => [0, 2],
+                    _ => [0, 1],
+                };
+                units::math::hypot(along(u), along(v))
+            }
+            Curve::Arc { sweep, radius, .. } => radius[0].min(radius[1]) * sweep.abs(),
+            Curve::Turn { .. } => 0.0,
+        };
+        f64::from(least_um) * 1e-3 / mm.max(f64::MIN_POSITIVE)
+    }
+
     pub(crate) fn share(&self, part: &Curve) -> f64 {
         if self.whole.length_mm > 0.0 { part.length_mm() / self.whole.length_mm } else { 1.0 }
     }

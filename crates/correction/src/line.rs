@@ -36,7 +36,8 @@ impl<'m> Corrector<'m> {
             let allowed_urad = self.options.orientation_rad * 1e6;
             return Err(CorrectionError::Leans { leans_urad: rad * 1e6, allowed_urad });
         }
-        if !follow.may_split {
+        let least_share = follow.least_share(part);
+        if !follow.may_split || least_share > 0.5 {
             self.require_named(follow, part, 0.5 * step)?;
             return Err(self.not_to_be_split(follow, distance_mm));
         }
@@ -48,7 +49,7 @@ impl<'m> Corrector<'m> {
             });
         }
         follow.alone = false;
-        let shortest = (self.options.minimum_segment_mm / length).clamp(0.05, 0.5);
+        let shortest = (self.options.minimum_segment_mm / length).clamp(0.05, 0.5).max(least_share);
         let s = if exactly { s } else { s.clamp(shortest, 1.0 - shortest) };
         self.follow_line(follow, &part.part(0.0, s))?;
         self.follow_line(follow, &part.part(s, 1.0))

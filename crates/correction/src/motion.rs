@@ -241,7 +241,7 @@ impl Corrector<'_> {
         let start_mm = self.correction_mm(&self.state(block, feed.start.rotary_deg), whole.at(0.0));
         let parts = self.monotone_parts(&whole);
         let alone = parts.len() == 1;
-        if feed.division == Division::One && !alone {
+        if feed.division.is_offset() && !alone {
             return Err(self.turns_in_one_block(&whole, block, feed.end.rotary_deg));
         }
         let (mut own_words, mut at_quarters_mm, mut commanded_mm) = (true, None, 0.0);
@@ -262,7 +262,7 @@ impl Corrector<'_> {
                 machine,
                 block,
                 alone: alone && corrected.pieces.is_empty(),
-                may_split: feed.division == Division::Any && self.guessed_own(block).is_none(),
+                may_split: self.may_split(feed.division) && self.guessed_own(block).is_none(),
                 whole: motion,
                 nominal_step: Vector::from(feed.end.linear_mm) - Vector::from(feed.start.linear_mm),
                 solved: None,
@@ -309,6 +309,15 @@ impl Corrector<'_> {
         corrected.correction.before_mm = by_quarters
             .unwrap_or_else(|| self.before_mm(&whole, &self.state(block, feed.end.rotary_deg), at_ends_mm));
         Ok(corrected)
+    }
+
+    /// Whether a motion may become several. On a machine with play a take-up could come between pieces that are offset.
+    fn may_split(&self, division: Division) -> bool {
+        match division {
+            Division::Any => true,
+            Division::Long { .. } => !self.model.depends_on_direction(),
+            Division::OneBehindLines | Division::One => false,
+        }
     }
 
     /// Why a motion on whose way axes with play turn cannot stay one block: by their play the tool would be off.

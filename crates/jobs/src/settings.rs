@@ -546,6 +546,7 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
         tool_names: profile.tool_names.clone(),
         edge_at_change: profile.program.edge_at_change,
         noses_mm: noses_mm(profile),
+        radii_mm: profile.cutter_radii_mm.clone(),
         default_tool_mm: profile.default_tool_mm,
         gauge_point_mm: profile.gauge_point_mm,
         lever_matters: profile.lever_matters(),

@@ -321,6 +321,10 @@ pub(crate) struct Tool {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, u32>")]
     pub(crate) names: BTreeMap<String, Spanned<u32>>,
+    /// D number → radius of a mill's cutter, as the control has it: how long the pieces of a block under G41 and G42 must be.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Finite>")]
+    pub(crate) radii_mm: BTreeMap<String, Spanned<Finite>>,
     /// H number → nose of a turning tool.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Nose>")]

@@ -137,6 +137,7 @@ impl Loader<'_> {
         let traverses = document.tracker.as_ref().and_then(|tracker| self.traverses(tracker));
         let mut tools = self.tools(&document.tool);
         let tool_names = self.tool_names(&document.tool, &tools);
+        let cutter_radii_mm = self.cutter_radii(&document);
         let gauge_point_mm = self.gauge_point(&document, is_lathe);
         let work_offsets = self.work_offsets(&document);
         let correction = self.correction(&document.correction);
@@ -194,6 +195,7 @@ impl Loader<'_> {
             default_tool_mm: triple(document.tool.default_mm),
             gauge_point_mm,
             tool_names,
+            cutter_radii_mm,
             tools,
             work_offsets,
             correction,
@@ -981,6 +983,54 @@ impl Loader<'_> {
             }
         }
         written.names.iter().map(|(name, number)| (name.clone(), *number.get_ref())).collect()
+    }
+
+    /// Radii of a mill's cutters by D number.
+    fn cutter_radii(&mut self, document: &Document) -> Vec<(u32, f64)> {
+        let mut radii = Vec::new();
+        for (name, radius) in &document.tool.radii_mm {
+            let digits = name.strip_prefix('D').filter(|digits| digits.bytes().all(|b| b.is_ascii_digit()));
+            let number = digits.and_then(|digits| digits.parse::<u32>().ok()).filter(|number| *number > 0);
+            let Finite(mm) = *radius.get_ref();
+            match number {
+                Some(number) if mm > 0.0 && document.spindle.is_none() => radii.push((number, mm)),
+                Some(_) if mm > 0.0 => {
+                    let message = both!(
+                        "`radii_mm` in the profile of a lathe",
+                        "`radii_mm` в профиле токарного станка"
+                    );
+                    let help = both!(
+                        "give the radius of a turning tool under `noses`",
+                        "радиус при вершине резца задайте в `noses`"
+                    );
+                    let diagnostic = Diagnostic::error(CONFLICT, message).help(help);
+                    self.refuse(radius, diagnostic, both!("this key", "этот ключ"));
+                }
+                Some(_) => {
+                    let message = both!("the radius of `{name}` is {mm}", "радиус `{name}` — {mm}");
+                    let help = both!("write millimetres above 0", "напишите миллиметры больше 0");
+                    self.refuse(
+                        radius,
+                        Diagnostic::error(VALUE, message).help(help),
+                        both!("this radius", "этот радиус"),
+                    );
+                }
+                None => {
+                    let message = both!("`{name}` is no D number", "`{name}` — не номер D");
+                    let help = both!(
+                        "write D and a whole number from 1, like D1 = 6.0",
+                        "напишите D и целое число от 1, например D1 = 6.0"
+                    );
+                    self.refuse(
+                        radius,
+                        Diagnostic::error(KEY, message).help(help),
+                        both!("of this entry", "в этой записи"),
+                    );
+                }
+            }
+        }
+        radii.sort_by_key(|(number, _)| *number);
+        radii
     }
 
     fn tools(&mut self, written: &format::Tool) -> Vec<(u32, [f64; 3])> {

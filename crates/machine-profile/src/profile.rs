@@ -239,6 +239,8 @@ pub struct Profile {
     pub tools: Vec<(u32, [f64; 3])>,
     /// Names of tools, and the H numbers of their lengths.
     pub tool_names: Vec<(String, u32)>,
+    /// D number and radius of a mill's cutter, mm, above zero.
+    pub cutter_radii_mm: Vec<(u32, f64)>,
     /// Name (`G54`) and machine coordinate of that program zero, mm, ordered by name.
     pub work_offsets: Vec<(String, [f64; 3])>,
     /// How programs are corrected.

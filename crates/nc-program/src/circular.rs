@@ -96,7 +96,10 @@ pub(crate) fn circular(
     let sweep_rad = sweep_rad + whole.copysign(sweep_rad);
     let sweep_rad = if similarity.mirrored { -sweep_rad } else { sweep_rad };
     let shape = Shape::Arc(Arc { plane: state.plane, centre_mm, sweep_rad });
-    let division = division(before, state, turning);
+    let radius_mm =
+        units::math::hypot(from.linear_mm[first] - centre_mm[0], from.linear_mm[second] - centre_mm[1]);
+    let ends_mm = [from.linear_mm, to.linear_mm];
+    let division = division(before, state, turning, ends_mm, Some((radius_mm, sweep_rad > 0.0)));
     motions.push(Motion::Feed(Feed { start: from, end: to, shape, rate, division }));
     Ok(())
 }

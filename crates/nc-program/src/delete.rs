@@ -65,6 +65,7 @@ pub(crate) fn merge(words: &Words<'_, '_, '_>, aside: &Aside, executed: &Modal) 
     if executed.curve_leaves_mm != skipped.curve_leaves_mm {
         both.curve_leaves_mm = None;
     }
+    both.offset = executed.offset.either(skipped.offset, executed.compensation != Compensation::Off);
     both.unsettled = [0, 1, 2].map(|i| executed.unsettled[i] || skipped.unsettled[i]);
     // `/M30` ends the program or not: what follows is executed or not, and must be right where it is.
     both.progress = Progress::Running;

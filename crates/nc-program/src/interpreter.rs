@@ -16,6 +16,7 @@ use crate::modal::{
 };
 use crate::motion::{self, Moved};
 use crate::naming;
+use crate::offset::{self, Offset};
 use crate::plain::Plain;
 use crate::settings::{self, Environment, Owner};
 use crate::setup::{AfterChange, Setup};
@@ -130,6 +131,7 @@ impl<'d> Interpreter<'d> {
             feed_is_inverse_time: false,
             arc_centres: ArcCentres::Incremental,
             compensation: Compensation::Off,
+            offset: Offset::default(),
             return_level: ReturnLevel::Initial,
             tool_length: ToolLength::Off,
             vectors: false,
@@ -286,7 +288,9 @@ fn run<'d>(
     curves::check(env, words, before, state)?;
     naming::disturb(env, words, &demand, before, state);
     moved.unnamed = state.named.map(Naming::lost);
+    offset::begin(env, words, before, state);
     motion::execute(env, words, &demand, before, state, moved)?;
+    offset::end(state, &moved.motions);
     let nowhere =
         |axis: &Axis| matches!(axis, Axis::Unknown(Lost { why: Why::Kinematics | Why::TiltedPlane, .. }));
     let turned = before.kinematics != state.kinematics || before.axes != state.axes;

@@ -1,5 +1,6 @@
 //! The state of a program between two blocks: one enum per modal group.
 
+use crate::offset::Offset;
 use nc_syntax::dialect::{CurveCode, CycleCode, GCode, Side};
 use toolpath::{Frame, Kinematics, Partial, Plane};
 use units::decimal::Decimal;
@@ -441,6 +442,8 @@ pub struct Modal {
     pub arc_centres: ArcCentres,
     /// G40 G41 G42.
     pub compensation: Compensation,
+    /// How far cutter compensation is with its motions.
+    pub offset: Offset,
     /// G98 G99.
     pub return_level: ReturnLevel,
     /// G43 G44 G49.

@@ -12,6 +12,7 @@ use crate::cycle;
 use crate::direction::{self, DirectionWords};
 use crate::frames::{self, settle};
 use crate::modal::{Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Units, Why};
+use crate::offset;
 use crate::position::{end, known_axes, require_frame, require_known, require_rotary};
 use crate::settings::{Demand, Environment, Owner};
 use crate::tip;
@@ -320,20 +321,29 @@ fn straight(
     }
     let rate = feed_rate(words, state)?;
     // Where the rotary axes do not matter, nobody knows where they stand: their words cannot be shared out.
-    let division = division(before, state, !cuts && from.rotary_deg != to.rotary_deg);
+    let shared = !cuts && from.rotary_deg != to.rotary_deg;
+    let division = division(before, state, shared, [from, to].map(|place| place.linear_mm), None);
     motions.push(Motion::Feed(Feed { start: from, end: to, shape: Shape::Line, rate, division }));
     Ok(())
 }
 
-/// What may become of a feed's block. Where G41 or G42 is in force before or after it, neither its start-up nor its end may
-/// be split.
-pub(crate) fn division(before: &Modal, state: &Modal, turns: bool) -> Division {
-    if compensated(before, state) {
-        Division::One
-    } else if turns {
-        Division::OneBehindLines
-    } else {
-        Division::Any
+/// What may become of a feed's block.
+///
+/// * `ends_mm` – its start and end, axis commands
+/// * `bend` – of an arc: its radius, mm, and whether it turns counterclockwise in the plane
+pub(crate) fn division(
+    before: &Modal,
+    state: &Modal,
+    turns: bool,
+    ends_mm: [[f64; 3]; 2],
+    bend: Option<(f64, bool)>,
+) -> Division {
+    match offset::division(before, state, ends_mm, bend) {
+        // A rotary axis that turns meanwhile would need a share of each piece.
+        Some(Division::Long { .. }) if turns => Division::One,
+        Some(division) => division,
+        None if turns => Division::OneBehindLines,
+        None => Division::Any,
     }
 }
 

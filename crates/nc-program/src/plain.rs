@@ -66,6 +66,7 @@ impl Plain {
             && modal.aside.is_none()
             && modal.cycle.is_none()
             && modal.compensation == Compensation::Off
+            && modal.offset.is_off()
             && modal.transform.is_none()
             && modal.unsettled == [false; 3]
             && !modal.feed_is_inverse_time

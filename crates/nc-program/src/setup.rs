@@ -79,6 +79,8 @@ pub struct Setup {
     pub edge_at_change: Option<u32>,
     /// H number and radius of the nose of a turning tool, mm, above zero.
     pub noses_mm: Vec<(u32, f64)>,
+    /// D number and radius of a mill's cutter, mm, above zero: how long pieces must be that the control offsets.
+    pub radii_mm: Vec<(u32, f64)>,
     /// Tool vector without G43: from the gauge point to the tip, mm.
     pub default_tool_mm: [f64; 3],
     /// The length that the control would have of a tool that ends at the gauge point, mm; `None`: not said, and taken as 0.

@@ -13,6 +13,7 @@ use toolpath::{
 };
 
 use crate::course::{Course, Others};
+use crate::offset;
 use crate::step::Pointing;
 use crate::stretch::{LEVER_MM, Place, Span, Stretch, TURN_LEVER_MM};
 use crate::way::Way;
@@ -314,8 +315,10 @@ pub(crate) struct Items<'m, I> {
     others: Option<Others<'m>>,
     /// Directions are compared, and may be off so far.
     pointing: Option<Pointing>,
-    /// Feeds in a row under cutter compensation.
+    /// Feeds in a row under cutter compensation, those that go on from one another being one.
     compensated: u32,
+    /// The last of them, where it may be a piece of a longer one.
+    offset: Option<Feed>,
     /// Feed motions so far, a hole being one.
     pub(crate) feeds: usize,
     pub(crate) limit_mm: f64,
@@ -368,6 +371,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             others: None,
             pointing: None,
             compensated: 0,
+            offset: None,
             feeds: 0,
             limit_mm: 0.0,
         }
@@ -431,6 +435,15 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         self.ready.pop_front()
     }
 
+    /// A motion under compensation goes on from the one before it, as a piece of the same block for the control.
+    fn goes_on(&mut self, motion: &Motion) -> bool {
+        let Motion::Feed(feed) = motion else {
+            self.offset = None;
+            return false;
+        };
+        self.offset.replace(*feed).is_some_and(|before| offset::goes_on(&before, feed))
+    }
+
     fn take(&mut self, step: &Step) {
         let Step { act, line, process: number, limit_mm, compensated, pointing } = *step;
         self.pointing = pointing;
@@ -447,7 +460,11 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         if kinematics != self.kinematics {
             self.switch(kinematics);
         }
-        self.compensated = if compensated { self.compensated + 1 } else { 0 };
+        if !compensated {
+            (self.compensated, self.offset) = (0, None);
+        } else if !self.goes_on(&motion) {
+            self.compensated += 1;
+        }
         let block = Some(self.compensated).filter(|_| compensated && matches!(motion, Motion::Feed(_)));
         let process = Process { number, feed, compensated: block };
         let common = Common { line, process, limit_mm, tool_mm: tool_mm.into(), dwell };

@@ -23,6 +23,7 @@ mod course;
 mod difference;
 mod items;
 mod matcher;
+mod offset;
 mod step;
 mod stretch;
 mod way;

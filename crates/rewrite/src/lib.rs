@@ -37,6 +37,7 @@
 mod check;
 mod chunks;
 mod curves;
+mod cutter;
 mod feed;
 mod guards;
 mod job;

@@ -21,6 +21,7 @@ pub(crate) struct Notices {
     pub(crate) clamped: Notice,
     pub(crate) leaning: Notice,
     pub(crate) compensated: Notice,
+    pub(crate) beside: Notice,
     pub(crate) unknown_side: Notice,
     pub(crate) spirals: Notice,
     pub(crate) held: Notice,
@@ -80,6 +81,7 @@ impl Notices {
         self.clamped.add(&later.clamped);
         self.leaning.add(&later.leaning);
         self.compensated.add(&later.compensated);
+        self.beside.add(&later.beside);
         self.unknown_side.add(&later.unknown_side);
         self.spirals.add(&later.spirals);
         self.held.add(&later.held);
@@ -113,7 +115,14 @@ impl Notices {
             COMPENSATED,
             |count, _| both!("{count} motion(s) under cutter compensation", "движения при коррекции на радиус: {count}"),
             both!("the programmed contour was corrected, not the path of the tool's centre", "исправлен запрограммированный контур, а не путь центра инструмента"),
-            both!("between the two lies the tool radius times the error's change per mm (1 um per mm of radius at 1 mrad); post with compensation computed in CAM where that matters, or give a turning tool its nose in the profile", "между ними — радиус инструмента, умноженный на изменение погрешности на миллиметр (1 мкм на мм радиуса при 1 мрад); где это важно, считайте коррекцию в CAM, а токарному резцу задайте в профиле радиус при вершине"),
+            both!("between the two lies the tool radius times the error's change per mm (1 um per mm of radius at 1 mrad); post with compensation computed in CAM where that matters, or give the profile the cutter's radius (`radii_mm`), a turning tool's nose", "между ними — радиус инструмента, умноженный на изменение погрешности на миллиметр (1 мкм на мм радиуса при 1 мрад); где это важно, считайте коррекцию в CAM или задайте в профиле радиус фрезы (`radii_mm`), токарному резцу — радиус при вершине"),
+        );
+        let largest = Notice { first: self.beside.at_largest.clone(), ..self.beside.clone() };
+        let beside = largest.warning(
+            COMPENSATED,
+            |count, um| both!("{count} motion(s) under cutter compensation, the tool's centre off by up to {um:.2} um more", "движения при коррекции на радиус: {count}, центр инструмента отклоняется ещё до {um:.2} мкм"),
+            both!("the largest; the contour was corrected, and the machine's error is another one radius beside it", "наибольшее; исправлен контур, а на радиус в стороне погрешность станка другая"),
+            both!("post with compensation computed in CAM where that matters", "где это важно, считайте коррекцию в CAM"),
         );
         let unknown_side = self.unknown_side.warning(
             UNKNOWN_SIDE,
@@ -135,7 +144,10 @@ impl Notices {
             both!("the first; near a singularity a rotary axis would have to turn far for little, or its travel ends: the tip alone is corrected there", "первое; у особого положения поворотной оси пришлось бы повернуться далеко ради малого, или кончается её ход: здесь исправлена только вершина"),
             both!("tilt the workpiece in the CAM so that the tool passes further from the axis that turns about it, or take `singular_sin`, `singular_turn_deg`, `singular_share` under [correction] for what the machine bears", "наклоните деталь в CAM, чтобы инструмент проходил дальше от оси, вращающей вокруг него, или задайте `singular_sin`, `singular_turn_deg`, `singular_share` в разделе [correction] по возможностям станка"),
         );
-        [clamped, leaning, compensated, unknown_side, spirals, directions].into_iter().flatten().collect()
+        [clamped, leaning, compensated, beside, unknown_side, spirals, directions]
+            .into_iter()
+            .flatten()
+            .collect()
     }
 }
 
@@ -235,7 +247,7 @@ pub(crate) fn refusal(
         }
         CorrectionError::MustNotSplit { .. } => Diagnostic::error(MUST_NOT_SPLIT, error.text())
             .at(whole, both!("this block must stay one, with none before it: cutter compensation is active", "кадр остаётся одним, и перед ним ничего не вставить: действует коррекция на радиус"))
-            .help(both!("post with compensation computed in CAM, or accept more with `--tolerance`; where an axis with play turns at the start-up, come to it from the side to which it goes on", "считайте коррекцию в CAM или допустите больше ключом `--tolerance`; если при включении коррекции меняет направление ось с люфтом, подходите с той стороны, в которую она пойдёт дальше")),
+            .help(both!("give the profile the radius of a mill's cutter (`radii_mm` under `[tool]`), for pieces that the control offsets alike; or post with compensation computed in CAM, or accept more with `--tolerance`; where an axis with play turns at the start-up, come to it from the side to which it goes on", "задайте в профиле радиус фрезы (`radii_mm` в разделе `[tool]`), чтобы делить кадры, не меняя смещения; или считайте коррекцию в CAM, или допустите больше ключом `--tolerance`; если при включении коррекции меняет направление ось с люфтом, подходите с той стороны, в которую она пойдёт дальше")),
         CorrectionError::TooManyPecks { .. } => Diagnostic::error(TOO_MANY_PECKS, error.text())
             .at(word(b'Q').unwrap_or(whole), both!("far below what a drill bites", "столько сверло не снимает"))
             .help(both!("correct Q: it is the depth of one peck", "исправьте Q: это глубина одного прохода")),

@@ -7,6 +7,7 @@ use nc_syntax::{Block, Letters, Reader};
 use smallvec::SmallVec;
 use toolpath::{Feed, FeedRate, Hole, Motion, Shape};
 
+use crate::cutter;
 use crate::feed;
 use crate::job::Job;
 use crate::nose::{nose_mm, reserved_mm};
@@ -123,6 +124,8 @@ impl Pass<'_> {
             let mut at_deg = self.rotary_start_deg(motion);
             let modal = self.state.interpreter.modal();
             info.reserved_mm = reserved_mm(self.job, modal, motion, block, context)?;
+            let beside = cutter::beside(self.job, modal, motion, context);
+            info.reserved_mm += beside.map_or(0.0, |beside| beside.reserved_mm);
             let mut corrected = self
                 .state
                 .corrector
@@ -377,11 +380,16 @@ impl Pass<'_> {
             if let Some(apart_mm) = radii_apart_mm(motion).filter(|apart_mm| *apart_mm > SPIRAL_MM) {
                 notices.spirals.see(&span, line, apart_mm);
             }
-            if context.compensation.is_some()
-                && matches!(motion, Motion::Feed(_))
-                && nose_mm(self.job, self.state.interpreter.modal()).is_none()
-            {
-                notices.compensated.see(&span, line, 0.0);
+            let modal = self.state.interpreter.modal();
+            match cutter::beside(self.job, modal, motion, context) {
+                Some(beside) if beside.said_mm > 0.0 => notices.beside.see(&span, line, beside.said_mm),
+                None if context.compensation.is_some()
+                    && matches!(motion, Motion::Feed(_))
+                    && nose_mm(self.job, modal).is_none() =>
+                {
+                    notices.compensated.see(&span, line, 0.0);
+                }
+                _ => {}
             }
         }
     }

@@ -114,7 +114,7 @@ pub struct Feed {
 ///
 /// // Into how many blocks a path of so many pieces may go.
 /// let blocks = |division: Division, pieces: usize| match division {
-///     Division::Any => Some(pieces),
+///     Division::Any | Division::Long { .. } => Some(pieces),
 ///     Division::OneBehindLines | Division::One => (pieces == 1).then_some(1),
 /// };
 /// assert_eq!(blocks(Division::default(), 3), Some(3));
@@ -129,6 +129,22 @@ pub enum Division {
     OneBehindLines,
     /// One and none besides: the control offsets block by block (G41, G42), and a line of micrometres would be offset too.
     One,
+    /// Offset by the control, by a radius that is known: pieces that go on from one another, none shorter in the plane of the
+    /// offset, and none besides.
+    Long {
+        /// Length of the shortest, µm.
+        least_um: u32,
+        /// The axis that the offset leaves alone.
+        normal: u8,
+    },
+}
+
+impl Division {
+    /// The control offsets the motion block by block.
+    #[must_use]
+    pub const fn is_offset(self) -> bool {
+        matches!(self, Self::One | Self::Long { .. })
+    }
 }
 
 /// What one block, or one turn of a repeated block, makes the axes do.

@@ -4,7 +4,7 @@
     /usr/bin/python3 tests/judges/shops/unseen.py FOLDER --dialect haas --vpost target/release/vpost [--keep DIR] [--list]
 
 Programs: what has one of --endings, below any folder. The machine is that of `tests/profiles/linuxcnc_samples.toml`, wide
-and crooked, with lengths H1 to H99, the dialect's work offsets and `tool_change = { keeps = "XYZ" }`. Where the
+and crooked, with lengths and radii H1 to H99, the dialect's work offsets and `tool_change = { keeps = "XYZ" }`. Where the
 message asks for it, `--decimal millimetres` is given, and `--start-at` with --start. Each corrected one goes through
 `vpost check` and, where LinuxCNC's interpreter reads both texts, before the second judge (`tests/referee`). Counted:
 corrected, unchanged (no feed motion), refused (by number), WRONG (either judge says no, or `vpost` fails otherwise). Exit
@@ -30,7 +30,7 @@ SHARED = ("linuxcnc", "fanuc", "haas", "mach", "mitsubishi", "centroid")
 START = "100,80,300"
 
 
-def profile(dialect, folder):
+def profile(dialect, folder, radii):
     with open(os.path.join(PROFILES, "linuxcnc_samples.toml"), encoding="utf-8") as file:
         text = file.read()
     text = re.sub(r'errors( *)= "(\w+\.csv)"', lambda m: f'errors{m.group(1)}= "{PROFILES}/{m.group(2)}"', text)
@@ -49,6 +49,8 @@ def profile(dialect, folder):
     text = re.sub(r"\[work_offsets_mm\]\n((.+\n)*)", "[work_offsets_mm]\n" + offsets, text)
     program = "tool_change = { keeps = \"XYZ\" }\n"
     text = text.replace("[program]\n", "[program]\n" + program) if "[program]\n" in text else text + "\n[program]\n" + program
+    if radii:
+        text += "\n[tool.radii_mm]\n" + "".join(f"D{k} = {radii}\n" for k in range(1, 100))
     name = os.path.join(folder, "machine.toml")
     with open(name, "w", encoding="utf-8") as file:
         file.write(text)
@@ -159,6 +161,7 @@ def main():
     words.add_argument("--dialect", required=True)
     words.add_argument("--vpost", default="target/release/vpost")
     words.add_argument("--endings", default="nc,ngc,gcode,gc,tap,cnc,mpf,spf,min,eia,ptp,txt")
+    words.add_argument("--radii", type=float, help="radius of every D, mm; left out: the profile knows none")
     words.add_argument("--start", action="store_true", help=f"--start-at {START} where the message names it")
     words.add_argument("--list", action="store_true", help="a line a program")
     options = words.parse_args()
@@ -173,7 +176,7 @@ def main():
     counted, seconds, wrong = collections.Counter(), collections.Counter(), 0
     causes = {}
     with tempfile.TemporaryDirectory() as work:
-        machine = profile(options.dialect, work)
+        machine = profile(options.dialect, work, options.radii)
         for path in paths:
             word, number, message, second = one(options, machine, path, work)
             counted[word] += 1
