@@ -189,7 +189,7 @@ fn few_places_tell_a_field_that_knows_no_axes() {
     let swells = |q: &Vector| -> Vector {
         let one = |(centre, reach, error_um): &(Vector, f64, Vector)| {
             let from = (q - centre).component_div(&size) * (2.0 / reach);
-            error_um * (1e-3 * units::math::exp(-1.5 * from.norm_squared()))
+            error_um * (4e-3 * units::math::exp(-2.5 * from.norm_squared()))
         };
         bumps.iter().map(one).sum()
     };
@@ -211,5 +211,6 @@ fn few_places_tell_a_field_that_knows_no_axes() {
     }
     let left_um = 1e3 * (sum / count as f64).sqrt();
     println!("{left_um:.3} um left of swells, {:?}", field.made());
-    assert!(left_um < 1.3, "{left_um}");
+    // The classes of axes alone leave 3 to 6 um of such fields.
+    assert!(left_um < 2.4, "{left_um}");
 }
