@@ -40,9 +40,6 @@ pub(crate) enum Term {
     /// Rows whose direction of approach on an axis is not known, among others where it is: their mean may
     /// lie anywhere between the two sides. First the axis, then the component it is seen in.
     UnknownApproach(usize),
-    /// Readings drift along an axis in the order of the rows, which is all that is known of their times; coefficient in µm
-    /// per thousand lines of the file.
-    InOrder(usize),
     /// One coefficient of an effect, in the unit of its name.
     Effect {
         /// Which.
@@ -81,7 +78,6 @@ impl Term {
                 (true, _) => unit(component - 3).cross(&geometry.nominal_tip_mm(&row.command)) * 1e-3,
             },
             Self::BarLength => Vector::zeros(),
-            Self::InOrder(axis) => unit(*axis) * (1e-3 * row.line as f64),
             Self::UnknownApproach(axis) => {
                 if row.command.direction[*axis] == 0 {
                     unit(*axis)
@@ -133,7 +129,7 @@ impl Term {
         match *self {
             // Turned with the table it is seen in any.
             Self::Effect { .. } if geometry.has_table() => true,
-            Self::SetupShift(axis) | Self::UnknownApproach(axis) | Self::InOrder(axis) => axis == component,
+            Self::SetupShift(axis) | Self::UnknownApproach(axis) => axis == component,
             Self::SetupRotation(axis) | Self::RunRotation { about: axis, .. } => axis != component,
             Self::InstrumentShift { axis, .. } => axis == component,
             Self::StationFrame { component: shift @ 0..=2, .. } => shift == component,

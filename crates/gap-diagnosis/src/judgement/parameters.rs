@@ -106,10 +106,6 @@ impl Assembly<'_> {
             .candidates
             .iter()
             .enumerate()
-            .filter(|(_, candidate)| {
-                let first = candidate.variants.first().and_then(|v| v.columns.first());
-                first.is_some_and(|c| matches!(self.model.library.terms[*c], Term::Effect { .. }))
-            })
             .map(|(index, candidate)| {
                 // Passes the F test nine times in ten.
                 let tail = 0.5 * crate::search::trial::LEVEL / self.model.library.questions(index);

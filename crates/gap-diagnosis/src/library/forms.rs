@@ -90,7 +90,6 @@ impl Library {
                     [&[0, 1, 2], &[0], &[1], &[2], &[0, 3], &[1, 4], &[2, 5], &[0, 1, 2, 3, 4, 5]];
                 self.selections(kind, none, &lists)
             }
-            EffectKind::InstrumentDrift if seen.in_order => self.in_order(),
             EffectKind::Step(_) => self.steps(kind, seen),
             EffectKind::Local(a) if travels(a) => self.places(kind, &seen.sampling[a]),
             EffectKind::Spike(a) => SPIKES_MM
@@ -177,16 +176,6 @@ impl Library {
         let double =
             double.map(|(a, b)| Variant { columns: vec![*a, *b], enriched: true, only_rival: false });
         single.chain(double).collect()
-    }
-
-    /// A drift in the order of the rows. How fast it was nobody knows, so that it is no cause, but what it does as well as a
-    /// cause is no proof of that.
-    fn in_order(&mut self) -> Vec<Variant> {
-        let first = self.terms.len();
-        self.terms.extend([0, 1, 2].map(Term::InOrder));
-        let form = |columns: Vec<usize>| Variant { columns, enriched: false, only_rival: true };
-        let one = (first..first + 3).map(|column| form(vec![column]));
-        one.chain([form((first..first + 3).collect())]).collect()
     }
 
     fn steps(&mut self, kind: EffectKind, seen: &Seen) -> Vec<Variant> {

@@ -16,8 +16,6 @@ pub(super) struct Seen {
     pub(super) unknown_direction: [bool; 3],
     pub(super) temperature: [bool; 3],
     pub(super) time: Option<(f64, f64)>,
-    /// No row has its time: their order is all that is known.
-    pub(super) in_order: bool,
     pub(super) load: bool,
     pub(super) feed: bool,
     /// Different loads.
@@ -73,9 +71,6 @@ impl Seen {
                     .is_some_and(|(low, high)| high > low || high != data.geometry.reference_temp_c)
             }),
             time: range(rows, &|r| r.conditions.time_s).filter(|(a, b)| b > a),
-            in_order: rows
-                .iter()
-                .all(|r| r.conditions.time_s.is_none() && matches!(r.reading, Reading::Displacement(_))),
             load: varies(&|r| r.conditions.load_kg),
             feed: rows.iter().any(|r| r.conditions.feed_mm_min.is_some_and(|f| f > 0.0)),
             loads: distinct(rows, &|r| r.conditions.load_kg),

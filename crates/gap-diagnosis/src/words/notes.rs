@@ -5,11 +5,9 @@ use diagnostic::{Text, both};
 use crate::equations::noise::{Noise, NoiseSource};
 use crate::equations::observation::{Measurements, Row};
 use crate::equations::set_up::Clamping;
-use crate::equations::term::Term;
 use crate::judgement::answer::Cause;
 use crate::judgement::assembly::Assembly;
 use crate::judgement::structure::jerks;
-use crate::library::candidates::Part;
 use crate::search::bounds::Harm;
 
 impl Assembly<'_> {
@@ -48,7 +46,6 @@ impl Assembly<'_> {
             ));
         }
         notes.extend(self.setup_notes());
-        notes.extend(self.order_note());
         if let Some(ratio) = self.noise_ratio().filter(|r| !(1.0 / 1.6..=1.6).contains(r)) {
             notes.push(both!(
                 "The scatter of the rows is {ratio:.2} times what u_um says; the rows' own scatter was used.",
@@ -71,20 +68,6 @@ impl Assembly<'_> {
             ));
         }
         notes
-    }
-
-    /// That a drift in the order of the rows does as much as a cause.
-    fn order_note(&self) -> Option<Text> {
-        let library = &self.model.library;
-        let drifts = |part: Part| {
-            library.form(part).columns.iter().any(|c| matches!(library.terms[*c], Term::InOrder(_)))
-        };
-        let doubted = self.ordered.iter().find(|ranked| ranked.told().any(|rival| drifts(rival.part)))?;
-        let cause = library.kind(doubted.part);
-        Some(both!(
-            "No row has its time_s, and a drift of the readings in the order of the rows does as much as {cause}: write down the times, or read the places in another order.",
-            "Ни у одной строки нет time_s, а дрейф отсчётов по порядку строк даёт то же, что {cause}: записывайте время или измерьте точки в другом порядке."
-        ))
     }
 
     /// What the set-up holds that its reader should know.
