@@ -36,6 +36,8 @@ pub(crate) struct Evidence {
     pub carries: bool,
     /// Repeats of one command differ by more than neighbouring readings do.
     pub slow: bool,
+    /// The rows scatter by more than the noise that was found, or that what comes back leaves room for.
+    pub exceeds: bool,
     /// The causes take off less than [`WORTH_NAMING`] of the gap's RMS.
     pub trifling: bool,
     /// Together the causes move places between those measured by more than any reading could mean, or cancel each other.
@@ -122,7 +124,8 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 /// 1. UNDERPOWERED: fewer than 12 equations beside the set-up, one run (set-up and machine are the same then), or a design
 ///    that shows no effect of the library.
 /// 2. Nothing named: UNKNOWN where more than [`PHI_PARTIAL`] of the gap is structure by the lack-of-fit test, NOISE MODEL
-///    SUSPECT where the scatter is not what the file states by more than [`NOISE_FACTOR`], else NO GAP.
+///    SUSPECT where the scatter is not what the file states by more than [`NOISE_FACTOR`], or exceeds the noise that was found
+///    by as much (few readings may prove no structure, and are no all-clear either), else NO GAP.
 /// 3. Something named and structure left: UNDERPOWERED where the causes are not known better than the gap is large in the
 ///    corners of the volume, UNKNOWN where more than [`PHI_UNKNOWN`] is left, else PARTIAL. A share alone is not enough: a small
 ///    gap leaves a large share of noise; a test alone is not enough: with many rows a nanometre is significant.
@@ -168,7 +171,7 @@ fn on_the_rows(e: &Evidence) -> Verdict {
             return Verdict::Unknown;
         }
         let suspect = e.noise_ratio.is_some_and(|r| !(1.0 / NOISE_FACTOR..=NOISE_FACTOR).contains(&r));
-        return if suspect || e.slow { Verdict::NoiseModelSuspect } else { Verdict::NoGap };
+        return if suspect || e.slow || e.exceeds { Verdict::NoiseModelSuspect } else { Verdict::NoGap };
     }
     if e.swings {
         return Verdict::Unknown;
@@ -208,6 +211,7 @@ mod tests {
     };
 
     #[test]
+        exceeds: false,
     fn one_rule_after_the_other() {
         let none = Evidence { causes: 0, ..CLEAR };
         let left = Evidence { phi: 0.2, lack_of_fit_p: 1e-6, ..CLEAR };
