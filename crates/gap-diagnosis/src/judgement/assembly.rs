@@ -241,6 +241,7 @@ impl<'a> Assembly<'a> {
             exceeds: self.exceeds_noise(),
             trifling: gap.rms_um - after_um < WORTH_NAMING * gap.rms_um,
             swings: matches!(harm, Some(Harm::Swings(..) | Harm::Cancels(..))),
+            shifts: matches!(harm, Some(Harm::Shifts(..))),
             unseen: None,
         }
     }

@@ -42,6 +42,8 @@ pub(crate) struct Evidence {
     pub trifling: bool,
     /// Together the causes move places between those measured by more than any reading could mean, or cancel each other.
     pub swings: bool,
+    /// Nothing may be written of the causes: they would shift all places measured by more than was ever read.
+    pub shifts: bool,
     /// What rows that no fit has seen say.
     pub unseen: Option<Unseen>,
 }
@@ -129,9 +131,10 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 /// 3. Something named and structure left: UNDERPOWERED where the causes are not known better than the gap is large in the
 ///    corners of the volume, UNKNOWN where more than [`PHI_UNKNOWN`] is left, else PARTIAL. A share alone is not enough: a small
 ///    gap leaves a large share of noise; a test alone is not enough: with many rows a nanometre is significant.
-/// 4. AMBIGUOUS where any cause has rivals; this stands before the next rule, since a drift of the instrument that a warm-up of
+/// 4. PARTIAL where nothing may be written of the causes: NAMED asks to act on them.
+/// 5. AMBIGUOUS where any cause has rivals; this stands before the next rule, since a drift of the instrument that a warm-up of
 ///    the machine explains as well is not known to be the instrument's.
-/// 5. NOISE MODEL SUSPECT where every cause is a fault of the instrument, else NAMED.
+/// 6. NOISE MODEL SUSPECT where every cause is a fault of the instrument, else NAMED.
 ///
 /// Causes that swing between the places measured, or cancel each other, explain nothing, however well they fit: UNKNOWN.
 ///
@@ -183,6 +186,9 @@ fn on_the_rows(e: &Evidence) -> Verdict {
         }
         return if e.phi > PHI_UNKNOWN || e.trifling { Verdict::Unknown } else { Verdict::Partial };
     }
+    if e.shifts {
+        return Verdict::Partial;
+    }
     if e.ambiguous {
         return Verdict::Ambiguous;
     }
@@ -205,13 +211,14 @@ mod tests {
         noise_ratio: None,
         carries: true,
         slow: false,
+        exceeds: false,
         trifling: false,
         swings: false,
+        shifts: false,
         unseen: None,
     };
 
     #[test]
-        exceeds: false,
     fn one_rule_after_the_other() {
         let none = Evidence { causes: 0, ..CLEAR };
         let left = Evidence { phi: 0.2, lack_of_fit_p: 1e-6, ..CLEAR };
@@ -240,6 +247,11 @@ mod tests {
             (Evidence { swings: true, ..CLEAR }, Verdict::Unknown),
             (Evidence { swings: true, ambiguous: true, ..CLEAR }, Verdict::Unknown),
             (Evidence { swings: true, ..none }, Verdict::NoGap),
+            // What may not be written is not NAMED.
+            (Evidence { shifts: true, ..CLEAR }, Verdict::Partial),
+            (Evidence { shifts: true, ambiguous: true, ..CLEAR }, Verdict::Partial),
+            (Evidence { exceeds: true, ..none }, Verdict::NoiseModelSuspect),
+            (Evidence { exceeds: true, ..CLEAR }, Verdict::Named),
         ];
         for (evidence, expected) in cases {
             assert_eq!(verdict(&evidence), expected, "{evidence:?}");

@@ -107,6 +107,7 @@ fn a_scale_read_on_a_short_way_far_from_zero_is_not_written() {
     assert!(near.corrects() && near.withheld.is_none());
     let far = answer(250.0, 0.1);
     assert_eq!(names(&far), ["scale.Z"]);
+    assert_eq!((near.verdict, far.verdict), (Verdict::Named, Verdict::Partial), "{}", far.sentence);
     assert!(!far.corrects());
     assert!(far.withheld.is_some_and(|words| words.english().contains("count from machine zero")));
     assert!(far.causes[0].remedy.english().starts_with("Do not act on this"));

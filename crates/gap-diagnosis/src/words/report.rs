@@ -79,6 +79,12 @@ impl Assembly<'_> {
                 unseen.and_then(|u| u.refutation(&holdout.unwrap_or(self.data).runs))
             };
             let mut said = sentence(verdict, &gap, &causes, &leftover);
+            if verdict == Verdict::Partial && evidence.shifts {
+                said.push(&Text::pair(
+                    " They count from machine zero, too far from what was measured to be written.",
+                    " Отсчёт идёт от нуля станка, слишком далеко от измеренного, чтобы это записывать.",
+                ));
+            }
             said.push(&refuted.unwrap_or_default());
             said
         };
