@@ -73,7 +73,9 @@ impl Assembly<'_> {
             )
         } else {
             let unseen = evidence.unseen;
-            let refuted = if causes.is_empty() {
+            let refuted = if fine {
+                None
+            } else if causes.is_empty() {
                 unseen.and_then(|u| u.gap_note())
             } else {
                 unseen.and_then(|u| u.refutation(&holdout.unwrap_or(self.data).runs))
