@@ -77,7 +77,7 @@ pub(crate) fn estimate(
         }
         few => {
             // What comes back in every run is no noise, however much neighbouring places differ by it.
-            let returns = from_returns(rows, scalars, residuals_um).filter(|r| r.degrees >= ENOUGH);
+            let returns = bound(rows, scalars, residuals_um);
             let below = |found: &Noise, factor: f64| {
                 neighbours.is_some_and(|n| found.variance.max(floor) * factor * factor < n.variance)
             };
@@ -94,6 +94,14 @@ pub(crate) fn estimate(
         }
     };
     found.map(|noise| Noise { variance: noise.variance.max(floor), ..noise })
+}
+
+/// What no noise exceeds: the scatter of the same commands from run to run, where there are enough of them.
+#[must_use]
+pub(crate) fn bound(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
+    let floor = quantum_um(scalars).powi(2) / 12.0;
+    let found = from_returns(rows, scalars, residuals_um).filter(|found| found.degrees >= ENOUGH)?;
+    Some(Noise { variance: found.variance.max(floor), ..found })
 }
 
 /// Step of the readings, µm, 0 where they have none: a display that shows whole micrometres gives few different values.
@@ -189,7 +197,10 @@ fn from_returns(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Optio
         groups.values().flat_map(|group| group.windows(2).map(|w| (w[1] - w[0]).abs())).collect();
     let degrees = differences.len() as f64 / 3.0;
     let sigma = 1.4826 / std::f64::consts::SQRT_2 * median(&mut differences)?;
-    Some(Noise { variance: sigma * sigma, degrees, source: NoiseSource::Returns, slow: 1.0 })
+    // Where most of them read the very same number, the step of the display is what scatters.
+    let square = differences.iter().map(|d| d * d).sum::<f64>() / (2.0 * differences.len() as f64);
+    let variance = if sigma > 0.0 { sigma * sigma } else { square };
+    Some(Noise { variance, degrees, source: NoiseSource::Returns, slow: 1.0 })
 }
 
 /// What a polynomial of second degree in the place leaves of every run that has readings enough for it.

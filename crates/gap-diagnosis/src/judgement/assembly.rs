@@ -8,14 +8,14 @@ use machine_model::effects::EffectKind;
 use crate::equations::align::{FREE_OFFSETS, aligned, rms, row_lengths};
 use crate::equations::f_test::f_tail;
 use crate::equations::linear::Products;
-use crate::equations::noise::{Noise, estimate};
+use crate::equations::noise::{Noise, bound, estimate};
 use crate::equations::observation::{Measurements, Scalar};
 use crate::equations::set_up::frame;
 use crate::equations::term::Term;
 use crate::judgement::answer::{Cause, Gap, Leftover, Lookalike};
 use crate::judgement::rivals::{Rival, rivals};
 use crate::judgement::structure::{correlates, lack_of_fit};
-use crate::judgement::verdict::{Evidence, LACK_OF_FIT, WORTH_NAMING};
+use crate::judgement::verdict::{Evidence, LACK_OF_FIT, NOISE_FACTOR, WORTH_NAMING};
 use crate::library::candidates::Part;
 use crate::search::bounds::{Bounds, Harm};
 use crate::search::crossval::Folds;
@@ -238,10 +238,25 @@ impl<'a> Assembly<'a> {
             noise_ratio: self.noise_ratio(),
             carries: corner_um <= gap.rms_um,
             slow: self.noise.is_some_and(|n| n.is_slow()) || model.caution.lag(1) > SLOW_PHI,
+            exceeds: self.exceeds_noise(),
             trifling: gap.rms_um - after_um < WORTH_NAMING * gap.rms_um,
             swings: matches!(harm, Some(Harm::Swings(..) | Harm::Cancels(..))),
+            shifts: matches!(harm, Some(Harm::Shifts(..))),
             unseen: None,
         }
+    }
+
+    /// True where the rows scatter by far more than the noise that was found, or than the same commands do in other runs, which
+    /// no noise exceeds: three cycles over five places prove no structure, and agree with nothing.
+    fn exceeds_noise(&self) -> bool {
+        /// Level of the test.
+        const LEVEL: f64 = 0.05;
+        let (rows, model) = (&self.data.rows, self.model);
+        let returns = bound(rows, &model.scalars, &model.solution.residuals_um);
+        self.noise.iter().chain(&returns).any(|noise| {
+            let ratio = self.variance() / noise.variance.max(1e-12);
+            ratio > NOISE_FACTOR * NOISE_FACTOR && f_tail(ratio, self.degrees(), noise.degrees) < LEVEL
+        })
     }
 
     /// The first cause that cannot be told from others, and these, the nearest first.

@@ -4,6 +4,7 @@ use diagnostic::Text;
 use machine_model::Vector;
 
 use machine_model::effects::EffectKind;
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::equations::align::{aligned, magnitude_errors, rms, row_lengths};
 use crate::equations::noise::tail_factor;
@@ -182,8 +183,8 @@ fn worse_run(
     const ROWS: usize = 6;
     /// Less is nothing that anyone acts on, as a share of the RMS.
     const GROWS: f64 = 0.05;
-    /// Standard errors: any of dozens of runs may be the worst one by chance.
-    const NO_CHANCE: f64 = 3.5;
+    /// So seldom any of the runs is the worst one by chance.
+    const CHANCE: f64 = 0.01;
     let rows = {
         let mut rows: Vec<usize> = scalars.iter().map(|s| s.row).collect();
         rows.dedup();
@@ -195,17 +196,20 @@ fn worse_run(
     {
         runs[data.rows[*row].run].push((before * before, after * after));
     }
-    let judged = runs.iter().enumerate().filter(|(_, rows)| rows.len() >= ROWS).filter_map(|(run, rows)| {
+    let judged = || runs.iter().enumerate().filter(|(_, rows)| rows.len() >= ROWS);
+    let level = CHANCE / judged().count().max(1) as f64;
+    let worse = judged().filter_map(|(run, rows)| {
         let count = rows.len() as f64;
         let mean = |of: &dyn Fn(&(f64, f64)) -> f64| rows.iter().map(of).sum::<f64>() / count;
         let (before, after) = (mean(&|r| r.0), mean(&|r| r.1));
         let grown = after - before;
         let scatter = mean(&|r| (r.1 - r.0 - grown).powi(2)) / (count - 1.0) * as_one;
         let worse = WorseRun { run, before_um: before.sqrt(), after_um: after.sqrt() };
-        let counts = worse.after_um > (1.0 + GROWS) * worse.before_um && grown > NO_CHANCE * scatter.sqrt();
+        let no_chance = StudentsT::new(0.0, 1.0, count - 1.0).map_or(3.5, |t| t.inverse_cdf(1.0 - level));
+        let counts = worse.after_um > (1.0 + GROWS) * worse.before_um && grown > no_chance * scatter.sqrt();
         counts.then_some(worse)
     });
-    judged.max_by(|a, b| (a.after_um / a.before_um).total_cmp(&(b.after_um / b.before_um)))
+    worse.max_by(|a, b| (a.after_um / a.before_um).total_cmp(&(b.after_um / b.before_um)))
 }
 
 fn finished(
@@ -233,4 +237,57 @@ pub(crate) fn residuals(scalars: &[Scalar], before: &[f64], after: &[f64]) -> Ve
             after_um: *a,
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use machine_model::Command;
+    use machine_model::effects::{Conditions, EffectGeometry};
+
+    use super::*;
+    use crate::equations::observation::Row;
+
+    /// Fifty rows a run, of which every second one grows by 3 µm² more than the other shrinks.
+    fn grown(runs: usize, growth: f64) -> Option<WorseRun> {
+        let row = |run: usize| Row {
+            run,
+            command: Command {
+                linear_mm: Vector::zeros(),
+                rotary_rad: Vector::zeros(),
+                tool_mm: Vector::zeros(),
+                direction: [0; 3],
+                rotary_play: Default::default(),
+            },
+            conditions: Conditions::default(),
+            predicted_mm: Vector::zeros(),
+            u_um: [None; 3],
+            instrument: None,
+            station: None,
+            artefact: None,
+            reading: Reading::Displacement([Some(0.0), None, None]),
+            line: 0,
+        };
+        let rows: Vec<Row> = (0..50 * runs).map(|k| row(k / 50)).collect();
+        let names = (0..runs).map(|run| run.to_string()).collect();
+        let data =
+            Measurements { runs: names, instruments: Vec::new(), rows, geometry: EffectGeometry::default() };
+        let scalars = data.scalars(None);
+        let before: Vec<f64> = scalars.iter().map(|_| 4.0).collect();
+        let after = |k: usize| {
+            let change = if k / 50 == 1 { growth } else { -4.0 };
+            let swing = if k % 2 == 0 { 7.0 } else { -7.0 };
+            (16.0 + change + swing).sqrt()
+        };
+        let after: Vec<f64> = (0..scalars.len()).map(after).collect();
+        worse_run(&data, &scalars, &before, &after, 1.0)
+    }
+
+    /// A growth of 2.9 standard errors of a run's squares: among two runs it is no chance, among sixty it may be.
+    #[test]
+    fn the_worst_of_many_runs_may_be_worse_by_chance() {
+        assert_eq!(grown(2, 2.9).map(|worse| worse.run), Some(1));
+        assert_eq!(grown(60, 2.9), None);
+        assert_eq!(grown(60, 4.5).map(|worse| worse.run), Some(1));
+        assert_eq!(grown(2, 1.5), None);
+    }
 }

@@ -36,10 +36,14 @@ pub(crate) struct Evidence {
     pub carries: bool,
     /// Repeats of one command differ by more than neighbouring readings do.
     pub slow: bool,
+    /// The rows scatter by more than the noise that was found, or that what comes back leaves room for.
+    pub exceeds: bool,
     /// The causes take off less than [`WORTH_NAMING`] of the gap's RMS.
     pub trifling: bool,
     /// Together the causes move places between those measured by more than any reading could mean, or cancel each other.
     pub swings: bool,
+    /// Nothing may be written of the causes: they would shift all places measured by more than was ever read.
+    pub shifts: bool,
     /// What rows that no fit has seen say.
     pub unseen: Option<Unseen>,
 }
@@ -122,13 +126,15 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 /// 1. UNDERPOWERED: fewer than 12 equations beside the set-up, one run (set-up and machine are the same then), or a design
 ///    that shows no effect of the library.
 /// 2. Nothing named: UNKNOWN where more than [`PHI_PARTIAL`] of the gap is structure by the lack-of-fit test, NOISE MODEL
-///    SUSPECT where the scatter is not what the file states by more than [`NOISE_FACTOR`], else NO GAP.
+///    SUSPECT where the scatter is not what the file states by more than [`NOISE_FACTOR`], or exceeds the noise that was found
+///    by as much (few readings may prove no structure, and are no all-clear either), else NO GAP.
 /// 3. Something named and structure left: UNDERPOWERED where the causes are not known better than the gap is large in the
 ///    corners of the volume, UNKNOWN where more than [`PHI_UNKNOWN`] is left, else PARTIAL. A share alone is not enough: a small
 ///    gap leaves a large share of noise; a test alone is not enough: with many rows a nanometre is significant.
-/// 4. AMBIGUOUS where any cause has rivals; this stands before the next rule, since a drift of the instrument that a warm-up of
+/// 4. PARTIAL where nothing may be written of the causes: NAMED asks to act on them.
+/// 5. AMBIGUOUS where any cause has rivals; this stands before the next rule, since a drift of the instrument that a warm-up of
 ///    the machine explains as well is not known to be the instrument's.
-/// 5. NOISE MODEL SUSPECT where every cause is a fault of the instrument, else NAMED.
+/// 6. NOISE MODEL SUSPECT where every cause is a fault of the instrument, else NAMED.
 ///
 /// Causes that swing between the places measured, or cancel each other, explain nothing, however well they fit: UNKNOWN.
 ///
@@ -168,7 +174,7 @@ fn on_the_rows(e: &Evidence) -> Verdict {
             return Verdict::Unknown;
         }
         let suspect = e.noise_ratio.is_some_and(|r| !(1.0 / NOISE_FACTOR..=NOISE_FACTOR).contains(&r));
-        return if suspect || e.slow { Verdict::NoiseModelSuspect } else { Verdict::NoGap };
+        return if suspect || e.slow || e.exceeds { Verdict::NoiseModelSuspect } else { Verdict::NoGap };
     }
     if e.swings {
         return Verdict::Unknown;
@@ -179,6 +185,9 @@ fn on_the_rows(e: &Evidence) -> Verdict {
             return Verdict::Underpowered;
         }
         return if e.phi > PHI_UNKNOWN || e.trifling { Verdict::Unknown } else { Verdict::Partial };
+    }
+    if e.shifts {
+        return Verdict::Partial;
     }
     if e.ambiguous {
         return Verdict::Ambiguous;
@@ -202,8 +211,10 @@ mod tests {
         noise_ratio: None,
         carries: true,
         slow: false,
+        exceeds: false,
         trifling: false,
         swings: false,
+        shifts: false,
         unseen: None,
     };
 
@@ -236,6 +247,11 @@ mod tests {
             (Evidence { swings: true, ..CLEAR }, Verdict::Unknown),
             (Evidence { swings: true, ambiguous: true, ..CLEAR }, Verdict::Unknown),
             (Evidence { swings: true, ..none }, Verdict::NoGap),
+            // What may not be written is not NAMED.
+            (Evidence { shifts: true, ..CLEAR }, Verdict::Partial),
+            (Evidence { shifts: true, ambiguous: true, ..CLEAR }, Verdict::Partial),
+            (Evidence { exceeds: true, ..none }, Verdict::NoiseModelSuspect),
+            (Evidence { exceeds: true, ..CLEAR }, Verdict::Named),
         ];
         for (evidence, expected) in cases {
             assert_eq!(verdict(&evidence), expected, "{evidence:?}");

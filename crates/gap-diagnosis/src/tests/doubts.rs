@@ -107,6 +107,7 @@ fn a_scale_read_on_a_short_way_far_from_zero_is_not_written() {
     assert!(near.corrects() && near.withheld.is_none());
     let far = answer(250.0, 0.1);
     assert_eq!(names(&far), ["scale.Z"]);
+    assert_eq!((near.verdict, far.verdict), (Verdict::Named, Verdict::Partial), "{}", far.sentence);
     assert!(!far.corrects());
     assert!(far.withheld.is_some_and(|words| words.english().contains("count from machine zero")));
     assert!(far.causes[0].remedy.english().starts_with("Do not act on this"));
@@ -329,32 +330,64 @@ fn play_does_not_change_its_sign() {
     assert_eq!(names(&falls), ["backlash.X"], "{}", falls.sentence);
 }
 
-/// Three cycles over five places, both ways, as ISO 230-2 has them: neighbouring places differ by 10 µm and more, every command
-/// reads the same each time. That is no noise of 10 µm.
-#[test]
-fn what_comes_back_in_three_runs_is_no_noise() {
+/// Cycles over five places of Z, there and back, as ISO 230-2 has them; each is a run, and no time is written. What is read, µm,
+/// of cycle, place, way and row.
+fn cycles(count: usize, mut read: impl FnMut(usize, usize, i8, usize) -> f64) -> Measurements {
     let base = measured(SILENT, nothing);
-    let mut random = ChaCha8Rng::seed_from_u64(11);
     let mut data = Measurements { runs: Vec::new(), rows: Vec::new(), ..base.clone() };
-    for cycle in 0..3_usize {
+    for cycle in 0..count {
         data.runs.push(format!("cycle {cycle}"));
-        for way in [1, -1] {
-            for k in 0..5_usize {
-                let k = if way == 1 { k } else { 4 - k };
-                let saw = [0.0, 14.0, -9.0, 16.0, 3.0][k] + f64::from(way) * [8.0, -10.0, -9.0, 8.0, 15.0][k];
-                let mut row = base.rows[0];
-                row.run = cycle;
-                row.command.linear_mm = Vector::new(40.0, 40.0, 40.0 + 2.0 * k as f64);
-                row.command.direction = [0, 0, way];
-                row.conditions = Conditions::default();
-                row.reading = Reading::Displacement([None, None, Some(saw + 0.3 * normal(&mut random))]);
-                data.rows.push(row);
-            }
+        for nth in 0..10_usize {
+            let (k, way) = if nth < 5 { (nth, 1) } else { (9 - nth, -1) };
+            let mut row = base.rows[0];
+            row.run = cycle;
+            row.line = data.rows.len() as u64 + 2;
+            row.command.linear_mm = Vector::new(40.0, 40.0, 40.0 + 2.0 * k as f64);
+            row.command.direction = [0, 0, way];
+            row.conditions = Conditions::default();
+            row.reading = Reading::Displacement([None, None, Some(read(cycle, k, way, data.rows.len()))]);
+            data.rows.push(row);
         }
     }
+    data
+}
+
+/// A saw-tooth, and another one in the reversal.
+fn saw_um(k: usize, way: i8) -> f64 {
+    [0.0, 14.0, -9.0, 16.0, 3.0][k] + f64::from(way) * [8.0, -10.0, -9.0, 8.0, 15.0][k]
+}
+
+/// Neighbouring places differ by 10 µm and more, every command reads the same each time. That is no noise of 10 µm.
+#[test]
+fn what_comes_back_in_three_runs_is_no_noise() {
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let data = cycles(3, |_, k, way, _| saw_um(k, way) + 0.3 * normal(&mut random));
     let answer = diagnose(&data, None, &Options::default());
     assert!(answer.gap.noise_um < 2.0, "{:?}", answer.gap);
     assert_eq!(answer.verdict, Verdict::Unknown, "{}", answer.sentence);
+}
+
+/// Most readings come back to the very same step of the display, of which few are seen twice: the noise is that step and not
+/// nothing, of which any gap is a million times.
+#[test]
+fn what_comes_back_to_the_step_of_the_display_has_the_noise_of_that_step() {
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let step_um = 0.41;
+    let mut shown = |um: f64| ((um + 0.1 * normal(&mut random)) / step_um).round() * step_um;
+    let answer = diagnose(&cycles(3, |_, k, way, _| shown(saw_um(k, way))), None, &Options::default());
+    assert!((0.02..1.0).contains(&answer.gap.noise_um), "{:?}", answer.gap);
+    assert_eq!(answer.verdict, Verdict::Unknown, "{}", answer.sentence);
+}
+
+/// A gap below the step of the control is none, whatever unseen rows make of it.
+#[test]
+fn what_no_control_can_correct_is_not_told_as_a_gap_of_unseen_rows() {
+    let data = measured(GOOD, nothing);
+    let held = measured(Plan { seed: 2, ..GOOD }, |row| 3.0 * backlash_um(row));
+    let options = Options { resolution_um: 100.0, ..Options::default() };
+    let answer = diagnose(&data, Some(&held), &options);
+    assert_eq!(answer.verdict, Verdict::NoGap);
+    assert!(!answer.sentence.english().contains("not fitted"), "{}", answer.sentence);
 }
 
 /// A load that is one number per run: the forecast for other runs is what they show.

@@ -73,12 +73,20 @@ impl Assembly<'_> {
             )
         } else {
             let unseen = evidence.unseen;
-            let refuted = if causes.is_empty() {
+            let refuted = if fine {
+                None
+            } else if causes.is_empty() {
                 unseen.and_then(|u| u.gap_note())
             } else {
                 unseen.and_then(|u| u.refutation(&holdout.unwrap_or(self.data).runs))
             };
             let mut said = sentence(verdict, &gap, &causes, &leftover);
+            if verdict == Verdict::Partial && evidence.shifts {
+                said.push(&Text::pair(
+                    " They count from machine zero, too far from what was measured to be written.",
+                    " Отсчёт идёт от нуля станка, слишком далеко от измеренного, чтобы это записывать.",
+                ));
+            }
             said.push(&refuted.unwrap_or_default());
             said
         };
