@@ -204,6 +204,9 @@ fn what_a_lathe_does_not_do_is_refused_by_name() {
     assert!(messages(&lathe).contains("no spindle"), "{}", messages(&lathe));
 }
 
+/// A profile, changes of it, a program, and what its refusal says.
+type Refused<'a> = (String, Vec<(&'a str, &'a str)>, &'a str, &'a str);
+
 /// Each mistake that people make with a lathe has a message of its own: its number, and words that no other one has.
 #[test]
 fn bad_input_of_lathes_is_told_by_name() {
@@ -215,7 +218,7 @@ fn bad_input_of_lathes_is_told_by_name() {
     let clamping = ("clamping       = \"chuck-tailstock\"", "");
     let beyond = ("at_mm     = 300.0", "at_mm     = 301.0");
     let stations = ("[work_offsets_mm]", "turret_um = { H2 = [1, 2] }\n[work_offsets_mm]");
-    let cases: Vec<(String, Vec<(&str, &str)>, &str, &str)> = vec![
+    let cases: Vec<Refused<'_>> = vec![
         (block("Z-5."), vec![unsaid], "VP0250", "a diameter or a radius is not said"),
         (block("Z-5."), vec![("g_code_system = \"A\"", "")], "VP", "G-code system"),
         (block("X-20.\nZ-30."), vec![], "VP0252", "turning below the axis"),

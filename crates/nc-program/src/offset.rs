@@ -87,7 +87,7 @@ pub(crate) fn begin(env: &Environment<'_>, words: &Words<'_, '_, '_>, before: &M
 fn radius_nm(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Option<u32> {
     // D beside G41.1 is the diameter itself; D1 of Siemens is an edge of the tool that T names.
     let by_diameter = |code: &Preparatory<'_>| {
-        matches!(code.entry.action, Action::Compensation(_)) && code.entry.code.0 % 10 != 0
+        matches!(code.entry.action, Action::Compensation(_)) && !code.entry.code.0.is_multiple_of(10)
     };
     if env.dialect.edge_in_d || words.codes.iter().any(by_diameter) {
         return None;

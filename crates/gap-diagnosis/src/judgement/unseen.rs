@@ -275,7 +275,7 @@ mod tests {
         let before: Vec<f64> = scalars.iter().map(|_| 4.0).collect();
         let after = |k: usize| {
             let change = if k / 50 == 1 { growth } else { -4.0 };
-            let swing = if k % 2 == 0 { 7.0 } else { -7.0 };
+            let swing = if k.is_multiple_of(2) { 7.0 } else { -7.0 };
             (16.0 + change + swing).sqrt()
         };
         let after: Vec<f64> = (0..scalars.len()).map(after).collect();

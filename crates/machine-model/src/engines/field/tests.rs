@@ -209,7 +209,7 @@ fn few_places_tell_a_field_that_knows_no_axes() {
             count += 1.0;
         }
     }
-    let left_um = 1e3 * (sum / count as f64).sqrt();
+    let left_um = 1e3 * (sum / count).sqrt();
     println!("{left_um:.3} um left of swells, {:?}", field.made());
     // The classes of axes alone leave 3 to 6 um of such fields.
     assert!(left_um < 2.4, "{left_um}");
