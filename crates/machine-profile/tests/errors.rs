@@ -27,7 +27,7 @@ const FILES: [(&str, &[u8]); 18] = [
     ("other_axis.csv", b"position_mm,EXY_um\n0,1\n10,1\n"),
     ("unit.csv", b"position_mm,EAX_um\n0,1\n10,1\n"),
     ("no_unit.csv", b"position_mm,EXX\n0,1\n10,1\n"),
-    ("no_position.csv", b"x_mm,EXX_um\n0,1\n10,1\n"),
+    ("no_position.csv", b"y_mm,EXX_um\n0,1\n10,1\n"),
     ("two_units.csv", b"position_mm,EXX_um,EXX_mm\n0,1,1\n10,1,1\n"),
     ("huge.csv", b"position_mm,EXX_mm\n0,1\n10,25\n"),
     ("binary.csv", b"position_mm,EXX_um\n\xff\xfe"),
@@ -510,8 +510,8 @@ fn column_without_unit() {
 #[test]
 fn table_without_positions() {
     assert_snapshot!(told(&with_table("no_position.csv")), @r####"
-    no_position.csv: error[VP0306]: column `x_mm` is unknown
-      line 1: `x_mm` this column
+    no_position.csv: error[VP0306]: column `y_mm` is unknown
+      line 1: `y_mm` this column
     help: known here: position_mm, EXX_um, EYX_um, EZX_um, EAX_urad, EBX_urad, ECX_urad
     "####);
 }

@@ -111,7 +111,8 @@ fn without_header(text: &str, codes: Codes) -> Option<Diagnostic> {
     let mut lines = Piece::lines(text)
         .map(Piece::trimmed)
         .filter(|line| !line.text.is_empty() && !line.text.starts_with('#'));
-    let first = lines.next()?;
+    // Lines that end as they did on old Apple computers are one to everybody else.
+    let first = lines.next()?.before(&['\r']);
     let help = both!(
         "put a line above it that names the columns, as in run,x_mm,y_mm,z_mm,xm_mm,ym_mm,zm_mm: x_mm … what was commanded, xm_mm … what was measured",
         "добавьте сверху строку с именами столбцов, например run,x_mm,y_mm,z_mm,xm_mm,ym_mm,zm_mm: x_mm … — заданное, xm_mm … — измеренное"

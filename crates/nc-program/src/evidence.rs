@@ -537,11 +537,11 @@ impl Seen {
     }
 }
 
-/// M97 of Haas, under a dialect that has no such code.
+/// M97 of Haas, under a dialect that has no such code, or another one that it refuses.
 fn calls_a_block(number: Number, dialect: &Dialect) -> bool {
     const LOCAL_CALL: u16 = 97;
     number.integer() == Some(i64::from(LOCAL_CALL))
-        && dialect.m_code(LOCAL_CALL).is_none()
+        && dialect.m_code(LOCAL_CALL).is_none_or(|row| row.refuse.is_some())
         && !dialect.flow.local_calls
         && !dialect.flow.calls(i64::from(LOCAL_CALL))
 }

@@ -1,7 +1,7 @@
 //! How far the displacement by one effect can leave its chord: equation (24) of `docs/equations.md`.
 
 use super::{Conditions, EffectKind, EffectTerm};
-use crate::{Command, Move, Range, Vector};
+use crate::{Command, Move, Range, Tilt, Vector};
 
 /// Upper bounds over a range of one axis: of |f|, of |f'| per mm, of |f''| per mm², and the sum of the jumps
 /// of f' inside, per mm: beyond its interval a polynomial keeps the value of the end.
@@ -108,9 +108,13 @@ impl EffectTerm {
                 droop.into_iter().map(|growth| direct(axis, growth)).sum::<f64>()
                     + self.turned(about, axis, tilt, stretch)
             }
-            // Offsets of a rotary axis do not depend on the linear axes; tilts turn their arm, twice.
+            // Offsets of a rotary axis do not depend on the linear axes; tilts turn their arm, a leaning line before and
+            // behind the turn.
             EffectKind::Rotary { component: 0..=2, .. } => 0.0,
-            EffectKind::Rotary { .. } => turning(2e-6 * first(0).abs()),
+            EffectKind::Rotary { axis, .. } => {
+                let turns = if self.geometry.rotary_tilt[axis] == Tilt::Axis { 2.0 } else { 1.0 };
+                turning(1e-6 * turns * first(0).abs())
+            }
             EffectKind::Eccentricity(_) => turning(1e-6 * (first(0).abs() + first(1).abs())),
             EffectKind::Local(axis) => {
                 let size = Vector::new(first(0), first(1), first(2)).norm();
