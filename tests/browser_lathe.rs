@@ -169,7 +169,7 @@ fn the_page_of_test_pieces_says_what_their_report_says() {
     assert_eq!((dots("s0"), dots("s1")), (12, 5));
     let russian = text(&pieces(&["--lang", "ru"]).page);
     assert!(
-        russian.contains("он конус, у патрона толще") && russian.contains("По этим образцам не различить"),
+        russian.contains("он конусный, у патрона толще") && russian.contains("По этим образцам не различить"),
         "{russian}"
     );
 }

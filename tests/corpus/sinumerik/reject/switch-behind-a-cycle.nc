@@ -1,5 +1,5 @@
 %_N_PART_MPF
-;(expect VP0100)
+;(expect VP0134)
 G17 G40 G54 G71 G90
 G0 X10 Y10 Z60
 F200
