@@ -143,7 +143,7 @@ fn result(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Mar
         }
         @if !facts.findings.is_empty() {
             h3 { (say!(language, "Findings", "Что найдено")) }
-            ul { @for finding in facts.findings { li { (shown(finding.in_language(language))) } } }
+            ul { @for finding in facts.findings { li { (shown(&language.prose(finding))) } } }
         }
     }
 }
