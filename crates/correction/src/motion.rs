@@ -138,16 +138,6 @@ impl Corrector<'_> {
             }
         }
         let Some(nominal) = end.complete() else {
-            if end.rotary_deg != start.rotary_deg {
-                // Whether rotary axes go that far does not depend on the place.
-                let place = self.model.volume().nearest(&Vector::zeros());
-                match self.solve(&self.state(block, end.rotary_deg), place) {
-                    Err(CorrectionError::Solve(error)) if error.is_outside() => {}
-                    other => {
-                        other?;
-                    }
-                }
-            }
             // Some axis is not known yet, so the error is not: the words stay, and the first motion
             // whose end is known in all axes brings the correction.
             let stood = self.standing;
