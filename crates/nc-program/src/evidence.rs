@@ -25,6 +25,8 @@ const POLAR_OFF: GCode = GCode(150);
 const SMALLEST_PROGRAM: u64 = 1000;
 /// Of fewer lengths nothing is concluded.
 const FEWEST_BARE: u64 = 4;
+/// How Sinumerik begins a program's name.
+const PROGRAM_NAME: &[u8] = b"%_N_";
 /// No more codes are named in one message.
 const MOST_NAMED: usize = 8;
 
@@ -139,13 +141,15 @@ impl Evidence {
                     }
                 }
                 ItemKind::Percent if self.opened.is_some() || self.acts => self.ends = true,
+                // The name of a Siemens program opens no tape that another % would end.
+                ItemKind::Percent if block.bytes.starts_with(PROGRAM_NAME) => {}
                 ItemKind::Percent => self.opened = Some(place(block, block.file_span(item.span))),
                 // What cannot be read says nothing of how numbers are written.
                 ItemKind::Invalid(_) => seen.arguments = true,
                 _ => {}
             }
         }
-        if block.bytes.starts_with(b"%_N_") && !Sure::Sinumerik.is_read_by(questions.dialect) {
+        if block.bytes.starts_with(PROGRAM_NAME) && !Sure::Sinumerik.is_read_by(questions.dialect) {
             self.belongs_to(Sure::Sinumerik, block);
         }
         self.states_unit |= seen.unit;
