@@ -10,10 +10,12 @@ use crate::equations::align::{aligned, magnitude_errors, rms, row_lengths};
 use crate::equations::noise::tail_factor;
 use crate::equations::observation::{Measurements, Reading, Scalar};
 use crate::equations::term::Term;
-use crate::judgement::answer::{Holdout, Residual, Shrinkage, Step};
+use crate::judgement::answer::{Holdout, Residual, Shrinkage, Step, Verdict};
 use crate::judgement::assembly::Assembly;
 use crate::judgement::verdict::{Unseen, WorseRun};
+use crate::options::Options;
 use crate::search::explain::explain;
+use crate::search::lengths::explained;
 
 impl Assembly<'_> {
     pub(crate) fn holdout(&self, holdout: &Measurements) -> Holdout {
@@ -100,7 +102,15 @@ impl Assembly<'_> {
         // Noise was estimated on the rows of the fit, and readings that hang together count as fewer.
         let few = |readings: f64| model.caution.as_one() / (2.0 * readings.max(1.0));
         let chance = (few(equations) + few(self.degrees())).sqrt();
-        Unseen { before: before_um / floor, after: after_um / floor, promised, error, chance, worse: None }
+        Unseen {
+            before: before_um / floor,
+            after: after_um / floor,
+            promised,
+            error,
+            chance,
+            alone: false,
+            worse: None,
+        }
     }
 
     /// The forecast of this model for runs that it was not fitted to, and what became of it: in the frame that was
@@ -168,6 +178,15 @@ pub(crate) fn kept_back(data: &Measurements, without: &[EffectKind]) -> Option<U
     // Every fourth run, from the third one on.
     let worse = unseen.worse.map(|worse| WorseRun { run: 4 * worse.run + 2, ..worse });
     Some(Unseen { worse, ..unseen })
+}
+
+/// Rows that no fit has seen show a gap of their own: searched alone they have a cause that is the machine's, or structure
+/// without a name. A gap as large as the noise is lost in their RMS and not in their pattern.
+#[must_use]
+pub(crate) fn gap_of_its_own(holdout: &Measurements, options: &Options) -> bool {
+    let (model, _) = explained(holdout, &options.without);
+    let verdict = Assembly::new(holdout, &model).on_its_rows(options);
+    matches!(verdict, Verdict::Named | Verdict::Ambiguous | Verdict::Partial | Verdict::Unknown)
 }
 
 /// The run that the causes make worse by most: its rows' squares grow on the whole by more than their differences scatter,

@@ -61,6 +61,8 @@ pub(crate) struct Unseen {
     pub error: f64,
     /// Standard error of the RMS without the causes where it is noise, in the same units.
     pub chance: f64,
+    /// Searched by themselves, with a fit of their own, these rows show a gap; asked only where the others show none.
+    pub alone: bool,
     /// The run that the causes make worse by most, where one is made worse by more than chance.
     pub worse: Option<WorseRun>,
 }
@@ -96,7 +98,9 @@ impl Unseen {
 
     /// A gap where nothing was named.
     pub(crate) fn shows_a_gap(&self) -> bool {
-        self.before > UNSEEN_GAP || self.before > 1.0 + f64::max(OTHER_NOISE, NO_CHANCE * self.chance)
+        self.alone
+            || self.before > UNSEEN_GAP
+            || self.before > 1.0 + f64::max(OTHER_NOISE, NO_CHANCE * self.chance)
     }
 
     /// A forecast that does not hold, and of which hardly anything came true, where noise is not all that is left.
@@ -139,8 +143,8 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 /// Causes that swing between the places measured, or cancel each other, explain nothing, however well they fit: UNKNOWN.
 ///
 /// What rows that no fit has seen say comes last and weighs most: a forecast they refute is PARTIAL, UNKNOWN where they
-/// contradict it, and NO GAP is UNKNOWN where their gap is above [`UNSEEN_GAP`] times the noise, or above what noise and
-/// chance make of so many rows.
+/// contradict it, and NO GAP is UNKNOWN where their gap is above [`UNSEEN_GAP`] times the noise, above what noise and
+/// chance make of so many rows, or where a search among these rows alone finds one.
 #[must_use]
 pub(crate) fn verdict(e: &Evidence) -> Verdict {
     let seen = on_the_rows(e);
@@ -261,8 +265,15 @@ mod tests {
     /// Forecast 50 % (40 % at least) of a gap ten times the noise.
     #[test]
     fn unseen_rows_have_the_last_word() {
-        let kept =
-            Unseen { before: 10.0, after: 5.0, promised: (0.4, 0.5), error: 0.01, chance: 0.1, worse: None };
+        let kept = Unseen {
+            before: 10.0,
+            after: 5.0,
+            promised: (0.4, 0.5),
+            error: 0.01,
+            chance: 0.1,
+            alone: false,
+            worse: None,
+        };
         let worse = Some(WorseRun { run: 1, before_um: 6.6, after_um: 7.3 });
         let with = |unseen: Unseen, e: Evidence| verdict(&Evidence { unseen: Some(unseen), ..e });
         let after = |after: f64| Unseen { after, ..kept };
@@ -288,6 +299,7 @@ mod tests {
             (with(Unseen { before: 1.4, chance: 0.07, ..kept }, none), Verdict::Unknown),
             (with(Unseen { before: 1.2, chance: 0.01, ..kept }, none), Verdict::NoGap),
             (with(Unseen { before: 1.6, after: 1.6, ..kept }, none), Verdict::Unknown),
+            (with(Unseen { before: 1.2, after: 1.2, alone: true, ..kept }, none), Verdict::Unknown),
         ] {
             assert_eq!(found, expected);
         }

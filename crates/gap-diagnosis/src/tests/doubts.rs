@@ -293,6 +293,22 @@ fn unseen_rows_that_refute_a_name_change_the_headline() {
     assert_eq!(answer.verdict, Verdict::Unknown, "{}", answer.sentence);
 }
 
+/// A gap that adds a tenth to the RMS of unseen rows is in their pattern; rows with nothing but noise stay an all-clear.
+#[test]
+fn a_gap_of_unseen_rows_that_their_size_hides_is_found_in_their_pattern() {
+    let verdict = |seed: u64, share: f64| {
+        let held = measured(Plan { seed, ..GOOD }, |row| share * backlash_um(row));
+        diagnose(&measured(GOOD, nothing), Some(&held), &Options::default())
+    };
+    let answer = verdict(2, 0.5);
+    assert_eq!(answer.verdict, Verdict::Unknown, "{}", answer.sentence);
+    assert!(answer.sentence.english().contains("searched alone"), "{}", answer.sentence);
+    for seed in 2..8 {
+        let answer = verdict(seed, 0.0);
+        assert_eq!(answer.verdict, Verdict::NoGap, "{seed}: {}", answer.sentence);
+    }
+}
+
 /// Of the lines along X one has no play any more: what the others gain does not make up for it.
 #[test]
 fn a_run_that_gets_worse_is_told_by_name() {

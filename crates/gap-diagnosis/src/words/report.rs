@@ -5,12 +5,12 @@ use machine_model::effects::EffectKind;
 
 use crate::equations::align::{rms, row_lengths};
 use crate::equations::observation::Measurements;
-use crate::judgement::answer::{Cause, Diagnosis, Verdict};
+use crate::judgement::answer::{Cause, Diagnosis, Gap, Leftover, Verdict};
 use crate::judgement::assembly::Assembly;
 use crate::judgement::locate::places;
 use crate::judgement::next::{next_measurement, once_more};
-use crate::judgement::unseen::residuals;
-use crate::judgement::verdict::{Unseen, verdict};
+use crate::judgement::unseen::{gap_of_its_own, residuals};
+use crate::judgement::verdict::{Evidence, Unseen, verdict};
 use crate::options::Options;
 use crate::search::bounds::Harm;
 use crate::search::formula::formulas;
@@ -26,6 +26,16 @@ fn cancelling(causes: &[Cause], gap_um: f64) -> Option<Harm> {
     (most_um > MORE * gap_um).then_some(Harm::Cancels(most_um, gap_um))
 }
 
+/// What the rows that were fitted say, before others are asked.
+struct OnRows {
+    gap: Gap,
+    leftover: Leftover,
+    causes: Vec<Cause>,
+    corner_um: f64,
+    harm: Option<Harm>,
+    evidence: Evidence,
+}
+
 impl Assembly<'_> {
     /// The answer. `kept_back` says what runs that a second search did not see make of its forecast; it is asked where
     /// there is a name and no hold-out.
@@ -36,25 +46,21 @@ impl Assembly<'_> {
         kept_back: impl FnOnce() -> Option<Unseen>,
     ) -> Diagnosis {
         let before = self.gap_after(0);
-        let gap = self.size(&before);
-        let leftover = self.leftover();
-        let causes = self.causes(holdout, gap.rms_um);
-        let corner_um = self.uncertainty_in_corners_um(options.volume);
-        let harm = cancelling(&causes, gap.rms_um).or_else(|| self.harm());
-        let mut evidence = self.evidence(&gap, &leftover, &causes, corner_um, harm);
+        let OnRows { gap, leftover, causes, corner_um, harm, mut evidence } = self.on_rows(holdout, options);
+        // Below the step of the control no correction is possible and no cause is worth a name.
+        let fine = gap.rms_um * 12.0_f64.sqrt() < options.resolution_um;
         let held = holdout.map(|h| self.holdout(h));
         let believed = matches!(verdict(&evidence), Verdict::Named | Verdict::Ambiguous);
         evidence.unseen = match (holdout, &held) {
             (Some(data), Some(held)) => {
                 let promised = causes.last().map(|c| c.shrink_predicted);
                 let pooled = self.unseen(data, held.rms_before_um, held.rms_after_um, promised);
-                Some(Unseen { worse: held.worse, ..pooled })
+                let open = !fine && causes.is_empty() && !pooled.shows_a_gap();
+                Some(Unseen { worse: held.worse, alone: open && gap_of_its_own(data, options), ..pooled })
             }
             _ if believed => kept_back(),
             _ => None,
         };
-        // Below the step of the control no correction is possible and no cause is worth a name.
-        let fine = gap.rms_um * 12.0_f64.sqrt() < options.resolution_um;
         let mut causes = if fine { Vec::new() } else { causes };
         let verdict = if fine { Verdict::NoGap } else { verdict(&evidence) };
         let nameless = verdict.leaves_open();
@@ -117,6 +123,22 @@ impl Assembly<'_> {
             notes,
             residuals: residuals(scalars, &before, &self.gap_after(self.ordered.len())),
         }
+    }
+
+    /// What the rows that were fitted say.
+    fn on_rows(&self, holdout: Option<&Measurements>, options: &Options) -> OnRows {
+        let gap = self.size(&self.gap_after(0));
+        let leftover = self.leftover();
+        let causes = self.causes(holdout, gap.rms_um);
+        let corner_um = self.uncertainty_in_corners_um(options.volume);
+        let harm = cancelling(&causes, gap.rms_um).or_else(|| self.harm());
+        let evidence = self.evidence(&gap, &leftover, &causes, corner_um, harm);
+        OnRows { gap, leftover, causes, corner_um, harm, evidence }
+    }
+
+    /// The verdict of the rows that were fitted alone.
+    pub(crate) fn on_its_rows(&self, options: &Options) -> Verdict {
+        verdict(&self.on_rows(None, options).evidence)
     }
 
     /// The causes in order of share, each with what it leaves of the gap.

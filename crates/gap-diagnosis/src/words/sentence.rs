@@ -81,6 +81,12 @@ pub(crate) fn sentence(verdict: Verdict, gap: &Gap, causes: &[Cause], leftover: 
 impl Unseen {
     /// What the headline says of it where nothing is named.
     pub(crate) fn gap_note(&self) -> Option<Text> {
+        if self.alone {
+            return Some(Text::pair(
+                " Rows that were not fitted show a gap when they are searched alone.",
+                " Строки вне подгонки, рассмотренные отдельно, показывают расхождение.",
+            ));
+        }
         self.shows_a_gap().then(|| {
             both!(
                 " Rows that were not fitted show a gap of {:.1} times the noise.",
