@@ -254,3 +254,26 @@ fn every_command_has_a_manual_page() {
     assert!(pages.len() > COMMANDS.len(), "{:?}", pages.keys());
     assert_eq!(String::from_utf8(run(&["man"]).stdout).expect("text"), pages["vpost"]);
 }
+
+#[test]
+fn manual_pages_are_russian_where_it_is_asked_for() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [english, russian] = ["en", "ru"].map(|language| {
+        let to = folder.path().join(language);
+        let ran = run(&["man", "-O", to.to_str().expect("UTF-8"), "--lang", language]);
+        assert!(ran.status.success() && ran.stdout.is_empty(), "{}", messages(&ran));
+        to
+    });
+    for entry in std::fs::read_dir(&english).expect("made") {
+        let name = entry.expect("readable").file_name();
+        let page = std::fs::read_to_string(russian.join(&name)).expect("a page in Russian too");
+        for heading in page.lines().filter_map(|line| line.strip_prefix(".SH ")) {
+            assert!(!heading.chars().any(|letter| letter.is_ascii_alphabetic()), "{name:?}: {heading}");
+        }
+        // `man -k` reads what stands behind this heading, `name \- description`.
+        let named = page.split(".SH \"ИМЯ\"\n").nth(1).and_then(|rest| rest.split(".SH").next());
+        let said = named.and_then(|section| section.split("\\- ").nth(1)).unwrap_or_default();
+        let letters = said.chars().find(|letter| letter.is_alphabetic());
+        assert!(letters.is_some_and(|letter| !letter.is_ascii()), "{name:?}: {said}");
+    }
+}

@@ -7,6 +7,7 @@ use std::process::Command;
 
 use anyhow::{Context, bail, ensure};
 use clap::ValueEnum;
+use diagnostic::Language;
 
 /// Linux as far back as the C library of December 2012: older than what any supported distribution has.
 const LINUX: &str = "x86_64-unknown-linux-gnu.2.17";
@@ -110,13 +111,16 @@ fn write_parts(parts: &Path, triple: &str, epoch: u64) -> anyhow::Result<()> {
     if parts.exists() {
         std::fs::remove_dir_all(parts)?;
     }
-    let (man, completions) = (parts.join("man/man1"), parts.join("completions"));
-    for folder in [&man, &completions] {
-        std::fs::create_dir_all(folder)?;
+    // Where `man` looks for its reader's language.
+    for (folder, language) in [("man/man1", Language::English), ("man/ru/man1", Language::Russian)] {
+        let man = parts.join(folder);
+        std::fs::create_dir_all(&man)?;
+        for page in vpost::manual::pages(language)? {
+            std::fs::write(man.join(&page.file), page.text)?;
+        }
     }
-    for page in vpost::manual::pages()? {
-        std::fs::write(man.join(&page.file), page.text)?;
-    }
+    let completions = parts.join("completions");
+    std::fs::create_dir_all(&completions)?;
     for shell in clap_complete::Shell::value_variants() {
         let file = clap_complete::Generator::file_name(shell, "vpost");
         std::fs::write(completions.join(file), vpost::manual::completions(*shell))?;

@@ -98,7 +98,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Grammar(a)) => grammar::run(a, &messages),
         Some(Command::Explain(a)) => explain::run(a, language),
         Some(Command::Completions(a)) => manual::print_completions(a),
-        Some(Command::Man(a)) => manual::run(a),
+        Some(Command::Man(a)) => manual::run(a, language),
         None => correct::run(&arguments.correct, &arguments.shared, &messages),
     };
     match result {

@@ -8,7 +8,8 @@ use crate::arguments::{Completions, Manual};
 use crate::command_line::command;
 use crate::file;
 use crate::message::{Deed, Failure};
-use diagnostic::Text;
+use crate::russian;
+use diagnostic::{Language, Text};
 
 /// A manual page.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,35 +20,71 @@ pub struct Page {
     pub text: Vec<u8>,
 }
 
-/// The page of `vpost`, and behind it one for each command.
+/// The page of `vpost`, and behind it one for each command, in a language.
 ///
 /// # Errors
 /// None that memory can give; the renderer's signature has them.
-pub fn pages() -> std::io::Result<Vec<Page>> {
-    fn add(command: &clap::Command, above: Option<&str>, pages: &mut Vec<Page>) -> std::io::Result<()> {
-        pages.push(page(command, above)?);
+pub fn pages(language: Language) -> std::io::Result<Vec<Page>> {
+    fn add(
+        command: &clap::Command,
+        above: Option<&str>,
+        language: Language,
+        pages: &mut Vec<Page>,
+    ) -> std::io::Result<()> {
+        pages.push(page(command, above, language)?);
         let name = command.get_display_name().unwrap_or_else(|| command.get_name());
         for inner in command.get_subcommands().filter(|inner| !inner.is_hide_set()) {
-            add(inner, Some(name), pages)?;
+            add(inner, Some(name), language, pages)?;
         }
         Ok(())
     }
     // `vpost help` has nothing to say on paper.
     let mut root = command().disable_help_subcommand(true);
     root.build();
+    let root = match language {
+        Language::English => root,
+        Language::Russian => russian::spoken(root),
+    };
     let mut pages = Vec::new();
-    add(&root, None, &mut pages)?;
+    add(&root, None, language, &mut pages)?;
     Ok(pages)
 }
 
+/// Headings as the renderer writes them, and as `man` knows them in Russian: by `ИМЯ` it finds what `apropos` lists.
+const HEADINGS: [(&str, &str); 7] = [
+    ("NAME", "ИМЯ"),
+    ("SYNOPSIS", "СИНТАКСИС"),
+    ("DESCRIPTION", "ОПИСАНИЕ"),
+    ("OPTIONS", "КЛЮЧИ"),
+    ("Команды", "КОМАНДЫ"),
+    ("NOTES", "ПРИМЕЧАНИЯ"),
+    ("SEE ALSO", "СМ. ТАКЖЕ"),
+];
+
+/// The heading that stands in a line of roff, in a language; other lines as they are.
+fn heading(line: &str, language: Language) -> String {
+    let said = match language {
+        Language::English => None,
+        Language::Russian => HEADINGS.iter().find_map(|(english, russian)| {
+            let named = line.strip_prefix(".SH ")?.trim_matches('"');
+            (named == *english).then(|| format!(".SH \"{russian}\""))
+        }),
+    };
+    said.unwrap_or_else(|| line.to_owned())
+}
+
 /// The page of a command; `above` is the one whose subcommand it is.
-fn page(command: &clap::Command, above: Option<&str>) -> std::io::Result<Page> {
+fn page(command: &clap::Command, above: Option<&str>, language: Language) -> std::io::Result<Page> {
     let man = Man::new(command.clone());
     let name = command.get_display_name().unwrap_or_else(|| command.get_name());
     // The renderer's own title loses its empty date, and what follows slips into its place.
-    let mut text =
-        format!(".TH \"{name}\" 1 \"\" \"vpost {}\" \"vpost manual\"\n", env!("CARGO_PKG_VERSION"))
-            .into_bytes();
+    let manual = Text::pair("vpost manual", "Руководство vpost");
+    let mut text = format!(
+        ".TH \"{name}\" 1 \"\" \"vpost {}\" \"{}\"\n",
+        env!("CARGO_PKG_VERSION"),
+        manual.in_language(language)
+    )
+    .into_bytes();
     man.render_name_section(&mut text)?;
     man.render_synopsis_section(&mut text)?;
     man.render_description_section(&mut text)?;
@@ -73,12 +110,14 @@ fn page(command: &clap::Command, above: Option<&str>) -> std::io::Result<Page> {
         roff.text([roman(format!("{above}(1)"))]);
     }
     roff.to_writer(&mut text)?;
-    Ok(Page { file: man.get_filename(), text })
+    let text = String::from_utf8_lossy(&text);
+    let text: String = text.lines().map(|line| heading(line, language) + "\n").collect();
+    Ok(Page { file: man.get_filename(), text: text.into_bytes() })
 }
 
 /// Prints the first page, or writes all.
-pub(crate) fn run(arguments: &Manual) -> Result<(), Failure> {
-    let pages = pages().map_err(|error| {
+pub(crate) fn run(arguments: &Manual, language: Language) -> Result<(), Failure> {
+    let pages = pages(language).map_err(|error| {
         Failure::place(&Text::pair("the manual pages", "страницы руководства"), Deed::Make, &error)
     })?;
     let Some(folder) = &arguments.folder else {
