@@ -112,6 +112,22 @@ fn long_blocks_under_compensation_become_pieces_where_the_radius_is_known() {
     assert!(messages(&ran).contains("VP0503"), "{}", messages(&ran));
 }
 
+/// Where the machine climbs too, the pieces of a level block do.
+#[test]
+fn pieces_that_climb_by_the_machine_s_error_are_pieces_to_check() {
+    let place = Place::new();
+    let program = place.write("in.nc", PLATE);
+    let out = place.0.path().join("out.nc").display().to_string();
+    let machine = bent(&place, RADIUS);
+    place.write("bent.csv", "position_mm,EYX_um,EZX_um\n-100,0,-30\n250,50,40\n600,0,10\n");
+    let ran = run(&[&program, "-m", &machine, START, "-o", &out]);
+    assert!(ran.status.success(), "{}", messages(&ran));
+    let made = std::fs::read_to_string(&out).expect("written");
+    assert!(made.lines().count() > PLATE.lines().count() + 2 && made.contains("Z-1.0"), "{made}");
+    let check = run(&["check", &program, &out, "-m", &machine, START]);
+    assert!(check.status.success(), "{}\n{made}", String::from_utf8_lossy(&check.stdout));
+}
+
 #[test]
 fn what_leads_onto_a_contour_or_off_it_stays_one_block() {
     let place = Place::new();

@@ -134,7 +134,7 @@ impl<'m> Corrector<'m> {
             // A control that offsets the circle does so by one of its radii: what they differ by, beyond what was programmed,
             // may stand off the path at the other end.
             let aside_mm = match follow.whole.division {
-                Division::One | Division::Long { .. } => {
+                Division::One | Division::Long { .. } | Division::LongClimbing { .. } => {
                     (curve.radii_apart_mm() - part.radii_apart_mm()).max(0.0)
                 }
                 Division::Any | Division::OneBehindLines => 0.0,

@@ -316,7 +316,7 @@ impl Corrector<'_> {
         match division {
             Division::Any => true,
             Division::Long { .. } => !self.model.depends_on_direction(),
-            Division::OneBehindLines | Division::One => false,
+            Division::OneBehindLines | Division::One | Division::LongClimbing { .. } => false,
         }
     }
 

@@ -17,7 +17,7 @@ use crate::checks::{self, wide};
 use crate::inherited;
 use crate::russian;
 use crate::table::{
-    CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, LeadName, Levels, MRow, MacroLanguage,
+    Alone, CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, LeadName, Levels, MRow, MacroLanguage,
     RotaryFeedName, RoundBrackets, SemicolonRule, StartUnit, TWord, TurningRules, UnderG40, UnderG49,
     WithoutH, WithoutPoint, ZeroRepeats,
 };
@@ -240,6 +240,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             UnderG49::Ends => LengthAfter::Ends,
             UnderG49::Unstated => LengthAfter::Unstated,
         },
+        length_shifts: tool_length.alone == Alone::Shifts,
         t_may_change_tool: tool_length.t_word == TWord::MayChange,
         writes_lengths: tool_length.writes_lengths,
         edge_in_d: tool_length.edge_in_d,

@@ -246,6 +246,8 @@ pub(crate) struct ToolLength {
     #[serde(default)]
     pub(crate) under_g49: UnderG49,
     #[serde(default)]
+    pub(crate) alone: Alone,
+    #[serde(default)]
     pub(crate) t_word: TWord,
     #[serde(default)]
     pub(crate) writes_lengths: bool,
@@ -267,6 +269,16 @@ pub(crate) enum UnderG40 {
 pub(crate) enum UnderG49 {
     #[default]
     Ends,
+    Unstated,
+}
+
+/// G43 and its like in a block that does not name the axis.
+#[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Alone {
+    /// Nothing moves; the frame shifts.
+    Shifts,
+    #[default]
     Unstated,
 }
 

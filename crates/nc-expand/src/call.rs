@@ -15,7 +15,7 @@ use crate::o_word::{Label, OStatement, OWord};
 use crate::program::Source;
 use crate::run::{Place, Run};
 use crate::statement::{Call, Control, Kind, Statement};
-use crate::value::{NameId, Value};
+use crate::value::{NameId, Program, Value};
 
 impl<'a> Run<'a, '_> {
     /// M97, M98 and G65.
@@ -36,6 +36,11 @@ impl<'a> Run<'a, '_> {
             };
             if passes == 0 {
                 return Ok(());
+            }
+            if self.dialect.flow.macros == Macros::Okuma {
+                let program = Program::Name(program);
+                let start = self.find_program(source, place.file, program)?;
+                return self.enter(start, CallKind::Number(program), passes, None, statement.section, place);
             }
             let start = self.find_named(program)?;
             return self.enter(start, CallKind::Program(program), passes, None, statement.section, place);
@@ -62,7 +67,9 @@ impl<'a> Run<'a, '_> {
         }
         let packed = call.repeats.is_none() && call.arguments.is_none() && program > 9999;
         if packed && self.dialect.flow.packed_repeats {
-            if u32::try_from(program).is_ok_and(|number| source.programs.contains_key(&number)) {
+            if u32::try_from(program)
+                .is_ok_and(|number| source.programs.contains_key(&Program::Number(number)))
+            {
                 return Err(say(
                     codes::COMBINATION,
                     both!(
@@ -98,9 +105,9 @@ impl<'a> Run<'a, '_> {
         if passes == 0 {
             return Ok(());
         }
-        let number = u32::try_from(program).unwrap_or(u32::MAX);
-        let start = self.find_program(source, place.file, number)?;
-        self.enter(start, CallKind::Number(number), passes, arguments.as_deref(), statement.section, place)
+        let program = Program::Number(u32::try_from(program).unwrap_or(u32::MAX));
+        let start = self.find_program(source, place.file, program)?;
+        self.enter(start, CallKind::Number(program), passes, arguments.as_deref(), statement.section, place)
     }
 
     /// Arguments of G65 as local variables.
@@ -206,41 +213,27 @@ impl<'a> Run<'a, '_> {
         Ok(Place { file, statement: first.unwrap_or(0) as u32 })
     }
 
-    /// Where a program with an O number starts.
-    fn find_program(&mut self, source: &Source<'a>, file: usize, number: u32) -> Result<Place, Stop> {
-        let behind = |file: usize, statement: u32| Place { file, statement: statement + 1 };
-        if let Some(statement) = source.programs.get(&number) {
-            return Ok(behind(file, *statement));
+    /// Where a program with an O number, or with a name of Okuma's, starts.
+    fn find_program(&mut self, source: &Source<'a>, file: usize, program: Program) -> Result<Place, Stop> {
+        let written = program.written(&self.names);
+        let behind = |file: usize, source: &Source<'_>, at: u32| match source.statements.get(at as usize) {
+            // What stands beside its number is executed too, and would be passed over here.
+            Some(statement) if statement.flags.words => Err(words_beside(&written)),
+            _ => Ok(Place { file, statement: at + 1 }),
+        };
+        if let Some(statement) = source.programs.get(&program) {
+            return behind(file, source, *statement);
         }
         for (file, source) in self.sources.iter().enumerate() {
-            if let Some(statement) = source.programs.get(&number) {
-                return Ok(behind(file, *statement));
+            if let Some(statement) = source.programs.get(&program) {
+                return behind(file, source, *statement);
             }
         }
-        let names = if self.dialect.flow.macros == Macros::LinuxCnc {
-            vec![format!("{number}.ngc")]
-        } else {
-            let mut names = Vec::new();
-            let endings: &[&str] = match self.dialect.flow.macros {
-                Macros::Okuma => &["", ".SUB", ".MIN", ".sub", ".min"],
-                _ => &["", ".nc", ".NC", ".tap", ".txt", ".cnc"],
-            };
-            for stem in [
-                format!("O{number:04}"),
-                format!("o{number:04}"),
-                format!("{number:04}"),
-                format!("{number}"),
-            ] {
-                for ending in endings {
-                    names.push(format!("{stem}{ending}"));
-                }
-            }
-            names
-        };
-        let file = self.external(&names, &format!("O{number:04}"))?;
+        let names = self.files_of(program, &written);
+        let file = self.external(&names, &written)?;
         let source = Rc::clone(&self.sources[file]);
-        if let Some(statement) = source.programs.get(&number) {
-            return Ok(behind(file, *statement));
+        if let Some(statement) = source.programs.get(&program) {
+            return behind(file, &source, *statement);
         }
         if source.programs.is_empty() {
             let first =
@@ -249,10 +242,28 @@ impl<'a> Run<'a, '_> {
         }
         Err(say(
             codes::PROGRAM_MISSING,
-            both!("file {} holds no O{number:04}", "в файле {} нет O{number:04}", source.name),
+            both!("file {} holds no {written}", "в файле {} нет {written}", source.name),
             both!("called here", "вызвана здесь"),
             both!("correct the O number in that file", "исправьте номер O в том файле"),
         ))
+    }
+
+    /// Names of the files in which a program may stand.
+    fn files_of(&self, program: Program, written: &str) -> Vec<String> {
+        let mut stems = vec![written.to_owned(), written.to_ascii_lowercase()];
+        if let Program::Number(number) = program {
+            if self.dialect.flow.macros == Macros::LinuxCnc {
+                return vec![format!("{number}.ngc")];
+            }
+            stems.extend([format!("{number:04}"), format!("{number}")]);
+        }
+        let endings: &[&str] = match self.dialect.flow.macros {
+            Macros::Okuma => &["", ".SUB", ".MIN", ".SSB", ".LIB", ".sub", ".min", ".ssb", ".lib"],
+            _ => &["", ".nc", ".NC", ".tap", ".txt", ".cnc"],
+        };
+        let ended =
+            |stem: &String| endings.iter().map(|ending| format!("{stem}{ending}")).collect::<Vec<_>>();
+        stems.iter().flat_map(ended).collect()
     }
 
     /// Reads a called file; each name is asked for once.
@@ -514,6 +525,21 @@ fn within_routine() -> Stop {
         both!(
             "write the blocks of the contour themselves between `sub` and `endsub`",
             "напишите между `sub` и `endsub` сами кадры контура"
+        ),
+    )
+}
+
+fn words_beside(program: &str) -> Stop {
+    say(
+        codes::COMBINATION,
+        both!(
+            "words beside the number of {program}, which is called",
+            "слова рядом с номером {program}, которую вызывают"
+        ),
+        both!("called here", "вызвана здесь"),
+        both!(
+            "write {program} in a block of its own, and the words behind it in the next",
+            "напишите {program} отдельным кадром, а слова после неё — следующим"
         ),
     )
 }

@@ -209,9 +209,10 @@ pub(crate) fn no_call(what: &Text) -> Stop {
     )
 }
 
-pub(crate) fn no_return(names: &Names, kind: CallKind) -> Stop {
+pub(crate) fn no_return(names: &Names, kind: CallKind, macros: Macros) -> Stop {
     let (name, way) = match kind {
-        CallKind::Number(number) => (format!("O{number:04}"), "M99"),
+        CallKind::Number(program) if macros == Macros::Okuma => (program.written(names), "RTS"),
+        CallKind::Number(program) => (program.written(names), "M99"),
         CallKind::Block(number) => (format!("N{number}"), "M99"),
         CallKind::Program(id) => (names.name(id).to_ascii_uppercase(), "M17"),
         CallKind::Name(id) | CallKind::Routine(id, _) => (format!("o<{}>", names.name(id)), "`endsub`"),
@@ -224,10 +225,10 @@ pub(crate) fn no_return(names: &Names, kind: CallKind) -> Stop {
     )
 }
 
-pub(crate) fn runs_into(number: u32) -> Stop {
+pub(crate) fn runs_into(program: &str) -> Stop {
     say(
         codes::RETURN,
-        both!("the main program runs into O{number:04}", "главная программа переходит в O{number:04}"),
+        both!("the main program runs into {program}", "главная программа переходит в {program}"),
         both!("reached without a call", "дошло без вызова"),
         both!(
             "end the main program with M30 before it",

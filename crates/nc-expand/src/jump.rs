@@ -9,7 +9,7 @@ use crate::faults::{self, Stop};
 use crate::program::{Found, Source};
 use crate::run::{Place, Run};
 use crate::statement::{Direction, Statement};
-use crate::value::{NameId, Value};
+use crate::value::{NameId, Program, Value};
 use crate::variables::Saved;
 
 /// A call that has not returned.
@@ -31,8 +31,8 @@ pub(crate) struct Frame {
 /// How a program was called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CallKind {
-    /// M98, G65: M99 returns.
-    Number(u32),
+    /// M98, G65, CALL: M99 or RTS returns.
+    Number(Program),
     /// `L100`: M17 and RET return.
     Program(NameId),
     /// M97: the same, to a block of the caller's program.
@@ -195,7 +195,7 @@ impl<'a> Run<'a, '_> {
     /// `(O1000 CALL 2 OF 3)`
     fn announce(&mut self, kind: CallKind, number: u64, of: Option<u64>, caller: Place) {
         let name = match kind {
-            CallKind::Number(program) => format!("O{program:04}"),
+            CallKind::Number(program) => program.written(&self.names),
             CallKind::Block(number) => format!("N{number}"),
             CallKind::Program(id) => self.names.name(id).to_ascii_uppercase(),
             CallKind::Name(id) | CallKind::Routine(id, _) => format!("O<{}>", self.names.name(id)),

@@ -1,7 +1,7 @@
 //! Okuma's statements and values: text to what they do.
 //!
 //! Source: Okuma OSP-P200M/P20M Programming Manual, user task: common variables `VC1`, arithmetic and comparisons in
-//! square brackets, `IF [ … ] N10` and `GOTO N10`, `CALL O10 Q2` and `RTS`. Sequence names stand first in their block.
+//! square brackets, `IF [ … ] N10` and `GOTO N10`, `CALL O10 Q2`, `CALL OSUB` and `RTS`. Sequence names stand first in their block.
 //! What the machine alone knows (system variables), local variables, whose life in called programs is not told, and logic
 //! between comparisons are refused.
 
@@ -84,17 +84,20 @@ pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, Text> {
         b"GOTO" => jump(None, parser)?,
         b"RTS" => Said::Control(Control::Return { to: None }),
         b"CALL" => {
-            let program = name(parser);
-            let number = program
-                .strip_prefix(b"O")
-                .or_else(|| program.strip_prefix(b"o"))
-                .and_then(|digits| std::str::from_utf8(digits).ok()?.parse::<u32>().ok())
-                .ok_or_else(|| {
-                    both!("a program of a number (O10) was expected", "ожидалась программа с номером (O10)")
-                })?;
+            let written = name(parser);
+            let behind =
+                written.strip_prefix(b"O").or_else(|| written.strip_prefix(b"o")).unwrap_or_default();
+            let number = std::str::from_utf8(behind).ok().and_then(|digits| digits.parse::<u32>().ok());
+            if behind.is_empty() || number.is_none() && behind.iter().all(u8::is_ascii_digit) {
+                return Err(both!(
+                    "a program was expected, O and its number or name (O10, OSUB)",
+                    "ожидалась программа: O и её номер или имя (O10, OSUB)"
+                ));
+            }
+            let program = number.is_none().then(|| parser.names.id(written));
             let repeats = if parser.take(b'Q') { Some(parser.operand()?) } else { None };
-            let number = Expression::Number(f64::from(number));
-            let call = Call { number, program: None, local: false, repeats, arguments: None };
+            let number = Expression::Number(f64::from(number.unwrap_or_default()));
+            let call = Call { number, program, local: false, repeats, arguments: None };
             Said::Control(Control::Call(Box::new(call)))
         }
         _ => {

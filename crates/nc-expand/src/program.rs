@@ -10,7 +10,7 @@ use nc_syntax::{Block, ItemKind, Reader};
 use crate::codes;
 use crate::o_word::{Label, OStatement, OWord};
 use crate::statement::{Compiler, Control, Direction, Flags, Kind, Statement};
-use crate::value::{NameId, Names};
+use crate::value::{NameId, Names, Program};
 
 /// A file.
 #[derive(Clone, Debug)]
@@ -25,8 +25,8 @@ pub(crate) struct Source<'a> {
     names: Vec<(NameId, u32)>,
     /// O-word subroutines by name.
     pub(crate) subroutines: BTreeMap<NameId, u32>,
-    /// O-number programs.
-    pub(crate) programs: BTreeMap<u32, u32>,
+    /// Programs with an O number, or Okuma's with a name.
+    pub(crate) programs: BTreeMap<Program, u32>,
 }
 
 /// What a label leads to.
@@ -54,10 +54,10 @@ impl<'a> Source<'a> {
             let mut compiler = Compiler { dialect, names };
             let mut reader = Reader::new(&text, dialect);
             let mut block = Block::default();
-            let mut percents = 0;
+            let mut percents = 0_u32;
             while reader.next(&mut block) {
                 let at = u32::try_from(statements.len()).unwrap_or(u32::MAX);
-                let (mut kind, flags) = compiler.kind(&block);
+                let (mut kind, mut flags) = compiler.kind(&block);
                 if dialect.flow.macros == Macros::LinuxCnc && aborts(&block) {
                     kind = Kind::Broken(Box::new(
                         Diagnostic::error(
@@ -77,13 +77,17 @@ impl<'a> Source<'a> {
                         )),
                     ));
                 }
-                match kind {
-                    Kind::Percent => percents += 1,
-                    Kind::Program(number) => {
-                        section += 1;
-                        programs.entry(number).or_insert(at);
-                    }
-                    _ => {}
+                let starts = match &kind {
+                    Kind::Program(program) => Some(*program),
+                    // With a statement beside its number.
+                    Kind::Complex(_) | Kind::Broken(_) => compiler.program(&block),
+                    Kind::Copy | Kind::Percent => None,
+                };
+                percents += u32::from(matches!(kind, Kind::Percent));
+                if let Some(program) = starts {
+                    flags.starts = true;
+                    section += 1;
+                    programs.entry(program).or_insert(at);
                 }
                 if flags.number.is_some()
                     && dialect.flow.macros == Macros::Fanuc
@@ -164,6 +168,12 @@ impl<'a> Source<'a> {
                 found => found,
             },
         }
+    }
+
+    /// The program that starts with a statement.
+    pub(crate) fn program_at(&self, statement: u32) -> Program {
+        let started = self.programs.iter().find(|(_, at)| **at == statement);
+        started.map_or(Program::Number(0), |(program, _)| *program)
     }
 
     /// Bytes of the file of a statement.

@@ -125,7 +125,7 @@ impl<'a> Run<'a, '_> {
             while self.at.file == file {
                 let Some(statement) = source.statements.get(self.at.statement as usize) else {
                     if let Some(frame) = self.frames.last() {
-                        return Err(faults::no_return(&self.names, frame.kind));
+                        return Err(self.no_return(frame.kind));
                     }
                     return Ok(());
                 };
@@ -141,6 +141,18 @@ impl<'a> Run<'a, '_> {
         let place = self.at;
         let again = self.visit(place);
         self.at.statement += 1;
+        if statement.flags.starts {
+            if let Some(frame) = self.frames.last() {
+                return Err(self.no_return(frame.kind));
+            }
+            if self.started {
+                let program = match &statement.kind {
+                    Kind::Program(program) => *program,
+                    _ => source.program_at(place.statement),
+                };
+                return Err(faults::runs_into(&program.written(&self.names)));
+            }
+        }
         match &statement.kind {
             _ if statement.flags.ends && self.called_by_name() => {
                 return Err(faults::no_call(&both!(
@@ -182,25 +194,24 @@ impl<'a> Run<'a, '_> {
             }
             Kind::Percent => {
                 if let Some(frame) = self.frames.last() {
-                    return Err(faults::no_return(&self.names, frame.kind));
+                    return Err(self.no_return(frame.kind));
                 }
                 self.copy(source, statement, place, again);
                 if self.started {
                     return Ok(Next::Ended);
                 }
             }
-            Kind::Program(number) => {
-                if let Some(frame) = self.frames.last() {
-                    return Err(faults::no_return(&self.names, frame.kind));
-                }
-                if self.started {
-                    return Err(faults::runs_into(*number));
-                }
+            Kind::Program(_) => {
                 self.copy(source, statement, place, again);
             }
             Kind::Broken(diagnostic) => return Err(Stop::Diagnostic(diagnostic.clone())),
         }
         Ok(Next::On)
+    }
+
+    /// A subprogram ends without its return.
+    pub(crate) fn no_return(&self, kind: CallKind) -> Stop {
+        faults::no_return(&self.names, kind, self.dialect.flow.macros)
     }
 
     /// A subprogram of Siemens runs.

@@ -10,7 +10,7 @@ use crate::flow::{Taken, assignment, call_of, fanuc_flow, skip_word};
 use crate::o_word::{self, OStatement};
 use crate::okuma;
 use crate::siemens::{self, Said};
-use crate::value::{NameId, Names, Variable};
+use crate::value::{NameId, Names, Program, Variable};
 
 /// A block of a program.
 #[derive(Clone, Debug)]
@@ -40,6 +40,8 @@ pub(crate) struct Flags {
     pub(crate) words: bool,
     /// A cycle whose contour is a subroutine.
     pub(crate) routine: bool,
+    /// A program starts here.
+    pub(crate) starts: bool,
 }
 
 /// What a block is.
@@ -49,8 +51,8 @@ pub(crate) enum Kind {
     Copy,
     /// `%`
     Percent,
-    /// `O1000` that starts a program.
-    Program(u32),
+    /// `O1000`, or `OSUB`, that starts a program.
+    Program(Program),
     /// Something to do.
     Complex(Box<Complex>),
     /// Cannot be read; told when it is reached.
@@ -154,7 +156,7 @@ pub(crate) enum Direction {
 pub(crate) struct Call {
     /// Number of a program, or of a block.
     pub(crate) number: Expression,
-    /// Siemens: its name instead.
+    /// Siemens and Okuma: its name instead.
     pub(crate) program: Option<NameId>,
     /// M97: the number is that of a block of this program.
     pub(crate) local: bool,
@@ -198,13 +200,23 @@ impl Compiler<'_, '_> {
                 Err(diagnostic) => Kind::Broken(diagnostic),
             }
         } else {
-            // `:10` is a main block there.
-            match block.word(b'O').filter(|_| !siemens).and_then(|word| word.number()?.integer()) {
-                Some(number) => Kind::Program(u32::try_from(number).unwrap_or(u32::MAX)),
-                None => Kind::Copy,
-            }
+            self.program(block).map_or(Kind::Copy, Kind::Program)
         };
         (kind, flags)
+    }
+
+    /// The program that a block starts: `O1000`, or Okuma's `OSUB`.
+    pub(crate) fn program(&mut self, block: &Block<'_>) -> Option<Program> {
+        // `:10` is a main block of Siemens.
+        let siemens = self.dialect.flow.macros == Macros::Siemens;
+        if let Some(number) = block.word(b'O').filter(|_| !siemens).and_then(|word| word.number()?.integer())
+        {
+            return Some(Program::Number(u32::try_from(number).unwrap_or(u32::MAX)));
+        }
+        let okuma = self.dialect.flow.macros == Macros::Okuma;
+        let first = block.items.first().filter(|item| okuma && item.kind == ItemKind::Name)?;
+        let name = block.text(first.span);
+        name.first()?.eq_ignore_ascii_case(&b'O').then(|| Program::Name(self.names.id(name)))
     }
 
     fn flags(&self, items: &[Item], bytes: &[u8]) -> Flags {

@@ -33,6 +33,23 @@ impl Value {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct NameId(pub(crate) u32);
 
+/// A program of a file: `O100`, or Okuma's `OSUB`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Program {
+    Number(u32),
+    Name(NameId),
+}
+
+impl Program {
+    /// In capitals, a number with four digits.
+    pub(crate) fn written(self, names: &Names) -> String {
+        match self {
+            Self::Number(number) => format!("O{number:04}"),
+            Self::Name(name) => names.name(name).to_ascii_uppercase(),
+        }
+    }
+}
+
 /// Names of variables and O-words: lower case, without blanks.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Names {

@@ -117,9 +117,32 @@ fn turns_are_full_circles_before_the_arc() {
     assert_eq!(refused("G1 Z50 TURN=2\n"), 146);
 }
 
+/// One part as a post writes it with extended cycles and without.
+#[test]
+fn arguments_of_extended_cycles_that_choose_nothing() {
+    for (extended, plain) in [
+        ("CYCLE81(5,-1,5,-17.262,,0,0,10)", "CYCLE81(5,-1,5,-17.262,)"),
+        ("CYCLE81(5,-1,5,-17.262,,0,0,0,10)", "CYCLE81(5,-1,5,-17.262,)"),
+        ("CYCLE82(5,-1,5,-17.262,,0.5,0,0,10)", "CYCLE82(5,-1,5,-17.262,,0.5)"),
+        ("CYCLE85(5,-1,5,-16,,0,200,500,0,0,0)", "CYCLE85(5,-1,5,-16,,0,200,500)"),
+        ("CYCLE86(5,-1,5,-16,,0,3,-0.01,0,0,0,0,0,10)", "CYCLE86(5,-1,5,-16,,0,3,-0.01,0,0,0)"),
+        (
+            "CYCLE83(5,-1,5,-17.262,,-2,,0.1,0,0,1,1,,0.5,0,0,0,0,0,1110)",
+            "CYCLE83(5,-1,5,-17.262,,-2,,0.1,0,0,1,1,,0.5,0,0,0)",
+        ),
+    ] {
+        assert_eq!(flat(&format!("{extended}\n")), flat(&format!("{plain}\n")), "{extended}");
+    }
+}
+
 #[test]
 fn arguments_that_choose_how_others_are_read_are_refused() {
     for call in [
+        "CYCLE81(5,-1,5,-17.262,,0,0,10,10)",
+        "CYCLE82(5,-1,5,-17.262,,-3,0,0,10)",
+        "CYCLE82(5,-1,5,-17.262,,0,0,0,20)",
+        "CYCLE82(5,-1,5,-17.262,,0,10,0,10)",
+        "CYCLE83(5,-1,5,-17.262,,-2,,0.1,0,0,1,1,,0.5,0,0,0,0,0,1001110)",
         "CYCLE81(15,0,2)",
         "CYCLE81()",
         "CYCLE81(15,0,2,-10,,0.5)",

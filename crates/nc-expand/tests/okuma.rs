@@ -44,6 +44,15 @@ fn subprograms_are_called_by_number() {
 }
 
 #[test]
+fn subprograms_are_called_by_name() {
+    let lines = flat("CALL OSUB Q2\nX0.\nM2\nOSUB (a pocket)\nX4.\nCALL Oa1\nRTS\nOA1\nX5.\nRTS\n");
+    assert_eq!(lines, ["X4.", "X5.", "X4.", "X5.", "X0.", "M2"]);
+    let text =
+        common::flat("okuma", &format!("{START}CALL OSUB\nM2\n"), &[], &[("OSUB.SSB", "OSUB\nX6.\nRTS\n")]);
+    assert!(text.contains("(OSUB CALL 1 OF 1)\nX6.\n"), "{text}");
+}
+
+#[test]
 fn what_is_not_certain_is_refused() {
     for (program, code) in [
         ("DIA=5\n", 120),
@@ -54,7 +63,13 @@ fn what_is_not_certain_is_refused() {
         ("VC1=5 MOD 2\n", 120),
         ("VC1=1\nIF [VC1] N10\nN10 M2\n", 120),
         ("VC1=1\nIF [VC1 EQ 1 OR VC1 EQ 2] N10\nN10 M2\n", 120),
-        ("CALL OSUB\n", 120),
+        ("CALL SUB\n", 120),
+        ("CALL OSUB PX=5\n", 120),
+        ("CALL OSUB\nM2\n", 127),
+        ("CALL OSUB\nM2\nOSUB X1.\nRTS\n", 136),
+        ("CALL O7\nM2\nO7 X1.\nRTS\n", 136),
+        ("CALL OSUB\nM2\nOSUB\nX1.\nO8\nRTS\n", 135),
+        ("X1.\nOSUB\nRTS\n", 135),
         ("CALL O1 VC1=5\n", 120),
         ("G1 X=VC1\n", 121),
         ("VC1=VC2\nIF [VC1 EQ 1] N10\nN10 M2\n", 121),

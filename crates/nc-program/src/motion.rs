@@ -340,7 +340,7 @@ pub(crate) fn division(
 ) -> Division {
     match offset::division(before, state, ends_mm, bend) {
         // A rotary axis that turns meanwhile would need a share of each piece.
-        Some(Division::Long { .. }) if turns => Division::One,
+        Some(Division::Long { .. } | Division::LongClimbing { .. }) if turns => Division::One,
         Some(division) => division,
         None if turns => Division::OneBehindLines,
         None => Division::Any,

@@ -172,6 +172,9 @@ fn length(
     }
     let concerned = either(either(has_length(was), has_length(is)), either(changed, ALONG_Z));
     forget(words, state, concerned, Why::ToolLength);
+    if env.dialect.length_shifts && !by_tool {
+        return;
+    }
     // An absolute word in the same block leads to one place on all controls; in a cycle it is a depth.
     let along_cycle = state.cycle.map(|_| state.plane.axes()[2]);
     let absolute = demand.owner == Owner::Motion;

@@ -19,6 +19,9 @@ use crate::words::{Preparatory, Words};
 const LEAST_RADII: f64 = 3.0;
 /// A move in the plane shorter than this is none, mm.
 const STANDS_MM: f64 = 1e-9;
+/// A climb across the plane below this share of the way is what a correction may make of a level block: tables of machines
+/// climb by some 1e-4 of the way.
+const LEVEL_SHARE: f64 = 1e-3;
 /// No arc is offset to a radius below this share of its own.
 const LEAST_SHARE: f64 = 0.01;
 
@@ -138,8 +141,9 @@ pub(crate) fn division(
     ends_mm: [[f64; 3]; 2],
     bend: Option<(f64, bool)>,
 ) -> Option<Division> {
-    let [_, _, normal] = state.plane.axes();
-    let climbs = (ends_mm[1][normal] - ends_mm[0][normal]).abs() > STANDS_MM;
+    let [u, v, normal] = state.plane.axes();
+    let along = |axis: usize| ends_mm[1][axis] - ends_mm[0][axis];
+    let climb_mm = along(normal).abs();
     let (Compensation::On(side), Stage::Led, None) = (state.compensation, state.offset.stage, &before.aside)
     else {
         let free = before.compensation == Compensation::Off
@@ -147,7 +151,11 @@ pub(crate) fn division(
             && state.offset.is_off();
         return (!free).then_some(Division::One);
     };
-    let Some(radius_mm) = state.offset.radius_mm().filter(|_| state.transform.is_none() && !climbs) else {
+    let chord_mm = units::math::hypot(along(u), along(v));
+    // A full circle has none.
+    let way_mm = bend.filter(|_| chord_mm <= STANDS_MM).map_or(chord_mm, |(arc_mm, _)| arc_mm);
+    let level = state.transform.is_none() && climb_mm <= STANDS_MM.max(LEVEL_SHARE * way_mm);
+    let Some(radius_mm) = state.offset.radius_mm().filter(|_| level) else {
         return Some(Division::One);
     };
     // A piece of the contour is as long as it is offset, times the arc's radius over that of its offset.
@@ -162,6 +170,11 @@ pub(crate) fn division(
             arc_mm / offset_mm
         }
     };
-    let least_um = (LEAST_RADII * radius_mm * longer * 1e3).ceil();
-    Some(Division::Long { least_um: least_um.min(f64::from(u32::MAX)) as u32, normal: normal as u8 })
+    let least_um = (LEAST_RADII * radius_mm * longer * 1e3).ceil().min(f64::from(u32::MAX)) as u32;
+    let normal = normal as u8;
+    Some(if climb_mm <= STANDS_MM {
+        Division::Long { least_um, normal }
+    } else {
+        Division::LongClimbing { least_um, normal }
+    })
 }

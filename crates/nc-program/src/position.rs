@@ -306,6 +306,15 @@ fn unknown(words: &Words<'_, '_, '_>, message: Text, span: Span, lost: &[(char, 
     } else {
         Text::EMPTY
     };
+    let by_length = |(_, lost): &(char, Lost)| lost.why == Why::ToolLength;
+    let length = if lost.iter().any(by_length) {
+        Text::pair(
+            ", or in the block of the tool length; or, where the control's manual says that the length alone moves nothing, say so as tool_length.alone in a copy of the grammar",
+            " или в кадре с коррекцией на длину; а если по руководству стойки сама коррекция оси не перемещает, укажите это как tool_length.alone в копии таблицы диалекта",
+        )
+    } else {
+        Text::EMPTY
+    };
     let rotary_from_start = |(name, lost): &(char, Lost)| lost.why == Why::Start && "ABC".contains(*name);
     let start = if lost.iter().all(rotary_from_start) {
         let places: Vec<String> = lost.iter().map(|(name, _)| format!("{name}=0")).collect();
@@ -318,8 +327,8 @@ fn unknown(words: &Words<'_, '_, '_>, message: Text, span: Span, lost: &[(char, 
         Text::EMPTY
     };
     let help = both!(
-        "program a rapid `G90 G0 {}` before this block{tool_change}{start}",
-        "запрограммируйте перед этим кадром быстрый ход `G90 G0 {}`{tool_change:#}{start:#}",
+        "program a rapid `G90 G0 {}` before this block{length}{tool_change}{start}",
+        "запрограммируйте перед этим кадром быстрый ход `G90 G0 {}`{length:#}{tool_change:#}{start:#}",
         names.join(" ")
     );
     let refusal = words.refuse(codes::POSITION_UNKNOWN, message, span, reasons(lost));

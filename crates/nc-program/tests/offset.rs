@@ -58,6 +58,10 @@ fn where_the_radius_is_not_certain_each_is_one_block() {
     // A ramp.
     let text = format!("{START}G41 D1 G1 X20. F100.\nY100. Z9.\nX90.\n");
     assert_eq!(divisions("fanuc", &text), [one, one, long]);
+    // As little as a correction may make a level block climb.
+    let text = format!("{START}G41 D1 G1 X20. F100.\nY100. Z9.99\nX90.\n");
+    let climbing = Division::LongClimbing { least_um: 15_000, normal: 2 };
+    assert_eq!(divisions("fanuc", &text), [one, climbing, long]);
     // A circle as small as the cutter.
     let text = format!("{START}G42 D1 G1 X20. F100.\nY100.\nG2 X30. Y110. I10. J0\nG2 X35. Y105. I0 J-5.\n");
     assert_eq!(divisions("fanuc", &text)[2..], [Division::Long { least_um: 30_000, normal: 2 }, ONE]);

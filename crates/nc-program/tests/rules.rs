@@ -204,6 +204,18 @@ fn a_tool_length_without_a_word_for_its_axis_loses_it() {
     assert_eq!(end("fanuc", &format!("{stand}G43 H1 Z9.\nG43 H1 X1.\n")), at(1.0, 0.0, 129.0));
 }
 
+/// LinuxCNC says that it causes no motion: the axis stands where it stood, the same place has another word.
+#[test]
+fn a_tool_length_of_linuxcnc_moves_nothing() {
+    let stand = "G49 G54 G0 X0 Y0 Z50.\n";
+    let there = at(0.0, 0.0, 50.0);
+    assert_eq!(end("linuxcnc", &format!("{stand}G43 H1\n")), there);
+    assert_eq!(end("linuxcnc", &format!("{stand}G43 H1 X1.\n")), at(1.0, 0.0, 50.0));
+    assert_eq!(end("linuxcnc", &format!("{stand}G43 H1\nG91 Z9.\n")), at(0.0, 0.0, 59.0));
+    assert_eq!(end("linuxcnc", &format!("{stand}G43 H1\nG1 Z2. F100\n")), at(0.0, 0.0, 122.0));
+    assert_eq!(end("linuxcnc", &format!("{stand}G43 H1 Z9.\nG49\n")), at(0.0, 0.0, 129.0));
+}
+
 #[test]
 fn the_first_z_after_g43_means_the_tip() {
     assert_eq!(end("fanuc", "G49 G54 G0 X0 Y0 Z50.\nG43 H1 Z2.\n"), at(0.0, 0.0, 122.0));

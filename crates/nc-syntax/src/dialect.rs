@@ -1109,6 +1109,9 @@ pub struct Dialect {
     pub length_under_g40: LengthAfter,
     /// What G49 does to it.
     pub length_under_g49: LengthAfter,
+    /// A code of the tool length moves no axis: from there on the same place has other words (LinuxCNC). Where false some
+    /// controls move the axis at once.
+    pub length_shifts: bool,
     /// A T word may bring in the tool, and its length, at once.
     pub t_may_change_tool: bool,
     /// G10 L10 and L11 write the two parts of a tool length, L12 and L13 those of a radius (Fanuc).

@@ -45,11 +45,20 @@ fn seen(feed: &Feed, normal: u8) -> Seen {
     }
 }
 
+/// The least length of a piece, µm, and the axis that the offset leaves alone. A level block that was corrected climbs by
+/// what the machine's error changes.
+fn least(feed: &Feed) -> Option<(u32, u8)> {
+    match feed.division {
+        Division::Long { least_um, normal } | Division::LongClimbing { least_um, normal } => {
+            Some((least_um, normal))
+        }
+        Division::Any | Division::OneBehindLines | Division::One => None,
+    }
+}
+
 /// A feed goes on from the one before it so that the control's offset of both is that of one block.
 pub(crate) fn goes_on(before: &Feed, feed: &Feed) -> bool {
-    let (Division::Long { least_um, normal }, Division::Long { least_um: least_before_um, normal: same }) =
-        (feed.division, before.division)
-    else {
+    let (Some((least_um, normal)), Some((least_before_um, same))) = (least(feed), least(before)) else {
         return false;
     };
     if normal != same {

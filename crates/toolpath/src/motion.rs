@@ -115,7 +115,7 @@ pub struct Feed {
 /// // Into how many blocks a path of so many pieces may go.
 /// let blocks = |division: Division, pieces: usize| match division {
 ///     Division::Any | Division::Long { .. } => Some(pieces),
-///     Division::OneBehindLines | Division::One => (pieces == 1).then_some(1),
+///     Division::OneBehindLines | Division::One | Division::LongClimbing { .. } => (pieces == 1).then_some(1),
 /// };
 /// assert_eq!(blocks(Division::default(), 3), Some(3));
 /// assert_eq!(blocks(Division::One, 3), None);
@@ -137,13 +137,21 @@ pub enum Division {
         /// The axis that the offset leaves alone.
         normal: u8,
     },
+    /// The same, climbing by less than a thousandth of its way: one block in a program, and in a corrected one what a level
+    /// block's piece is.
+    LongClimbing {
+        /// Length of the shortest, µm.
+        least_um: u32,
+        /// The axis that the offset leaves alone.
+        normal: u8,
+    },
 }
 
 impl Division {
     /// The control offsets the motion block by block.
     #[must_use]
     pub const fn is_offset(self) -> bool {
-        matches!(self, Self::One | Self::Long { .. })
+        matches!(self, Self::One | Self::Long { .. } | Self::LongClimbing { .. })
     }
 }
 

@@ -2,7 +2,8 @@
 
 A machine is a plain dictionary (model.py computes it, files.py writes it); a program is text. Every program starts with
 one rapid in all axes from a known place (`start_at`) that is millimetres away, so that all play is settled; the kind
-`unknown-side` says nothing of the start and feeds each axis to its place first.
+`unknown-side` says nothing of the start and feeds each axis to its place first; `turned` is cut in a frame of Fanuc's that
+is turned (G68) or mirrored (G51.1), on axes with play.
 """
 
 import math
@@ -11,7 +12,7 @@ import random
 from files import rounded
 
 KINDS = ("linear", "cubic", "dyadic", "effects", "backlash", "directions", "sideways", "arcs-under-play", "helices", "kinks",
-         "tiny", "mixed", "unknown-side")
+         "tiny", "mixed", "unknown-side", "turned")
 PLANES = {17: (0, 1, 2, "IJ"), 18: (2, 0, 1, "KI"), 19: (1, 2, 0, "JK")}
 TOLERANCES = (0.5, 0.5, 1.0, 1.0, 1.0, 2.0, 3.0, 5.0, 10.0, 20.0)
 CHAINS = ("w X Y b Z t", "w X Y b Z t", "w b Z X Y t", "w Y b X Z t", "w X Y Z b t")
@@ -46,7 +47,7 @@ def minus_of(rng, plus, aside, angle):
 
 def machine(rng, kind):
     cubic = rng.random() < 0.5 if kind not in ("linear", "cubic", "dyadic") else kind != "linear"
-    spec = {"control": "linuxcnc", "chain": rng.choice(CHAINS), "cubic": cubic, "axes": [], "effects": [], "at": {},
+    spec = {"control": "fanuc" if kind == "turned" else "linuxcnc", "chain": rng.choice(CHAINS), "cubic": cubic, "axes": [], "effects": [], "at": {},
             "tool": [0, 0, 0] if rng.random() < 0.4 else [rng.choice([0, 12.5]), 0, rng.choice([-120, -80, 0])],
             "tolerance_um": rng.choice(TOLERANCES), "squareness_urad": [0, 0, 0]}
     size, angle = rng.choice([3, 8, 20]), rng.choice([0, 10, 40])
@@ -70,16 +71,16 @@ def machine(rng, kind):
         dyadic(rng, spec)
     if kind in ("effects", "mixed"):
         effects(rng, spec)
-    if kind in ("backlash", "arcs-under-play", "mixed", "tiny", "unknown-side", "helices"):
+    if kind in ("backlash", "arcs-under-play", "mixed", "tiny", "unknown-side", "helices", "turned"):
         play(rng, spec, 0.5 if kind in ("mixed", "tiny", "helices") else 1.0)
     if kind == "arcs-under-play":
         spec["tolerance_um"] = rng.choice([0.5, 1.0, 2.0, 2.2, 3.0, 5.0])
         for a in spec["axes"]:
             if rng.random() < 0.7:
                 a["backlash_um"] = round(spec["tolerance_um"] * rng.choice([1.5, 3, 5, 10]), 2)
-    if kind in ("directions", "unknown-side") or kind in ("mixed", "arcs-under-play") and rng.random() < 0.3:
+    if kind in ("directions", "unknown-side") or kind == "turned" and rng.random() < 0.2 or kind in ("mixed", "arcs-under-play") and rng.random() < 0.3:
         directions(rng, spec)
-    if kind == "sideways" or kind == "mixed" and rng.random() < 0.3:
+    if kind == "sideways" or kind in ("mixed", "turned") and rng.random() < 0.3:
         sideways(rng, spec)
     return spec
 
@@ -176,14 +177,14 @@ class Writer:
     def __init__(self, rng, spec, kind):
         self.rng, self.spec, self.kind = rng, spec, kind
         length = 0.0
-        if rng.random() < 0.25 and kind != "dyadic":
+        if rng.random() < 0.25 and kind not in ("dyadic", "turned"):
             length = rng.choice([20.0, 31.5])
             spec["lengths"] = {"H1": length}
         middle = [round((a["travel"][0] + a["travel"][1]) / 2) for a in spec["axes"]]
         spec["offset"] = [0, 0, 0] if kind == "dyadic" else [middle[0], middle[1], middle[2] - length]
         shift = [spec["offset"][0], spec["offset"][1], spec["offset"][2] + length]
         self.box = [(a["travel"][0] - s + 1.0, a["travel"][1] - s - 1.0) for a, s in zip(spec["axes"], shift)]
-        self.inch = rng.random() < 0.04
+        self.inch = rng.random() < 0.04 and kind != "turned"
         self.unit, self.decimals = (25.4, 4) if self.inch else (1.0, 3)
         self.incremental, self.plane, self.mode = False, 17, None
         self.lines = [f"{'G20' if self.inch else 'G21'} G17 G90 G94 G54"] + (["G43 H1"] if length else [])
@@ -195,9 +196,29 @@ class Writer:
             first = [self.grid((low + high) / 2) for low, high in self.box]
         self.move(0, first, "XYZ")
         self.lines.append("F500" if not self.inch else "F20")
+        self.ends = []
         if kind == "unknown-side":
             for i in range(3):
                 self.step(i, rng.choice([-1, 1]) * 0.5)
+        if kind == "turned":
+            self.turn()
+
+    def turn(self):
+        """Turns or mirrors the frame about the middle of the volume, and goes to a place in it."""
+        rng = self.rng
+        middle = [self.grid((low + high) / 2) for low, high in self.box[:2]]
+        reach = 0.68 * min((high - low) / 2 for low, high in self.box[:2])
+        self.box = [(m - reach, m + reach) for m in middle] + self.box[2:]
+        about = [f"X{self.number(middle[0])}", f"Y{self.number(middle[1])}"]
+        if rng.random() < 0.3:
+            about = about if rng.random() < 0.4 else [rng.choice(about)]
+            self.lines.append("G51.1 " + " ".join(about))
+            self.ends = ["G50.1 " + " ".join(word[0] + "0" for word in about)]
+        else:
+            angle = rng.choice([90, 180, -90, 270, 30, 45, -60, rng.uniform(0, 360), rng.uniform(0, 360), rng.uniform(-3, 3), rng.uniform(-0.05, 0.05)])
+            self.lines.append(f"G68 {' '.join(about)} R{angle:.3f}")
+            self.ends = ["G69"]
+        self.move(0, [self.grid(rng.uniform(low, high)) for low, high in self.box], "XYZ")
 
     def grid(self, mm):
         return round(mm / self.unit, self.decimals) * self.unit
@@ -271,16 +292,16 @@ class Writer:
             self.move(code, to, named, tail)
 
     def text(self):
-        return "\n".join(self.lines + ["M2"]) + "\n"
+        return "\n".join(self.lines + self.ends + ["M2"]) + "\n"
 
 
 def program(rng, spec, kind):
     w = Writer(rng, spec, kind)
     for _ in range(rng.randint(5, 16)):
-        if rng.random() < 0.15:
+        if rng.random() < 0.15 and kind != "turned":
             w.plane = rng.choice([17, 18, 19])
             w.lines.append(f"G{w.plane}")
-        if rng.random() < 0.05:
+        if rng.random() < 0.05 and kind != "turned":
             w.incremental = not w.incremental
             w.lines.append("G91" if w.incremental else "G90")
         if rng.random() < 0.06:
@@ -305,7 +326,7 @@ def one_block(rng, w, kind):
               rng.choice([0, 0, 0.002, -0.002, 0.005, -0.005, 0.009, -0.009]))
         if choice < 0.15:
             w.step(rng.randrange(3), rng.choice([-1, 1]) * rng.choice([0.01, 0.3, 4]))
-    elif kind == "arcs-under-play" or kind in ("backlash", "directions", "sideways", "unknown-side") and choice < 0.5:
+    elif kind == "arcs-under-play" or kind in ("backlash", "directions", "sideways", "unknown-side", "turned") and choice < 0.5:
         near = rng.choice([0.0, 0.001, -0.001, 0.01, -0.01, rng.uniform(-0.05, 0.05), rng.uniform(-3, 3)])
         first = rng.randrange(4) * quarter + near
         radius = rng.choice([0.004, 0.008, 0.012, 0.03, 0.1, 0.4, 1.5, 5, rng.uniform(2, 25), rng.uniform(2, 25)])

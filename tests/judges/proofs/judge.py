@@ -257,7 +257,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--vpost", default="vpost")
     parser.add_argument("--count", type=int, default=500)
-    parser.add_argument("--first", type=int, default=0, help="number of the first pair; a multiple of 13 with --kind")
+    parser.add_argument("--first", type=int, default=0, help="number of the first pair; a multiple of 14 with --kind")
     parser.add_argument("--kind", choices=generate.KINDS, help="only this kind of pair")
     parser.add_argument("--seed", default="1")
     parser.add_argument("--jobs", type=int, default=1, choices=[1], help="one process at a time")

@@ -1,4 +1,5 @@
-"""Reads the plain part of a mill program: G0 to G3, G17 to G19, G20 and G21, G90 and G91, G93 and G94, G43 and G49, F, R, I J K.
+"""Reads the plain part of a mill program: G0 to G3, G17 to G19, G20 and G21, G90 and G91, G93 and G94, G43 and G49, F, R, I J K;
+and of Fanuc's frames G68 and G69 in G17, and G51.1 and G50.1 of X and Y.
 
 Anything else that could move an axis raises Unreadable: the judge would rather give no verdict than a guessed one.
 Motions are in axis commands (machine coordinates, mm). An arc runs about its centre with its radius linear in the angle
@@ -95,6 +96,7 @@ def read(text, spec, start=None):
     here = None if start is None else [float(v) for v in start]
     named = [start is not None] * 3
     mode, plane, absolute, scale, tool = None, 17, True, 1.0, None
+    frame = Frame()
     motions = []
     for number, raw in enumerate(text.splitlines(), 1):
         code = re.sub(r"\([^)]*\)", " ", raw).split(";")[0].upper().replace(" ", "").replace("\t", "")
@@ -103,7 +105,7 @@ def read(text, spec, start=None):
         pairs = WORD.findall(code)
         if "".join(a + b for a, b in pairs) != code:
             raise Unreadable(f"line {number}: {raw.strip()}")
-        words, length_changes = {}, None
+        words, length_changes, framing = {}, None, None
         for letter, value in pairs:
             value = float(value)
             if letter == "G":
@@ -117,6 +119,8 @@ def read(text, spec, start=None):
                     absolute = value == 90
                 elif value in (43, 49):
                     length_changes = int(value)
+                elif value in (68, 69, 51.1, 50.1):
+                    framing = value
                 elif value not in SILENT and value != 93:
                     raise Unreadable(f"line {number}: G{value:g}")
             elif letter in "XYZIJKR" or letter in OTHERS:
@@ -127,6 +131,20 @@ def read(text, spec, start=None):
             tool = f"H{int(words['H'])}"
         elif length_changes == 49:
             tool = None
+        if framing is not None:
+            about = {i: words[c] * scale for i, c in enumerate("XY") if c in words}
+            if plane != 17 or not absolute or "Z" in words or framing == 68 and (len(about) < 2 or "R" not in words):
+                raise Unreadable(f"line {number}: a frame that this reader does not know")
+            if framing in (68, 51.1) and not frame.plain():
+                raise Unreadable(f"line {number}: two frames at once")
+            frame = Frame()
+            if framing == 68:
+                frame.turn((about[0], about[1]), words["R"])
+            elif framing == 51.1:
+                frame.mirror(about)
+            continue
+        if not frame.plain() and (plane != 17 or not absolute):
+            raise Unreadable(f"line {number}: a motion in a frame that this reader does not know")
         if not any(c in words for c in "XYZ") and not (mode in (2, 3) and any(c in words for c in "IJK")):
             continue
         shift = np.array(offset)
@@ -135,8 +153,14 @@ def read(text, spec, start=None):
         before = None if here is None or not all(named) else list(here)
         here = here if here is not None else [0.0] * 3
         end = list(here)
+        if not frame.plain():
+            if not all(named):
+                raise Unreadable(f"line {number}: a frame around an unknown place")
+            inner = frame.inwards(np.array(here) - shift)
+            inside = [words[c] * scale if c in words else inner[i] for i, c in enumerate("XYZ")]
+            end = [float(v) for v in frame.outwards(inside) + shift]
         for i, c in enumerate("XYZ"):
-            if c in words:
+            if c in words and frame.plain():
                 if not absolute and not named[i]:
                     raise Unreadable(f"line {number}: an increment from nowhere")
                 end[i] = words[c] * scale + (shift[i] if absolute else here[i])
@@ -148,12 +172,50 @@ def read(text, spec, start=None):
             raise Unreadable(f"line {number}: a feed from an unknown place")
         elif mode == 1:
             motions.append(Motion("line", before, end, number, tool))
+        elif mode in (2, 3) and not frame.plain():
+            arc = frame.arc(arc_of(inner, inside, plane, mode == 2, words, scale, number), shift)
+            motions.append(Motion("arc", before, end, number, tool, arc))
         elif mode in (2, 3):
             arc = arc_of(before, end, plane, mode == 2, words, scale, number)
             motions.append(Motion("arc", before, end, number, tool, arc))
         else:
             raise Unreadable(f"line {number}: a motion without a code")
     return motions
+
+
+class Frame:
+    """What stands between the words and the work offset: a turn or a mirror in X and Y, in mm of the work frame."""
+
+    def __init__(self):
+        self.matrix, self.shift = np.eye(3), np.zeros(3)
+
+    def turn(self, about, degrees):
+        c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        self.matrix = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        self.shift = np.array([*about, 0.0]) - self.matrix @ np.array([*about, 0.0])
+
+    def mirror(self, about):
+        """About the values given by axis, X and Y."""
+        for i, value in about.items():
+            self.matrix[i, i], self.shift[i] = -1.0, 2.0 * value
+
+    def plain(self):
+        return np.array_equal(self.matrix, np.eye(3))
+
+    def inwards(self, place):
+        """The place in the program's frame, of one in the work frame."""
+        return self.matrix.T @ (np.asarray(place, float) - self.shift)
+
+    def outwards(self, place):
+        return self.matrix @ np.asarray(place, float) + self.shift
+
+    def arc(self, arc, offset):
+        """An arc of the program's frame as axes run it."""
+        angle = np.array([math.cos(arc["angle"]), math.sin(arc["angle"]), 0.0])
+        turned = self.matrix @ angle
+        centre = self.outwards([*arc["centre"], 0.0])[:2] + np.asarray(offset, float)[:2]
+        return {**arc, "centre": (float(centre[0]), float(centre[1])), "angle": math.atan2(turned[1], turned[0]),
+                "sweep": arc["sweep"] * float(np.sign(np.linalg.det(self.matrix)))}
 
 
 def runs(motions):

@@ -56,6 +56,12 @@ def cases():
     arc = "G0 X0 Y0 Z0\nG2 X10 Y10 I10 J0\n"
     circle = [(10 - 10.002 * np.cos(t), 10.002 * np.sin(t), 0) for t in np.linspace(0, np.pi / 2, 60000)]
     yield "arc of another radius", frechet(arc, circle), 2, 0.05
+    yield "a quarter turn about a place", frechet("G0 X0 Y0 Z0\nG68 X0 Y20 R90.\nG0 X-20 Y20 Z0\nG1 X-10 Y20\nG69\n", dense((0, 0, 0), (0, 10, 0))), 0, 0.03
+    yield "the turn forgotten", frechet("G0 X0 Y0 Z0\nG68 X0 Y0 R0.02\nG1 X10\nG69\n", dense((0, 0, 0), (10, 0, 0))), 3.49, 0.05
+    mirrored = [(-10 + 10 * np.cos(t), 10 * np.sin(t), 0) for t in np.linspace(0, np.pi / 2, 60000)]
+    yield "a mirrored arc", frechet("G0 X0 Y0 Z0\nG51.1 X0\nG2 X10 Y10 I10 J0\nG50.1 X0\n", mirrored), 0, 0.2
+    turned = [(10 * np.sin(t), 10 - 10 * np.cos(t), 0) for t in np.linspace(0, np.pi / 2, 60000)]
+    yield "a turned arc", frechet("G0 X0 Y0 Z0\nG68 X0 Y0 R-90.\nG3 X-10 Y10 I-10 J0\nG69\n", turned), 0, 0.2
     tiny = "G0 X0 Y0 Z0\nG3 X0 Y0 I0.004 J0\n"
     yield "tiny circle left out", frechet(tiny, [(0, 0, 0)] * 3), 8, 0.05
     third = "G0 X0 Y0 Z0\nG18 G3 X10 Z10 Y5 I10 K0\n"

@@ -404,9 +404,10 @@ class Part:
         self.both("G1 X20. Y20. Z20. F200.")
         body = ["G91", f"G1 X{self.num(2, 6)}", f"Y{self.num(-3, 3)}", "G90"]
         okuma = self.control == "okuma"
-        self.own.append(f"CALL O{number} Q{times}" if okuma else f"M98 P{number} L{times}")
+        name = f"OP{number % 100}A" if okuma and self.rng.random() < 0.5 else f"O{number}"
+        self.own.append(f"CALL {name} Q{times}" if okuma else f"M98 P{number} L{times}")
         self.other += body * times
-        self.subprograms.append([f"O{number}", *body, "RTS" if okuma else "M99"])
+        self.subprograms.append([name, *body, "RTS" if okuma else "M99"])
         self.both("G0 Z60.")
 
 

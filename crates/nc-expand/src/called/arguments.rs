@@ -69,22 +69,41 @@ impl Arguments {
         })
     }
 
+    /// How many are written.
+    pub(super) fn count(&self) -> usize {
+        self.values.len()
+    }
+
     /// Those from a place on choose ways of reading the others, which this room knows for none but zero.
     pub(super) fn nothing_behind(&self, words: &Words<'_, '_>, place: usize) -> Result<(), Fault> {
-        match (place..self.values.len()).find(|place| self.or_zero(*place) != 0.0) {
-            None => Ok(()),
-            Some(place) => Err(self.fault(
-                words,
-                both!(
-                    "{} with {} as argument {}",
-                    "{} с {} в аргументе {}",
-                    self.name,
-                    self.or_zero(place),
-                    place + 1
-                ),
-                both!("chooses how the control reads the others", "решает, как стойка прочтёт остальные"),
-            )),
-        }
+        self.chooses_nothing(words, place, &[])
+    }
+
+    /// The same, but that some of them may say what the others say already: a place, and the values it may have.
+    pub(super) fn chooses_nothing(
+        &self,
+        words: &Words<'_, '_>,
+        place: usize,
+        said_again: &[(usize, &[f64])],
+    ) -> Result<(), Fault> {
+        let chooses = |place: &usize| {
+            let value = self.or_zero(*place);
+            let again = said_again.iter().any(|(at, values)| at == place && values.contains(&value));
+            value != 0.0 && !again
+        };
+        let Some(found) = (place..self.values.len()).find(chooses) else { return Ok(()) };
+        let (value, number) = (self.or_zero(found), found + 1);
+        Err(words.fault(
+            codes::CALLED_CYCLE,
+            self.span,
+            both!("{} with {value} as argument {number}", "{} с {value} в аргументе {number}", self.name),
+            both!("chooses how the control reads the others", "решает, как стойка прочтёт остальные"),
+            both!(
+                "write {} with its first {place} arguments, which posts do with extended cycles off, or the holes as G0 and G1",
+                "напишите {} с первыми аргументами ({place}), как постпроцессоры без расширенных циклов, или отверстия кадрами G0 и G1",
+                self.name
+            ),
+        ))
     }
 
     pub(super) fn fault(&self, words: &Words<'_, '_>, message: Text, label: Text) -> Fault {

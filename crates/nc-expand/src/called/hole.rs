@@ -24,6 +24,17 @@ const DEEP_MOST_MM: f64 = 7.0;
 /// A peck below this is none: the last bits of a sum, in units of the program.
 const NOTHING: f64 = 1e-9;
 
+/// `_AMODE` of extended cycles: the tens say that the dwell counts seconds, as one above zero does by itself. A post that
+/// writes one part with extended cycles and without has this argument there and none here.
+const SECONDS: [f64; 1] = [10.0];
+/// The same of the three dwells of CYCLE83, whichever digit is whose.
+const ALL_SECONDS: [f64; 7] = [10.0, 100.0, 110.0, 1000.0, 1010.0, 1100.0, 1110.0];
+
+/// What `_AMODE` may be beside a dwell.
+fn in_seconds(time: f64) -> &'static [f64] {
+    if time >= 0.0 { &SECONDS } else { &[] }
+}
+
 /// What the spindle does along its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Move {
@@ -130,7 +141,7 @@ impl Hole {
             Called::DrillDwell => {
                 moves.push(Move::Feed(bottom));
                 dwell(call.or_zero(5), &mut moves);
-                call.nothing_behind(words, 6)?;
+                call.chooses_nothing(words, 6, &[(8, in_seconds(call.or_zero(5)))])?;
             }
             Called::BoreFeeds => bore(words, call, &planes, &mut moves)?,
             Called::BoreOriented => {
@@ -139,7 +150,10 @@ impl Hole {
             }
             _ => {
                 moves.push(Move::Feed(bottom));
-                call.nothing_behind(words, 5)?;
+                // Some posts and controls have a dwell as argument 6, and the others one place behind.
+                let short: &[(usize, &[f64])] =
+                    if call.count() > 8 { &[(8, &SECONDS)] } else { &[(7, &SECONDS)] };
+                call.chooses_nothing(words, 5, short)?;
             }
         }
         moves.push(Move::Rapid(out));
@@ -200,7 +214,7 @@ fn oriented(
             ));
         }
     };
-    call.nothing_behind(words, 11)?;
+    call.chooses_nothing(words, 11, &[(13, in_seconds(call.or_zero(5)))])?;
     moves.insert(0, Move::Spindle(turns));
     moves.push(Move::Feed(bottom));
     dwell(call.or_zero(5), moves);
@@ -280,7 +294,9 @@ fn pecks(
             ));
         }
     };
-    call.nothing_behind(words, 17)?;
+    let stay = [8, 9, 15].map(|place| call.or_zero(place));
+    let seconds: &[f64] = if stay.iter().all(|time| *time >= 0.0) { &ALL_SECONDS } else { &[] };
+    call.chooses_nothing(words, 17, &[(19, seconds)])?;
     let (at_bottom, at_start) = (call.or_zero(8), call.or_zero(9));
     let last = match call.or_zero(15) {
         0.0 => at_bottom,

@@ -38,6 +38,7 @@ pub(crate) fn dialect() -> Dialect {
         bottom_lies_below_r: false,
         length_under_g40: LengthAfter::Stays,
         length_under_g49: LengthAfter::Ends,
+        length_shifts: false,
         t_may_change_tool: false,
         writes_lengths: false,
         edge_in_d: false,

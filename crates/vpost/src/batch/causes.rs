@@ -58,17 +58,19 @@ pub(crate) fn causes(title: &Text, records: &[Record]) -> Text {
     if causes.is_empty() {
         return Text::EMPTY;
     }
-    let mut text = both!("{title}:\n", "{title:#}:\n");
-    let mut told: Vec<(&str, &str)> = Vec::new();
+    let mut lines: Vec<Vec<&Cause<'_>>> = Vec::new();
     for cause in &causes {
-        if told.contains(&cause.headline()) {
-            continue;
+        match lines.iter_mut().find(|ways| ways[0].headline() == cause.headline()) {
+            Some(ways) => ways.push(cause),
+            None => lines.push(vec![cause]),
         }
-        told.push(cause.headline());
-        let ways: Vec<&Cause<'_>> =
-            causes.iter().filter(|other| other.headline() == cause.headline()).collect();
-        let programs: BTreeSet<&str> = ways.iter().flat_map(|way| way.programs.iter().copied()).collect();
-        text.push(&line(cause, programs.len()));
+    }
+    let programs =
+        |ways: &[&Cause<'_>]| ways.iter().flat_map(|way| way.programs.iter()).collect::<BTreeSet<_>>().len();
+    lines.sort_by_key(|ways| std::cmp::Reverse(programs(ways)));
+    let mut text = both!("{title}:\n", "{title:#}:\n");
+    for ways in &lines {
+        text.push(&line(ways[0], programs(ways)));
         for way in ways.iter().take(MOST_WAYS) {
             text.push(&settled(way, ways.len() > 1));
         }
