@@ -38,13 +38,15 @@ class Interference(Unreadable):
 
 
 class Motion:
-    """One move of the tip in program coordinates, (x radius, z), mm; `arc` = (cx, cz, sweep), sweep > 0 from +Z to +X."""
+    """One move of the tip in program coordinates, (x radius, z), mm; `arc` = (cx, cz, sweep), sweep > 0 from +Z to +X. Where the
+    place before it is unknown, `named` says which of x and z it leads somewhere."""
 
-    __slots__ = ("kind", "a", "b", "arc", "line", "state", "tool", "comp", "cycle")
+    __slots__ = ("kind", "a", "b", "arc", "line", "state", "tool", "comp", "cycle", "named")
 
     def __init__(self, kind, a, b, arc=None, line=0, state=(), tool=0, comp=0, cycle=None):
         self.kind, self.a, self.b, self.arc = kind, (float(a[0]), float(a[1])), (float(b[0]), float(b[1])), arc
         self.line, self.state, self.tool, self.comp, self.cycle = line, state, tool, comp, cycle
+        self.named = None
 
     def length(self):
         if self.arc:
@@ -132,6 +134,7 @@ class Player:
             if kind != "rapid":
                 raise Unreadable(f"line {self.line}: feed from an unknown place")
             self.motions.append(Motion(kind, b if None not in b else (0, 0), b if None not in b else (0, 0), None, self.line, self.state(), self.offset, self.comp, "unknown"))
+            self.motions[-1].named = (b[0] != self.x, b[1] != self.z)
         else:
             self.motions.append(Motion(kind, (self.x, self.z), b, arc, self.line, self.state(), self.offset, self.comp, cycle))
         self.x, self.z = b
