@@ -565,7 +565,8 @@ class Fanuc(Player):
         self.add("rapid", start)
 
     def chamfered(self, end, clear, leads, cycle):
-        """A thread to `end`, its last `leads` leads going outwards under the angle of the parameter."""
+        """A thread to `end`, its last `leads` leads going outwards under the angle of the parameter, no further than `clear`: there
+        the cycle comes back in a rapid, nothing stands there, and whether the control goes further out in the air cuts nothing."""
         size = leads * (self.feed or 0.0) * self.scale
         if size <= 0:
             self.add("thread", end, cycle=cycle)
@@ -574,8 +575,11 @@ class Fanuc(Player):
         t = 1 - size / abs(z1 - z0)
         begin = (x0 + t * (x1 - x0), z0 + t * (z1 - z0))
         rise = size * math.tan(math.radians(self.spec.get("parameters", {}).get("thread_chamfer_deg", 45.0)))
+        made = min(1.0, abs(clear - begin[0]) / rise)
         self.add("thread", begin, cycle=cycle)
-        self.add("thread", (begin[0] + math.copysign(rise, clear - begin[0]), z1), cycle=cycle)
+        self.add("thread", (begin[0] + math.copysign(made * rise, clear - begin[0]), begin[1] + made * (z1 - begin[1])), cycle=cycle)
+        if made < 1:
+            self.add("rapid", (clear, z1))
 
 
 def met(m, axis, level):
