@@ -35,6 +35,12 @@ import workpiece  # noqa: E402
 MARGIN, MARGIN_RS274 = 0.05e-3, 0.2e-3
 RAPID_FACTOR = 4.0
 GRID = 0.05
+# Whatever an axis that nobody moves is off, mm: `check` allows as much.
+LONGEST_WAY = 1.0
+# Such a way, mm: as far as the lathes of this judge are off.
+SHORT_WAY = 0.06
+# A drill stands on the axis: what is written of it is off by what the lathe is off, tens of micrometres.
+ON_AXIS = 0.1
 MILLS = {"fanuc-lathe": "fanuc", "sinumerik-turn": "sinumerik", "linuxcnc-lathe": "linuxcnc"}
 CYCLES = {"g71", "g72", "g73", "g74", "g75", "g76", "turn", "threads", "face", "hole"}
 PROBLEMS = ("profile", "status", "passed-as-mill", "unreadable", "interference", "structure", "path", "surface", "rapid", "process", "perfect", "check-blind", "check-alarm", "damage-missed")
@@ -104,13 +110,13 @@ def floor_of(spec, lathe):
     return 10 * (side + max([abs(n.get("height_um", 0)) * 1e-3 for n in spec["tool"].get("noses", {}).values()] or [0]))
 
 
-def from_start(got, wanted, limit):
-    """`got` without its way from where a rapid ended, by no more than a rapid may be off and on the feed's own line, to the start
-    of `wanted`."""
+def from_start(got, wanted, limit, reach):
+    """`got` without its way from where a rapid ended, by no more than `reach` and on the feed's own line, to the start of
+    `wanted`."""
     # A short way of its own to the start, in the air: from where a rapid of one axis left the other.
     away = np.linalg.norm(got - wanted[0], axis=1)
     near = int(np.argmax(away <= limit))
-    if 0 < near and away[near] <= limit and (away[: near + 1] <= RAPID_FACTOR * limit).all():
+    if 0 < near and away[near] <= limit and (away[: near + 1] <= reach).all():
         return got[near:]
     head = wanted[1] - wanted[0]
     head = head / max(float(np.linalg.norm(head)), 1e-12)
@@ -119,16 +125,28 @@ def from_start(got, wanted, limit):
         along = float((got[k] - wanted[0]) @ head)
         across = got[k] - wanted[0] - along * head
         back = float((got[k + 1] - got[k]) @ head) < 0
-        if abs(along) > RAPID_FACTOR * limit or np.linalg.norm(across) > limit or not (along < 0 or back):
+        if abs(along) > reach or np.linalg.norm(across) > limit or not (along < 0 or back):
             break
         k, beside = k + 1, across
     return got if beside is None else np.vstack([wanted[0] + beside, got[k:]])
 
 
+def reach_of(spec, lathe, wanted, got, limit):
+    """How far from its start the feed behind these rapids may begin: as far as a rapid may be off, and along an axis that the last
+    rapid does not name as far as that axis is off: it stays where the correction of another place put it (contract), or where
+    its own words did while the other axis was not known (docs/decisions.md, "Rapids before all axes are known stay as they
+    are")."""
+    allowed = RAPID_FACTOR * limit
+    tool = wanted[0].tool
+    off = real(lathe, spec, np.array([got[-1].b]), tool)[0] - ideal(spec, np.array([wanted[-1].b]), tool)[0]
+    off = np.where(moved(wanted[-1]), 0.0, off)
+    return allowed + min(float(np.linalg.norm(off)), LONGEST_WAY)
+
+
 def moved(m):
     """Which of r and z a rapid is asked for: the axes that it moves. A positioning block has its own axes only (contract), so the
     other one stays where the correction of an earlier place put it."""
-    axes = np.abs(np.array(m.b) - np.array(m.a)) > 1e-9
+    axes = np.array(m.named) if m.named else np.abs(np.array(m.b) - np.array(m.a)) > 1e-9
     return axes if axes.any() else np.array([True, True])
 
 
@@ -140,12 +158,13 @@ def compare(spec, motions_in, motions_out):
     a, b = runs(motions_in), runs(motions_out)
     if [k for k, _ in a] != [k for k, _ in b]:
         raise ValueError(f"{len(a)} stretches of rapids and feeds became {len(b)}")
-    path, rapid, line = 0.0, 0.0, None
+    path, rapid, line, reach = 0.0, 0.0, None, RAPID_FACTOR * limit
     for (kind, ms), (_, ns) in zip(a, b):
         tool = ms[0].tool
         if ns[0].tool != tool:
             raise ValueError("another tool")
         if kind == "rapid":
+            reach = reach_of(spec, lathe, ms, ns, limit)
             for m, n in zip(ms, ns) if len(ms) == len(ns) else [(ms[-1], ns[-1])]:
                 wanted = ideal(spec, np.array([m.b]), tool)
                 got = real(lathe, spec, np.array([n.b]), tool)
@@ -154,7 +173,7 @@ def compare(spec, motions_in, motions_out):
             continue
         wanted = folded(ideal(spec, samples(ms), tool), floor)
         got = folded(real(lathe, spec, samples(ns), tool), floor)
-        got = from_start(got, wanted, limit)
+        got = from_start(got, wanted, limit, reach)
         _, _, nose = offsets(spec, tool)
         h = abs(nose.get("height_um", 0)) * 1e-3 + abs(lathe.origin[1]) + 0.02
         lowest = max(min(wanted[:, 0].min(), got[:, 0].min()), floor)
@@ -166,13 +185,23 @@ def compare(spec, motions_in, motions_out):
     return path, rapid, line
 
 
+def ways_left_out(motions):
+    """Feeds without those that only lead to their start, in the air, from where a rapid left an axis that it did not name."""
+    out = []
+    for m in motions:
+        behind_rapid = not out or out[-1].kind == "rapid"
+        if not (m.kind == "feed" and behind_rapid and m.length() < SHORT_WAY):
+            out.append(m)
+    return out
+
+
 def surface(spec, lathe, motions, z, angles, perfect):
     """Radius at places z of the finished surface: outside and bore."""
     out = {}
     for inside in (False, True):
         s = workpiece.Surface(z, angles, inside)
         # threads are no surface, and a drill on the axis would take all of it away
-        for kind, ms in runs([m for m in motions if m.kind != "thread" and not abs(m.a[0]) < 0.01 > abs(m.b[0])]):
+        for kind, ms in runs([m for m in motions if m.kind != "thread" and not abs(m.a[0]) < ON_AXIS > abs(m.b[0])]):
             if kind == "rapid":
                 continue
             work, length, nose = offsets(spec, ms[0].tool)
@@ -197,7 +226,7 @@ def surfaces(spec, motions_in, motions_out, angles):
     high = max(max(m.a[1], m.b[1]) for m in motions_in if m.kind != "rapid") + spec["work_offsets_mm"]["G54"][2]
     z = np.arange(max(low, high - 400), high, GRID) + 0.0123
     turns = angles if lathe.wobbles() else 1
-    got = surface(spec, lathe, motions_out, z, turns, False)
+    got = surface(spec, lathe, ways_left_out(motions_out), z, turns, False)
     worst, place = 0.0, None
     band = surface(spec, perfect, motions_in, np.concatenate([z - limit, z, z + limit]), 1, True)
     for inside in (False, True):

@@ -38,13 +38,15 @@ class Interference(Unreadable):
 
 
 class Motion:
-    """One move of the tip in program coordinates, (x radius, z), mm; `arc` = (cx, cz, sweep), sweep > 0 from +Z to +X."""
+    """One move of the tip in program coordinates, (x radius, z), mm; `arc` = (cx, cz, sweep), sweep > 0 from +Z to +X. Where the
+    place before it is unknown, `named` says which of x and z it leads somewhere."""
 
-    __slots__ = ("kind", "a", "b", "arc", "line", "state", "tool", "comp", "cycle")
+    __slots__ = ("kind", "a", "b", "arc", "line", "state", "tool", "comp", "cycle", "named")
 
     def __init__(self, kind, a, b, arc=None, line=0, state=(), tool=0, comp=0, cycle=None):
         self.kind, self.a, self.b, self.arc = kind, (float(a[0]), float(a[1])), (float(b[0]), float(b[1])), arc
         self.line, self.state, self.tool, self.comp, self.cycle = line, state, tool, comp, cycle
+        self.named = None
 
     def length(self):
         if self.arc:
@@ -132,6 +134,7 @@ class Player:
             if kind != "rapid":
                 raise Unreadable(f"line {self.line}: feed from an unknown place")
             self.motions.append(Motion(kind, b if None not in b else (0, 0), b if None not in b else (0, 0), None, self.line, self.state(), self.offset, self.comp, "unknown"))
+            self.motions[-1].named = (b[0] != self.x, b[1] != self.z)
         else:
             self.motions.append(Motion(kind, (self.x, self.z), b, arc, self.line, self.state(), self.offset, self.comp, cycle))
         self.x, self.z = b
@@ -562,7 +565,8 @@ class Fanuc(Player):
         self.add("rapid", start)
 
     def chamfered(self, end, clear, leads, cycle):
-        """A thread to `end`, its last `leads` leads going outwards under the angle of the parameter."""
+        """A thread to `end`, its last `leads` leads going outwards under the angle of the parameter, no further than `clear`: there
+        the cycle comes back in a rapid, nothing stands there, and whether the control goes further out in the air cuts nothing."""
         size = leads * (self.feed or 0.0) * self.scale
         if size <= 0:
             self.add("thread", end, cycle=cycle)
@@ -571,8 +575,11 @@ class Fanuc(Player):
         t = 1 - size / abs(z1 - z0)
         begin = (x0 + t * (x1 - x0), z0 + t * (z1 - z0))
         rise = size * math.tan(math.radians(self.spec.get("parameters", {}).get("thread_chamfer_deg", 45.0)))
+        made = min(1.0, abs(clear - begin[0]) / rise)
         self.add("thread", begin, cycle=cycle)
-        self.add("thread", (begin[0] + math.copysign(rise, clear - begin[0]), z1), cycle=cycle)
+        self.add("thread", (begin[0] + math.copysign(made * rise, clear - begin[0]), begin[1] + made * (z1 - begin[1])), cycle=cycle)
+        if made < 1:
+            self.add("rapid", (clear, z1))
 
 
 def met(m, axis, level):

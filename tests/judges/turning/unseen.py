@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Real turning programs from a folder (not part of the repository): each corrected within tolerance or refused by line.
 
-    /usr/bin/python3 tests/judges/turning/unseen.py FOLDER --vpost target/release/vpost [--mill] [--keep DIR]
+    /usr/bin/python3 tests/judges/turning/unseen.py FOLDER --vpost target/release/vpost [--mill] [--keep DIR] [--say KEY=VALUE]
 
 Programs: *.nc *.NC *.ngc, below any folder. *.ngc are LinuxCNC's, the rest Fanuc's. Each is tried on a bent lathe as
 `--systems` says (A, B, C; LinuxCNC: diameters and radii); `--mill` asks the mill's dialects, which must refuse it. Counted:
@@ -25,7 +25,7 @@ import judge  # noqa: E402
 SINE = [round(5 * v, 3) for v in (0, 0.5, 0.87, 1, 0.87, 0.5, 0, -0.5, -0.87, -1, -0.87, -0.5, 0)]
 
 
-def lathe(linuxcnc, x, system, perfect=False):
+def lathe(linuxcnc, x, system, perfect=False, say=()):
     spec = {
         "name": "unseen", "control": "linuxcnc-lathe" if linuxcnc else "fanuc-lathe", "chain": "[w S b Z X t]", "x": x, "decimal": "millimetres",
         "axes": {"X": {"travel_mm": [-500, 900], "resolution_mm": 0.001}, "Z": {"travel_mm": [-900, 900], "resolution_mm": 0.001}},
@@ -35,6 +35,7 @@ def lathe(linuxcnc, x, system, perfect=False):
     if not linuxcnc:
         spec["g_code_system"] = system
         spec["parameters"] = {"thread_chamfer_leads": 1.0, "thread_chamfer_deg": 45.0, "roughing_escape_mm": 0.5, "groove_return_mm": 0.2, "thread_finishing_passes": 1, "thread_least_mm": 0.05, "thread_allowance_mm": 0, "thread_flank_from": '"start"', "drill_pecks": '"full"', "drill_return_mm": 0.5, "contour_compensation": '"finishing"'}
+        spec["parameters"].update(pair.split("=", 1) for pair in say)
     if not perfect:
         at = [-900 + 150 * k for k in range(13)]
         spec["axes"]["Z"]["table"] = {"position_mm": at, "EZZ_um": SINE, "EXZ_um": SINE[::-1], "EBZ_urad": [4 * v for v in SINE]}
@@ -92,6 +93,7 @@ def main():
     parser.add_argument("--vpost", default="vpost")
     parser.add_argument("--systems", default="A", help="G-code systems to try Fanuc's programs in: A, or AB, …")
     parser.add_argument("--mill", action="store_true")
+    parser.add_argument("--say", action="append", default=[], metavar="KEY=VALUE", help="a further key under [program], as a message asks for it: drill_r=\"place\"")
     parser.add_argument("--keep", metavar="DIR")
     arguments = parser.parse_args()
     keep = arguments.keep or tempfile.mkdtemp(prefix="unseen-")
@@ -102,12 +104,12 @@ def main():
         for k, (x, system) in enumerate(ways):
             folder = os.path.join(keep, f"{number}-{k}")
             os.makedirs(folder, exist_ok=True)
-            spec = lathe(linuxcnc, x, system)
+            spec = lathe(linuxcnc, x, system, say=arguments.say)
             word, message = one(arguments.vpost, path, spec, folder, arguments.mill)
             words[word] += 1
             print(f"{os.path.relpath(path, arguments.folder)} [{x if linuxcnc else system}] {word} {message}", flush=True)
             if word == "within" and k == 0:
-                other = copy.deepcopy(lathe(linuxcnc, x, system, True))
+                other = copy.deepcopy(lathe(linuxcnc, x, system, True, arguments.say))
                 other["perfect"] = True
                 again, _ = one(arguments.vpost, path, other, folder, False)
                 words["perfect " + again] += 1
