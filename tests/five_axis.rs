@@ -262,11 +262,19 @@ fn a_turn_beyond_travel_is_refused() {
     refuses_beyond_travel(&["G1 X5. A31. F100.", "G1 A-101. F100."]);
 }
 
-/// Open: a rapid of rotary axes alone under tool centre point control passes, and the control stops at its limit.
+/// Also where nothing is corrected: the control stops at its limit.
 #[test]
-#[ignore = "open: a rapid turn beyond travel passes"]
 fn a_rapid_turn_beyond_travel_is_refused() {
-    refuses_beyond_travel(&["G0 A35."]);
+    refuses_beyond_travel(&["G0 A35.", "G0 A35. C0.", "G49\nG0 A35.", "G49\nG53 G0 A35."]);
+    for text in ["G0 A35.\nM30\n", "G0 C0.\nG0 X5. A35.\nM30\n"] {
+        let place = Place::new(&format!("G21 G90 G94 G54 {text}"));
+        let ran = run(&[&place.path("in.nc"), "-m", PROFILE]);
+        assert!(
+            ran.status.code() == Some(1) && messages(&ran).contains("error[VP0501]"),
+            "{text}: {}",
+            messages(&ran)
+        );
+    }
 }
 
 fn refuses_beyond_travel(middles: &[&str]) {

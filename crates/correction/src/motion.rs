@@ -111,6 +111,7 @@ impl Corrector<'_> {
                 Ok(corrected)
             }
             Motion::Uncorrected { end, .. } => {
+                self.in_travel(end, block)?;
                 for axis in 0..3 {
                     // An axis that the block does not name stays where the output has brought it.
                     if end.linear_mm[axis].is_none()
@@ -128,6 +129,15 @@ impl Corrector<'_> {
         }
     }
 
+    /// That the control can turn the rotary axes where a block's words send them, in a motion that is not corrected.
+    fn in_travel(&self, end: &Partial, block: &Block) -> Result<(), CorrectionError> {
+        let named = [0, 1, 2].map(|axis| block.stated.rotary[axis] && end.rotary_known[axis]);
+        if named != [false; 3] {
+            self.model.in_travel(&self.state(block, end.rotary_deg), named)?;
+        }
+        Ok(())
+    }
+
     fn rapid(&mut self, start: &Partial, end: &Partial, block: &Block) -> Result<Corrected, CorrectionError> {
         let mut correction = Correction::default();
         for i in 0..3 {
@@ -138,6 +148,7 @@ impl Corrector<'_> {
             }
         }
         let Some(nominal) = end.complete() else {
+            self.in_travel(end, block)?;
             // Some axis is not known yet, so the error is not: the words stay, and the first motion
             // whose end is known in all axes brings the correction.
             let stood = self.standing;

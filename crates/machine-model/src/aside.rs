@@ -115,6 +115,10 @@ impl PathModel for Aside<'_> {
         self.model.rotary_axes()
     }
 
+    fn in_travel(&self, command: &Command, which: [bool; 3]) -> Result<(), SolveError> {
+        self.model.in_travel(&self.commanded(command), which)
+    }
+
     fn may_turn_to(&self, command: &Command) -> bool {
         self.model.may_turn_to(&self.commanded(command))
     }

@@ -340,6 +340,16 @@ pub trait PathModel: Engine {
         [false; 3]
     }
 
+    /// That rotary axes stand inside their travel, whatever their tables cover: where none of them is to be corrected.
+    ///
+    /// * `which` – the axes that are asked about, of A, B and C
+    ///
+    /// # Errors
+    /// [`SolveError::OutsideRotaryRange`] for the first that does not.
+    fn in_travel(&self, _command: &Command, _which: [bool; 3]) -> Result<(), SolveError> {
+        Ok(())
+    }
+
     /// True where every rotary axis stands inside its travel and its tables.
     fn may_turn_to(&self, _command: &Command) -> bool {
         true

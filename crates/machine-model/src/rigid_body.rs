@@ -16,7 +16,7 @@ use crate::link::{Link, by_direction};
 use crate::real::Triple;
 use crate::rotary::{Machine, Swivel};
 use crate::rotation::{small, turned};
-use crate::{Axis, Command, Description, Everywhere, SolveError, Vector, Volume};
+use crate::{Axis, Command, Description, Everywhere, Range, RotaryAxis, SolveError, Vector, Volume};
 
 /// Why a description is no machine.
 ///
@@ -391,9 +391,19 @@ impl RigidBody {
     /// # Errors
     /// [`SolveError::OutsideRotaryRange`] for the first that does not.
     pub fn rotary_inside(&self, command: &Command) -> Result<(), SolveError> {
-        for axis in self.description.chain.axes().filter(|axis| !axis.is_linear()) {
-            let data = &self.description.rotary[axis.direction()];
-            let range = data.calibrated_rad();
+        self.rotary_within(command, [true; 3], RotaryAxis::calibrated_rad)
+    }
+
+    /// That rotary axes stand inside a range of each.
+    pub(crate) fn rotary_within(
+        &self,
+        command: &Command,
+        which: [bool; 3],
+        range: impl Fn(&RotaryAxis) -> Range,
+    ) -> Result<(), SolveError> {
+        let axes = self.description.chain.axes().filter(|axis| !axis.is_linear());
+        for axis in axes.filter(|axis| which[axis.direction()]) {
+            let range = range(&self.description.rotary[axis.direction()]);
             let value = command.rotary_rad[axis.direction()];
             // Angles come from degrees and cannot be exact.
             let slack = 1e-9;

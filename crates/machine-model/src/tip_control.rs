@@ -336,6 +336,10 @@ impl PathModel for TipControl {
         self.core.machine.rotary_axes()
     }
 
+    fn in_travel(&self, command: &Command, which: [bool; 3]) -> Result<(), SolveError> {
+        self.core.machine.in_travel(command, which)
+    }
+
     fn may_turn_to(&self, command: &Command) -> bool {
         self.core.machine.may_turn_to(command)
     }
@@ -427,6 +431,10 @@ impl PathModel for PlaneControl {
 
     fn rotary_reversal_rad(&self, axis: usize, command: &Command) -> f64 {
         self.tip.core.machine.rotary_reversal_rad(axis, command)
+    }
+
+    fn in_travel(&self, command: &Command, which: [bool; 3]) -> Result<(), SolveError> {
+        self.tip.in_travel(command, which)
     }
 
     fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {

@@ -232,6 +232,10 @@ impl PathModel for WithEffects {
         self.base.rotary_axes()
     }
 
+    fn in_travel(&self, command: &Command, which: [bool; 3]) -> Result<(), SolveError> {
+        self.base.in_travel(command, which)
+    }
+
     fn may_turn_to(&self, command: &Command) -> bool {
         self.base.may_turn_to(command)
     }

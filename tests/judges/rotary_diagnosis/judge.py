@@ -187,6 +187,7 @@ def one(arguments):
         verdict["verdict"] = answer["verdict"]
         verdict["causes"] = [c["effect"] for c in causes]
         verdict["told"] = causes[0].get("cannot_be_told_from", []) if causes else []
+        verdict["slopes"] = slopes(name, weights, causes)
         for parameter in causes[0]["parameters"] if causes and causes[0]["effect"] == name and len(weights) == 1 else []:
             if parameter.get("u95"):
                 verdict["off"] = abs(parameter["value"] - weights[0]) / parameter["u95"]
@@ -211,7 +212,32 @@ def judged(verdict):
     else:
         verdict["outcome"] = "wrong" if verdict["verdict"] == "NAMED" else "doubtful"
     # More than the fault under a sure verdict is a wrong name too.
-    verdict["more"] = [c for c in causes[1:] if verdict["verdict"] == "NAMED" and c != name] if verdict["outcome"] == "right" else []
+    more = [c for c in causes[1:] if c != name and c not in verdict.get("slopes", [])]
+    verdict["more"] = more if verdict["verdict"] == "NAMED" and verdict["outcome"] == "right" else []
+
+
+# The slope of a curve along an axis is, after docs/diagnosis.md, a scale or a squareness; with the sign of it in dy/dx.
+OWNERS = {f"positioning.E{a}{a}": (f"scale.{a}", 1.0) for a in "XYZ"}
+OWNERS |= {"straightness.EXY": ("squareness.XY", -1.0), "straightness.EXZ": ("squareness.XZ", 1.0), "straightness.EYZ": ("squareness.YZ", -1.0)}
+WITHIN_U95 = 2.0
+
+
+def slopes(name, weights, causes):
+    """Effects among the causes that are the slope of the fault's own curve over the places named with it, by its size and sign.
+
+    The fault is level over 600 mm; over the places read, which are fewer, it is not."""
+    owner, sign = OWNERS.get(name, (None, 0.0))
+    curve = next((c for c in causes if c["effect"] == name), None)
+    place = {p["name"]: p["value"] for p in curve["parameters"]} if curve else {}
+    if owner is None or not {"from_mm", "to_mm"} <= place.keys():
+        return []
+    half = (place["to_mm"] - place["from_mm"]) / 2
+    u, share = np.polynomial.legendre.leggauss(200)
+    v = np.clip((u * half + (place["to_mm"] + place["from_mm"]) / 2) / model.HALF_MM, -1, 1)
+    fault = weights[0] * (1.5 * v**2 - 0.5) + weights[1] * (2.5 * v**3 - 1.5 * v)
+    slope = sign * 1e3 * 1.5 * float(np.sum(share * u * fault)) / half
+    stated = [p for c in causes if c["effect"] == owner for p in c["parameters"] if p.get("u95")]
+    return [owner] if stated and all(abs(p["value"] - slope) <= WITHIN_U95 * p["u95"] for p in stated) else []
 
 
 def interval(k, n):
@@ -261,6 +287,16 @@ def self_test(vpost):
         judged(verdict)
         wrong += verdict["outcome"] != outcome
         print(f"{'ok   ' if verdict['outcome'] == outcome else 'WRONG'} {outcome}")
+    # The slope of a fault that is level over 600 mm, over fewer; and one that it does not have.
+    for stated, more in ((-50.0, []), (50.0, ["scale.X"]), (0.0, ["scale.X"])):
+        place = [{"name": "from_mm", "value": -200.0}, {"name": "to_mm", "value": 200.0}, {"name": "p2_um", "value": 0.0, "u95": 1.0}]
+        causes = [{"effect": "positioning.EXX", "parameters": place}, {"effect": "scale.X", "parameters": [{"name": "scale_um_per_m", "value": stated, "u95": 2.0}]}]
+        # 18 (2.5 v^3 - 1.5 v), v = 2 u / 3: (0.7407 * 3/5 - 1) * 18 = -10 um of u, which is 200 mm long.
+        names = [c["effect"] for c in causes]
+        verdict = {"effect": "positioning.EXX", "causes": names, "told": [], "verdict": "NAMED", "slopes": slopes("positioning.EXX", [0.0, 18.0], causes)}
+        judged(verdict)
+        wrong += verdict["more"] != more
+        print(f"{'ok   ' if verdict['more'] == more else 'WRONG'} slope {stated:g}")
     return 1 if wrong else 0
 
 

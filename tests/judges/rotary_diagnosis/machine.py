@@ -67,6 +67,8 @@ class Machine:
             text += f"\n[rotary.{axis}]\ncentre_mm = [{', '.join(f'{v:.3f}' for v in self.centre[axis])}]\ntravel_deg = [-360, 360]\n"
             for name, value in located:
                 if name.startswith("rotary.") and name.endswith("0" + axis):
+                    # A tilt is not told without what leans by it; (9): what the axis carries.
+                    text += 'tilt = "body"\n' if name[8] in "ABC" else ""
                     text += f"{name[7:]}_{'um' if name[8] in 'XYZ' else 'urad'} = {value:.9f}\n"
         for name, value in located:
             if name.startswith("squareness."):

@@ -111,6 +111,10 @@ impl PathModel for RigidBody {
         has
     }
 
+    fn in_travel(&self, command: &Command, which: [bool; 3]) -> Result<(), SolveError> {
+        self.rotary_within(command, which, |axis| axis.travel_rad)
+    }
+
     fn may_turn_to(&self, command: &Command) -> bool {
         self.rotary_inside(command).is_ok()
     }
