@@ -67,21 +67,30 @@ def distance(m, p, start):
     return d, s
 
 
-def one(wanted, real, limit_mm):
+def passes(real, straight, k, end):
+    """How near the path comes to an end on its way to place k: between two places of one straight feed it is straight."""
+    p = real[k]
+    if k and straight[k]:
+        way = p - real[k - 1]
+        p = p - way * np.clip((p - end) @ way / max(way @ way, 1e-18), 0, 1)
+    return float(np.linalg.norm(end - p))
+
+
+def one(wanted, real, straight, limit_mm):
     """(largest distance, line): of a real path (n, 3) to programmed motions, each begun when the end of the one before was reached."""
     worst, where, index, share = 0.0, wanted[0].line, 0, 0.0
     reached = np.full(len(wanted), np.inf)
-    for p in real:
+    for k, p in enumerate(real):
         d, s = distance(wanted[index], p, share)
         if s > 0.5 or wanted[index].arc is None:
-            reached[index] = min(reached[index], float(np.linalg.norm(wanted[index].end - p)))
+            reached[index] = min(reached[index], passes(real, straight, k, wanted[index].end))
         while reached[index] <= limit_mm and index + 1 < len(wanted):
             e, t = distance(wanted[index + 1], p, 0.0)
             if e > d + 1e-9 and d <= limit_mm:
                 break
             index, d, s = index + 1, e, t
             if s > 0.5 or wanted[index].arc is None:
-                reached[index] = float(np.linalg.norm(wanted[index].end - p))
+                reached[index] = passes(real, straight, k, wanted[index].end)
         share = s
         if d > worst:
             worst, where = d, wanted[index].line
@@ -105,15 +114,16 @@ def compare(wanted, taken, tips, limit_mm, step):
     for ms, rs, xs in zip(first, second, samples):
         n = sum(len(x) for x in xs)
         path = real[at : at + n]
+        straight = np.concatenate([np.arange(len(x)) > 0 if m.arc is None else np.zeros(len(x), bool) for m, x in zip(rs, xs)])
         at += n
         # a rapid moves its own axes only: a short feed may lead to the corrected start
         lead = len(xs[0])
         near = lambda p: np.linalg.norm(p - ms[0].start)  # noqa: E731
         short = rs[0].length()
         if len(xs) > 1 and near(path[lead - 1]) <= limit_mm and short < APPROACH_MM and (near(path[0]) > limit_mm or short < 0.1 * ms[0].length()):
-            path = path[lead:]
+            path, straight = path[lead:], straight[lead:]
             approaches += 1
-        d, line = one(ms, path, limit_mm)
+        d, line = one(ms, path, straight, limit_mm)
         if d > worst:
             worst, where = d, line
     rapid = 0.0
