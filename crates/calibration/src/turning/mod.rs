@@ -9,6 +9,7 @@ mod causes;
 mod equations;
 mod estimate;
 mod readings;
+mod rounding;
 mod rows;
 mod strata;
 mod term;

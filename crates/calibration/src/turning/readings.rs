@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::equations::{Change, Stretch, TurningBase};
+use super::rounding::{Stepped, is_smooth};
 use super::rows::{Feature, TurnedReading, finest_mm};
 use super::strata::{Between, MeanSquare, Spread, Uncertainty, Whitening};
 use super::term::Term;
@@ -71,6 +72,16 @@ pub(super) struct Readings<'r> {
     /// mm, or relative.
     weights: Vec<f64>,
     pub(super) is_known: bool,
+}
+
+/// Errors that readings share because they were read in coarse steps: [`super::rounding`].
+struct Rounded {
+    /// Of weighted readings.
+    covariance: DMatrix<f64>,
+    /// What of its variances each part at its own size leaves, by reading.
+    within: Vec<f64>,
+    /// What of it is in the sum of squares that one size per tool adds.
+    between: f64,
 }
 
 /// Adjusted with the error that parts share.
@@ -257,12 +268,17 @@ impl<'r> Readings<'r> {
         self.left(within, feature, |_| 1.0).value.sqrt()
     }
 
-    /// Mean square of what is left of a feature, in squares of the weights.
-    fn mean_square(&self, within: &Estimate, feature: Feature) -> MeanSquare {
+    /// Mean square of the noise of a feature, in squares of the weights: what is left, less the part that is of rounding which
+    /// readings share.
+    fn mean_square(&self, within: &Estimate, feature: Feature, rounded: Option<&Rounded>) -> MeanSquare {
         if self.is_known {
             return MeanSquare { value: 1.0, freedom: f64::INFINITY };
         }
-        self.left(within, feature, |k| self.weights[k])
+        let left = self.left(within, feature, |k| self.weights[k]);
+        let shared = rounded.map_or(0.0, |rounded| {
+            (0..self.rows.len()).filter(|k| self.is(*k, feature)).map(|k| rounded.within[k]).sum::<f64>()
+        });
+        MeanSquare { value: (left.value - shared / left.freedom).max(0.0), ..left }
     }
 
     /// The same in squares of any unit.
@@ -292,21 +308,79 @@ impl<'r> Readings<'r> {
         self.parts.iter().map(of_part).collect()
     }
 
-    /// What the sizes of the parts leave where each tool has one.
+    /// What the sizes of the parts leave where each tool has one, and `basis` is that of the fit.
     fn between(
         &self,
-        terms: &[Term],
         within: &Estimate,
+        of_tools: &Estimate,
+        basis: &[DVector<f64>],
         shared: &[DVector<f64>],
-    ) -> Result<Between, CalibrationError> {
-        let of_tools = self.fit(terms, &self.tools)?;
-        let design = self.weighted(self.jacobian(terms, &self.tools, &of_tools.values));
-        let columns: Vec<DVector<f64>> = design.column_iter().map(|column| column.into_owned()).collect();
-        let basis = orthonormal(&columns, &[]);
-        Ok(Between {
-            squares: (self.squares(&of_tools) - self.squares(within)).max(0.0),
+        rounded: Option<&Rounded>,
+    ) -> Between {
+        let squares = (self.squares(of_tools) - self.squares(within)).max(0.0);
+        Between {
+            squares: squares - rounded.map_or(0.0, |rounded| rounded.between),
             freedom: of_tools.redundancy.saturating_sub(within.redundancy) as f64,
-            share: shared.iter().map(|column| without(column, &basis).norm_squared()).sum(),
+            share: shared.iter().map(|column| without(column, basis).norm_squared()).sum(),
+        }
+    }
+
+    /// An orthonormal basis of what a fit explains, weighted.
+    fn basis(&self, terms: &[Term], levels: &Levels, values: &DVector<f64>) -> Vec<DVector<f64>> {
+        let design = self.weighted(self.jacobian(terms, levels, values));
+        let columns: Vec<DVector<f64>> = design.column_iter().map(|column| column.into_owned()).collect();
+        orthonormal(&columns, &[])
+    }
+
+    /// The errors that readings share because they were read in coarse steps; `None` where nothing is known of them: the
+    /// uncertainties are stated, or the noise is larger.
+    fn rounded(
+        &self,
+        within: &Estimate,
+        of_tools: &Estimate,
+        [cells, tools]: [&[DVector<f64>]; 2],
+    ) -> Option<Rounded> {
+        if self.is_known {
+            return None;
+        }
+        let step_mm = finest_mm(self.rows);
+        let rows = self.rows.len();
+        let predicted = self.readings() - &of_tools.residuals;
+        let mut covariance = DMatrix::zeros(rows, rows);
+        for feature in [Feature::Diameter, Feature::Face] {
+            let own: Vec<usize> = (0..rows).filter(|k| self.is(*k, feature)).collect();
+            let left = self.left(within, feature, |_| step_mm);
+            if own.is_empty() || is_smooth(left.value) {
+                continue;
+            }
+            let [fitted, parts] = [tools, cells].map(|basis| projection(basis, &own));
+            let stepped = Stepped {
+                predicted: DVector::from_iterator(own.len(), own.iter().map(|k| predicted[*k] / step_mm)),
+                level: own.iter().map(|k| self.tools.of_row[*k]).collect(),
+                fitted: &fitted,
+                within: &parts,
+                squares: left.value * left.freedom,
+                freedom: left.freedom,
+            };
+            let Some(shared) = stepped.shared() else { continue };
+            for (a, k) in own.iter().enumerate() {
+                for (b, l) in own.iter().enumerate() {
+                    covariance[(*k, *l)] =
+                        shared[(a, b)] * step_mm * step_mm / (self.weights[*k] * self.weights[*l]);
+                }
+            }
+        }
+        if covariance.amax() == 0.0 {
+            return None;
+        }
+        let all: Vec<usize> = (0..rows).collect();
+        let [by_cells, by_tools] = [cells, tools].map(|basis| projection(basis, &all));
+        let rest = DMatrix::identity(rows, rows) - &by_cells;
+        let left = &rest * &covariance * &rest;
+        Some(Rounded {
+            within: left.diagonal().iter().copied().collect(),
+            between: (by_cells - by_tools).dot(&covariance),
+            covariance,
         })
     }
 
@@ -314,11 +388,17 @@ impl<'r> Readings<'r> {
     pub(super) fn adjusted(&self, terms: &[Term]) -> Result<Adjusted, CalibrationError> {
         let within = self.within(terms)?;
         let shared = self.shared();
-        let between = self.between(terms, &within, &shared)?;
-        let noise = [Feature::Diameter, Feature::Face].map(|feature| self.mean_square(&within, feature));
+        let of_tools = self.fit(terms, &self.tools)?;
+        let tools = self.basis(terms, &self.tools, &of_tools.values);
+        let cells = self.basis(&within_a_part(terms), &self.cells, &within.values);
+        let rounded = self.rounded(&within, &of_tools, [&cells, &tools]);
+        let between = self.between(&within, &of_tools, &tools, &shared, rounded.as_ref());
+        let noise = [Feature::Diameter, Feature::Face]
+            .map(|feature| self.mean_square(&within, feature, rounded.as_ref()));
         let variance = between.variance(noise[0].value, &shared);
-        // Weights need not be the variances: below nought they are those of parts that share nothing.
-        let theta = variance.max(0.0) / noise[0].value.max(LEAST_NOISE_MM * LEAST_NOISE_MM);
+        // Weights need not be the variances: below nought they are those of parts that share nothing, and rounding is noise.
+        let scatter = self.mean_square(&within, Feature::Diameter, None).value;
+        let theta = variance.max(0.0) / scatter.max(LEAST_NOISE_MM * LEAST_NOISE_MM);
         let whitening = Whitening::new(&shared, theta);
         let white =
             |raw: DVector<f64>| whitening.apply(DVector::from_fn(raw.len(), |k, _| raw[k] / self.weights[k]));
@@ -339,7 +419,10 @@ impl<'r> Readings<'r> {
         let design = whitening.apply_to(&self.weighted(self.jacobian(terms, &self.tools, &found.values)));
         let gains = whitening.apply_to(&(design * &found.covariance)).transpose();
         let is_face: Vec<bool> = (0..self.rows.len()).map(|k| self.is(k, Feature::Face)).collect();
-        let spread = Spread::new(&gains, &is_face, &shared, noise, &between, variance);
+        let mut spread = Spread::new(&gains, &is_face, &shared, noise, &between, variance);
+        if let Some(rounded) = &rounded {
+            spread = spread.with(&gains, &rounded.covariance);
+        }
         let residuals = self.readings() - self.forward(terms, &self.tools, &found.values);
         let shared_mm = between.is_seen().then(|| variance.max(0.0).sqrt());
         Ok(Adjusted { values: found.values, spread, residuals, shared_mm })
@@ -485,6 +568,14 @@ pub(super) fn fisher_limit(above: f64, below: f64, chance: f64) -> f64 {
 
 /// Degrees of freedom of a standard deviation that is stated.
 const KNOWN_FREEDOM: f64 = 1e6;
+
+/// Projection on what an orthonormal basis spans, its rows and columns `own`.
+fn projection(basis: &[DVector<f64>], own: &[usize]) -> DMatrix<f64> {
+    basis.iter().fold(DMatrix::zeros(own.len(), own.len()), |sum, vector| {
+        let vector = vector.select_rows(own);
+        sum + &vector * vector.transpose()
+    })
+}
 
 /// An orthonormal basis of what these span beyond the given one.
 pub(super) fn orthonormal(vectors: &[DVector<f64>], given: &[DVector<f64>]) -> Vec<DVector<f64>> {

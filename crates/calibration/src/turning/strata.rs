@@ -68,7 +68,7 @@ impl Uncertainty {
     }
 }
 
-/// Covariance of all unknowns, by the noise it comes from.
+/// Covariance of all unknowns, by the noise it comes from, each with its degrees of freedom.
 #[derive(Clone, Debug)]
 pub(super) struct Spread {
     parts: Vec<(DMatrix<f64>, f64)>,
@@ -110,6 +110,12 @@ impl Spread {
         parts.push(((by(false) - by_parts) * diameters.value, diameters.freedom));
         parts.push((by(true) * faces.value, faces.freedom));
         Self { parts }
+    }
+
+    /// With errors of a covariance that is known, of weighted readings: rounding to steps.
+    pub(super) fn with(mut self, gains: &DMatrix<f64>, covariance: &DMatrix<f64>) -> Self {
+        self.parts.push((gains * covariance * gains.transpose(), f64::INFINITY));
+        self
     }
 
     pub(super) fn covariance(&self) -> DMatrix<f64> {
