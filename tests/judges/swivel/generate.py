@@ -87,8 +87,8 @@ def profile(spec, folder, known=None, sign="+"):
     lines += ["[squareness]"] + ["%s_urad = %r" % x for x in spec["squareness"].items()]
     for k, one in spec["rotary"].items():
         lines += ["[rotary.%s]" % k, "centre_mm = %r" % one["centre"], "travel_deg = %r" % one["travel"]]
-        if "tilt" in one:
-            lines.append('tilt = "%s"' % one["tilt"])
+        # A tilt is not told without what leans by it (VP0314); where nothing is chosen the machine is one of `body`.
+        lines.append('tilt = "%s"' % one.get("tilt", "body"))
         lines += ["%s_%s = %r" % (e, "um" if e[1] in "XYZ" else "urad", v) for e, v in one.get("location", {}).items()]
         if "table" in one:
             lines.append(errors(k, one["table"], "deg"))

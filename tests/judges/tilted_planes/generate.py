@@ -95,9 +95,10 @@ def write_profile(spec, folder, name="profile.toml"):
     out += ["[squareness]"] + ["%s_urad = %r" % x for x in zip(("EC0Y", "EB0Z", "EA0Z"), spec["squareness_urad"])]
     for k, one in spec["rotary"].items():
         out += ["[rotary.%s]" % k, "centre_mm = %r" % one["centre"], "travel_deg = %r" % one["travel"]]
-        for key in ("direction", "tilt"):
-            if key in one:
-                out.append("%s = %s" % (key, repr(one[key]).replace("'", '"')))
+        if "direction" in one:
+            out.append("direction = %r" % one["direction"])
+        # A tilt is not told without what leans by it (VP0314); where nothing is chosen the machine is one of `body`.
+        out.append('tilt = "%s"' % one.get("tilt", "body"))
         out += ["%s_%s = %r" % (e, "um" if e[1] in "XYZ" else "urad", v) for e, v in one.get("location", {}).items()]
         if "table" in one:
             out.append('errors = "table_%s.csv"' % k)
