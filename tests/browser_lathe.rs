@@ -155,11 +155,11 @@ fn the_page_of_test_pieces_says_what_their_report_says() {
     // 280 mm, on the diameter.
     let head = page.split("<nav").next().expect("a head");
     let said = format!(
-        "it is a cone, {:.1} \u{b5}m thicker on the diameter at the chuck",
+        "it is a cone, {:.1}\u{a0}\u{b5}m thicker on the diameter at the chuck",
         2.0 * 280.0 * cone * 1e-3
     );
     assert!(head.contains(&said), "{said}: {head}");
-    assert!(head.contains("5 of them, 15.1 \u{2192} 0.38"), "{head}");
+    assert!(head.contains("5 of them, 15.1\u{a0}\u{2192}\u{a0}0.38"), "{head}");
     assert!(head.contains("These parts cannot tell apart wear and growth: add the column time_s"));
     // Both kinds of reading are drawn: twelve that were fitted, five that were not.
     let dots = |class: &str| {
@@ -183,7 +183,7 @@ fn the_page_of_a_diagnosis_says_what_the_summary_says() {
         (Some("vpost.diagnosis/1"), Some("NAMED"))
     );
     let head = page.split("<nav").next().expect("a head");
-    assert!(head.contains("NAMED") && head.contains("the axis of the part leans against Z"), "{head}");
+    assert!(head.contains("NAMED") && head.contains("The axis of the part leans against Z"), "{head}");
     assert!(head.contains("tailstock"), "what to do: {head}");
     let rows = number(&data["gap"]["rows"]) as usize;
     for class in ["s0", "s1"] {
@@ -191,10 +191,10 @@ fn the_page_of_a_diagnosis_says_what_the_summary_says() {
         assert_eq!(path.split('>').next().expect("a path").matches("h0").count(), rows, "{class}");
     }
     let russian = text(&diagnosis(-30.0, &["--lang", "ru"]).page);
-    assert!(russian.contains("ось детали наклонена к Z") && russian.contains("Радиусы деталей"), "{russian}");
+    assert!(russian.contains("Ось детали наклонена к Z") && russian.contains("Радиусы деталей"), "{russian}");
     assert!(!russian.contains("Unseen") && !russian.contains("the causes"), "{russian}");
     let quiet = text(&diagnosis(0.0, &[]).page);
-    assert!(quiet.contains("NO GAP") && quiet.contains("nothing but noise is left"), "{quiet}");
+    assert!(quiet.contains("NO GAP") && quiet.contains("Nothing but noise is left"), "{quiet}");
     assert_eq!(page.len(), text(&diagnosis(-30.0, &[]).page).len());
 }
 

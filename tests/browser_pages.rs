@@ -151,12 +151,12 @@ fn no_page_has_an_accessibility_fault() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// Widths of a page in a frame as wide as a telephone: its own, and of the drawings that reach out of what holds them.
+/// Of a page in a frame as wide as a telephone: its width, and how many drawings and tables reach out of what holds them.
 fn in_a_frame(browser: &str, page: &Path) -> (u32, u32) {
     let outside = page.with_extension("frame.html");
     let script = "document.getElementById('f').onload = function () {
-        const inside = this.contentDocument, drawings = [...inside.querySelectorAll('.scroll')].filter(e => e.querySelector('svg'));
-        const cut = drawings.filter(e => e.scrollWidth > e.clientWidth + 1).length;
+        const inside = this.contentDocument, held = [...inside.querySelectorAll('.scroll')].filter(e => e.querySelector('svg, table'));
+        const cut = held.filter(e => e.scrollWidth > e.clientWidth + 1).length;
         document.documentElement.setAttribute('reaches', inside.documentElement.scrollWidth + ' ' + cut);
     }";
     let name = page.file_name().and_then(|name| name.to_str()).expect("a plain name");

@@ -431,3 +431,56 @@ fn a_reversal_value_of_readings_without_direction_is_refused() {
     let both = "position_mm,EXX_um,dir\n0,1,1\n100,2,1\n200,4,1\n200,8,-1\n100,6,-1\n0,5,-1\n";
     assert_eq!(calibrated(both, "mean").0, Some(0));
 }
+
+/// Bad input that a metrologist meets first: two axes in one file, told by a column; targets read there and back, and
+/// nothing says which was which. In both languages.
+#[test]
+fn two_axes_in_a_file_and_readings_without_a_direction_say_what_to_do() {
+    let room = Room::new();
+    let axes = room.file(
+        "axes.csv",
+        "axis,run,dir,position_mm,EXX_um\nX,1,1,0,0\nX,1,1,100,2\nY,1,1,0,0\nY,1,1,100,3\n",
+    );
+    let said = |arguments: &[&str]| {
+        let output = room.calibrate(arguments);
+        (output.status.code(), messages(&output))
+    };
+    let (status, english) = said(&[&axes]);
+    assert_eq!(status, Some(1), "{english}");
+    assert!(
+        english.contains("a file holds the readings of one axis") && english.contains(":1:1"),
+        "{english}"
+    );
+    assert!(
+        english.contains("split the rows by this column") && !english.contains("ignore-column"),
+        "{english}"
+    );
+    let (_, russian) = said(&["--lang", "ru", &axes]);
+    assert!(
+        russian.contains("разделите строки по этому столбцу") && !russian.contains("axis of"),
+        "{russian}"
+    );
+
+    let rows = |text: &str| format!("run,position_mm,EXX_um\n{text}");
+    let twice = room.file("twice.csv", &rows("1,0,0\n1,100,2\n2,0,9\n2,100,12\n"));
+    let (_, english) = said(&[&twice]);
+    assert!(english.contains("VP1108") && english.contains("nothing says from which side"), "{english}");
+    assert!(english.contains("add a column `dir`"), "{english}");
+    let (_, russian) = said(&["--lang", "ru", &twice]);
+    assert!(
+        russian.contains("не сказано, с какой стороны") && russian.contains("добавьте столбец `dir`"),
+        "{russian}"
+    );
+    // There and back in one run: that cannot be guessed at all.
+    let back = room.file("back.csv", &rows("1,0,0\n1,100,2\n1,100,11\n1,0,9\n"));
+    let (status, english) = said(&[&back]);
+    assert_eq!(status, Some(1), "{english}");
+    assert!(english.contains("VP1104") && english.contains("a column `dir` would"), "{english}");
+    // Once each: nothing to tell apart.
+    let once = room.file("once.csv", &rows("1,0,0\n1,100,2\n"));
+    let (_, english) = said(&[&once]);
+    assert!(!english.contains("from which side"), "{english}");
+    let large = room.file("large.csv", "run,dir,position_mm,EXX_um\n1,1,0,0\n1,1,100,2000\n1,1,200,3500\n");
+    let (_, russian) = said(&["--lang", "ru", &large]);
+    assert!(russian.contains("3500 мкм"), "{russian}");
+}

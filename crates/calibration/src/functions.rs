@@ -58,6 +58,14 @@ pub fn runs(readings: &[FunctionReading]) -> Result<Runs, CalibrationError> {
         targets.entry(key(r.position_mm)).or_insert(r.position_mm);
         let own = by_run.entry((r.run.clone(), r.direction.signum())).or_default();
         if own.insert(key(r.position_mm), (r.position_mm, r.value)).is_some() {
+            if r.direction == 0 {
+                return Err(CalibrationError::Runs(both!(
+                    "run `{}` reads the target {} mm twice and does not say from which side: a column `dir` would, 1 towards plus and -1 towards minus",
+                    "проход `{}`: цель {} мм снята дважды, и не сказано, с какой стороны: это скажет столбец `dir`, 1 в плюс и -1 в минус",
+                    r.run,
+                    r.position_mm
+                )));
+            }
             return Err(CalibrationError::Runs(both!(
                 "run `{}` reads the target {} mm twice in the same direction",
                 "проход `{}`: цель {} мм в одном направлении снята дважды",

@@ -394,6 +394,17 @@ impl Header<'_> {
                     );
                 }
                 let names: Vec<String> = known.iter().map(Column::header).collect();
+                if ["axis", "ось"].contains(&header.to_lowercase().as_str())
+                    && names.iter().any(|name| name == "position_mm")
+                {
+                    return refuse(
+                        both!(": a file holds the readings of one axis", ": в файле — отсчёты одной оси"),
+                        both!(
+                            "split the rows by this column into a file for each axis, without it and with readings that name the axis (EXX_um in that of X, EYY_um in that of Y); then give all files to one command",
+                            "разделите строки по этому столбцу на файлы, по одному на ось, без него и с отсчётами, названными по оси (EXX_um в файле X, EYY_um в файле Y); затем дайте все файлы одной команде"
+                        ),
+                    );
+                }
                 let near = closest(&header, names.iter().map(String::as_str));
                 let mut help = near
                     .map_or(Text::EMPTY, |near| both!("did you mean {near}? ", "имелось в виду {near}? "));

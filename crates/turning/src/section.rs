@@ -43,6 +43,8 @@ pub struct Wave {
 
 /// Rounds of the linearised fits; each gains the square of what is left.
 const ROUNDS: usize = 30;
+/// Rows of the order of 1 that are nearer than this to what others make follow from them.
+const DEPENDENT: f64 = 1e-9;
 /// Below this a fit has settled, mm.
 const SETTLED_MM: f64 = 1e-13;
 
@@ -79,17 +81,17 @@ impl Section {
     /// ```
     #[must_use]
     pub fn least_squares(&self) -> Circle {
-        self.circle(least_squares)
+        self.circle(&[least_squares])
     }
 
     /// The minimum zone: two circles of one centre, least apart, with the outline between them (ISO 12181-1).
     #[must_use]
     pub fn minimum_zone(&self) -> Circle {
-        self.circle(minimax)
+        self.circle(&[least_squares, minimax])
     }
 
-    fn circle(&self, fit: fn(&DMatrix<f64>, &DVector<f64>) -> Option<DVector<f64>>) -> Circle {
-        let [x, y, _, _, radius_mm, roundness_mm] = fitted(&self.points_mm, 2, fit);
+    fn circle(&self, fits: &[Fit]) -> Circle {
+        let [x, y, _, _, radius_mm, roundness_mm] = fitted(&self.points_mm, 2, fits);
         Circle { centre_mm: [x, y], radius_mm, roundness_mm }
     }
 
@@ -128,65 +130,78 @@ impl Cylinder {
     /// The least-squares cylinder through sections (ISO 12180-1), its axis free.
     #[must_use]
     pub fn least_squares(sections: &[Section]) -> Self {
-        Self::fitted(sections, least_squares)
+        Self::fitted(sections, &[least_squares])
     }
 
     /// The minimum zone cylinder (ISO 12180-1).
     #[must_use]
     pub fn minimum_zone(sections: &[Section]) -> Self {
-        Self::fitted(sections, minimax)
+        Self::fitted(sections, &[least_squares, minimax])
     }
 
-    fn fitted(sections: &[Section], fit: fn(&DMatrix<f64>, &DVector<f64>) -> Option<DVector<f64>>) -> Self {
+    fn fitted(sections: &[Section], fits: &[Fit]) -> Self {
         let points: Vec<Vector> =
             sections.iter().flat_map(|section| section.points_mm.iter().copied()).collect();
-        let [_, _, _, _, radius_mm, cylindricity_mm] = fitted(&points, 4, fit);
+        let [_, _, _, _, radius_mm, cylindricity_mm] = fitted(&points, 4, fits);
         Self { radius_mm, cylindricity_mm }
     }
 }
 
-/// Axis (x, y at the middle, and its slopes), radius, and range of the distances, of the fit with so many free
+/// How the numbers of an axis are found from rows and values that are linear in them.
+type Fit = fn(&DMatrix<f64>, &DVector<f64>) -> Option<DVector<f64>>;
+
+/// Axis (x, y at the middle, and its slopes), radius, and range of the distances, of the last fit with so many free
 /// numbers of the axis: 2 for a circle, 4 for a cylinder.
 ///
-/// Distances from the axis are made linear in its numbers until they stand still.
-fn fitted(
-    points: &[Vector],
-    free: usize,
-    fit: fn(&DMatrix<f64>, &DVector<f64>) -> Option<DVector<f64>>,
-) -> [f64; 6] {
+/// Distances from the axis are made linear in its numbers until they stand still. A fit begins where the one before it
+/// ended, and what it ends with has no larger range: the minimum zone is no wider than that of least squares.
+fn fitted(points: &[Vector], free: usize, fits: &[Fit]) -> [f64; 6] {
     let count = points.len() as f64;
     let middle = points.iter().map(|p| p.z).sum::<f64>() / count;
     let reach = points.iter().map(|p| (p.z - middle).abs()).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
     // x, y at the middle; what x, y gain to the end.
     let mut axis = [0.0; 4];
-    let mut result = [f64::NAN; 6];
-    for _ in 0..ROUNDS {
-        let along = Vector::new(axis[2] / reach, axis[3] / reach, 1.0).normalize();
-        let ways: Vec<Vector> = points
-            .iter()
-            .map(|p| {
-                let way = Vector::new(p.x - axis[0], p.y - axis[1], p.z - middle);
-                if free == 2 { Vector::new(way.x, way.y, 0.0) } else { way - along * along.dot(&way) }
-            })
-            .collect();
-        let distances = DVector::from_iterator(points.len(), ways.iter().map(|w| w.norm()));
-        let (low, high) = (distances.min(), distances.max());
-        let rows = DMatrix::from_fn(points.len(), free + 1, |k, j| match j {
-            _ if j == free => 1.0,
-            0 | 1 => ways[k][j] / distances[k],
-            _ => ways[k][j - 2] / distances[k] * (points[k].z - middle) / reach,
-        });
-        let Some(found) = fit(&rows, &distances) else { break };
-        result = [axis[0], axis[1], axis[2] / reach, axis[3] / reach, found[free], high - low];
-        let moved = (0..free).map(|j| found[j].abs()).fold(0.0, f64::max);
-        if moved <= SETTLED_MM {
+    let mut best = [f64::NAN; 6];
+    for (turn, fit) in fits.iter().enumerate() {
+        let mut settled = best;
+        for _ in 0..ROUNDS {
+            let along = Vector::new(axis[2] / reach, axis[3] / reach, 1.0).normalize();
+            let ways: Vec<Vector> = points
+                .iter()
+                .map(|p| {
+                    let way = Vector::new(p.x - axis[0], p.y - axis[1], p.z - middle);
+                    if free == 2 { Vector::new(way.x, way.y, 0.0) } else { way - along * along.dot(&way) }
+                })
+                .collect();
+            let distances = DVector::from_iterator(points.len(), ways.iter().map(|w| w.norm()));
+            let (low, high) = (distances.min(), distances.max());
+            let rows = DMatrix::from_fn(points.len(), free + 1, |k, j| match j {
+                _ if j == free => 1.0,
+                0 | 1 => ways[k][j] / distances[k],
+                _ => ways[k][j - 2] / distances[k] * (points[k].z - middle) / reach,
+            });
+            let Some(found) = fit(&rows, &distances) else { break };
+            let radius = if turn == 0 { found[free] } else { 0.5 * (low + high) };
+            let now = [axis[0], axis[1], axis[2] / reach, axis[3] / reach, radius, high - low];
+            // Least squares ends where it stands still; a zone keeps the narrowest that it met.
+            if turn == 0 || now[5] <= settled[5] {
+                settled = now;
+            }
+            let moved = (0..free).map(|j| found[j].abs()).fold(0.0, f64::max);
+            if moved <= SETTLED_MM {
+                break;
+            }
+            for (own, by) in axis.iter_mut().zip(found.iter().take(free)) {
+                *own += by;
+            }
+        }
+        best = settled;
+        if best.iter().any(|value| value.is_nan()) {
             break;
         }
-        for (own, by) in axis.iter_mut().zip(found.iter().take(free)) {
-            *own += by;
-        }
+        axis = [best[0], best[1], best[2] * reach, best[3] * reach];
     }
-    result
+    best
 }
 
 /// Least squares by the normal equations: few unknowns, rows of the order of 1.
@@ -199,8 +214,13 @@ fn least_squares(rows: &DMatrix<f64>, values: &DVector<f64>) -> Option<DVector<f
 /// The answer is that of the worst choice of one row more than unknowns. A row beyond the level of the choice at hand is
 /// taken in for the one without which the level is highest, until there is none.
 fn minimax(rows: &DMatrix<f64>, values: &DVector<f64>) -> Option<DVector<f64>> {
-    let unknowns = rows.ncols();
-    let mut chosen: Vec<usize> = (0..=unknowns).map(|k| k * rows.nrows() / (unknowns + 1)).collect();
+    let mut chosen = independent(rows)?;
+    let through = rows.select_rows(&chosen).lu().solve(&values.select_rows(&chosen))?;
+    let off = values - rows * &through;
+    let worst = (0..rows.nrows())
+        .filter(|k| !chosen.contains(k))
+        .max_by(|a, b| off[*a].abs().total_cmp(&off[*b].abs()))?;
+    chosen.push(worst);
     let mut best = levelled(rows, values, &chosen)?;
     for _ in 0..rows.nrows() {
         let residuals = values - rows * &best.0;
@@ -222,6 +242,26 @@ fn minimax(rows: &DMatrix<f64>, values: &DVector<f64>) -> Option<DVector<f64>> {
     Some(best.0)
 }
 
+/// As many rows as unknowns, none of which follows from the others: the longest, then always what is farthest from those
+/// that were taken. (Rows at even steps may all lie at one angle.)
+fn independent(rows: &DMatrix<f64>) -> Option<Vec<usize>> {
+    let mut left = rows.clone();
+    (0..rows.ncols())
+        .map(|_| {
+            let size = |k: usize| left.row(k).norm_squared();
+            let taken = (0..left.nrows()).max_by(|a, b| size(*a).total_cmp(&size(*b)))?;
+            let way = left.row(taken).into_owned();
+            let length = way.norm();
+            if length < DEPENDENT {
+                return None;
+            }
+            let shares = &left * way.transpose() / length.powi(2);
+            left -= shares * way;
+            Some(taken)
+        })
+        .collect()
+}
+
 /// The unknowns that give the chosen rows residuals of one size, and that size; the signs are those of the
 /// combination in which the rows vanish.
 fn levelled(rows: &DMatrix<f64>, values: &DVector<f64>, chosen: &[usize]) -> Option<(DVector<f64>, f64)> {
@@ -236,6 +276,10 @@ fn levelled(rows: &DMatrix<f64>, values: &DVector<f64>, chosen: &[usize]) -> Opt
         );
     let svd = padded.svd(false, true);
     let null = svd.singular_values.imin();
+    // More than one combination in which they vanish: their residuals have no one size.
+    if svd.singular_values.iter().enumerate().any(|(k, size)| k != null && *size < DEPENDENT) {
+        return None;
+    }
     let vanishing = svd.v_t?.row(null).transpose();
     let bordered = DMatrix::from_fn(unknowns + 1, unknowns + 1, |k, j| {
         if j < unknowns {

@@ -239,6 +239,31 @@ fn a_cone_is_no_cylinder_and_a_tilted_one_is() {
     }
 }
 
+/// Sections that are all alike, and outlines in which many points are equally far: the choice of the rows that decide is
+/// not unique there.
+#[test]
+fn the_minimum_zone_of_a_cylinder_is_no_wider_than_least_squares() {
+    let a = 0.0008;
+    for (taper, angles, count) in
+        [(0.0, 360, 18), (0.0, 72, 5), (1e-5, 360, 18), (-4e-5, 90, 3), (2e-6, 16, 40)]
+    {
+        let spindle = spindle(ErrorMotion { x: wave(2, a, 0.0), ..ErrorMotion::default() });
+        let spindle = Spindle { tilt_rad: [0.0, taper], ..spindle };
+        let lathe = lathe(spindle, Bending::default(), Tip::default());
+        let sections: Vec<Section> =
+            (0..count).map(|k| lathe.section(&at(30.0, 156.0 + f64::from(k)), angles)).collect();
+        let (mean, zone) = (Cylinder::least_squares(&sections), Cylinder::minimum_zone(&sections));
+        assert!(zone.cylindricity_mm <= mean.cylindricity_mm + 1e-12, "{taper} {angles}: {mean:?} {zone:?}");
+        assert!(zone.cylindricity_mm > a && (zone.radius_mm - 30.0).abs() < 0.01, "{zone:?}");
+        // Two waves at every section: no axis makes the zone of it narrower than that of one.
+        let round = sections[0].minimum_zone().roundness_mm;
+        assert!(
+            zone.cylindricity_mm >= round - 1e-9 && zone.cylindricity_mm < round + 0.5e-3,
+            "{round} {zone:?}"
+        );
+    }
+}
+
 /// Everything at once.
 fn crooked() -> Lathe {
     let table = Table::new(

@@ -99,10 +99,14 @@ pub fn curves_with(
 /// A line through the values; where one is not known it is broken.
 fn path(at: &[f64], values: &[f64], x: &Scale, y: &Scale) -> String {
     let (mut path, mut joined) = (String::new(), false);
-    for (at, value) in at.iter().zip(values) {
+    for (k, (at, value)) in at.iter().zip(values).enumerate() {
         if value.is_finite() {
             path.push(if joined { 'L' } else { 'M' });
             path.push_str(&format!("{} {}", px(x.at(*at)), px(y.at(*value))));
+            // A place without neighbours would be no line: a dash as wide as a dot.
+            if !joined && values.get(k + 1).is_none_or(|next| !next.is_finite()) {
+                path.push_str("m-2 0h4");
+            }
         }
         joined = value.is_finite();
     }

@@ -31,10 +31,13 @@ use crate::text::shown;
 /// Width of every drawing, in its own units.
 pub const WIDTH: f64 = 720.0;
 
+/// Drawings that are higher than this share of their width have a printed page for themselves; of others two stand on one.
+const TALL: f64 = 0.75;
+
 /// An `svg` element with its words.
 fn svg(height: f64, title: &str, description: &str, body: &Markup) -> Markup {
     html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (px(WIDTH)) " " (px(height)) } role="img" {
+        svg.tall[height > TALL * WIDTH] xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (px(WIDTH)) " " (px(height)) } role="img" {
             title { (shown(title)) }
             desc { (shown(description)) }
             (body)

@@ -117,13 +117,13 @@ impl Placed {
         html! {
             @for (axis, from, to, right, down) in edges {
                 @let (low, high) = self.solid.ranges[axis];
-                @let class = if axis == 0 { "m e" } else { "m" };
+                @let class = if axis == 0 { "m e halo" } else { "m halo" };
                 @let (a, b) = (self.at(corner(from)), self.at(corner(to)));
                 @for (value, share) in [(low, 0.1), (high, 0.9)] {
                     @let here = (a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1));
                     (text(here.0 + right, here.1 + down, class, &language.digits(value, 0)))
                 }
-                (text(0.5 * (a.0 + b.0) + 1.4 * right, 0.5 * (a.1 + b.1) + 1.2 * down, if axis == 0 { "e" } else { "" },
+                (text(0.5 * (a.0 + b.0) + 1.4 * right, 0.5 * (a.1 + b.1) + 1.2 * down, if axis == 0 { "e halo" } else { "halo" },
                     &format!("{}, {}", ["X", "Y", "Z"][axis], say!(language, "mm", "мм"))))
             }
         }

@@ -16,28 +16,28 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     ("kind_diagnosis", "{file}: measured on {machine}", "{file}: измерено на станке {machine}"),
     (
         "head_check",
-        "As posted the tool leaves its path by up to {before} µm, as corrected by up to {after} µm; allowed are {limit} µm",
-        "По исходной программе инструмент уходит от пути до {before} мкм, по исправленной — до {after} мкм; допустимо {limit} мкм",
+        "As posted the tool leaves its path by up to {before} µm, as corrected by up to {after} µm; allowed are {limit} µm",
+        "По исходной программе инструмент уходит от пути до {before} мкм, по исправленной — до {after} мкм; допустимо {limit} мкм",
     ),
     (
         "head_map",
-        "The tool is up to {before} µm from where it is told to be; with the zero point moved, up to {after} µm",
-        "Инструмент стоит до {before} мкм от заданного места; со сдвинутым нулём — до {after} мкм",
+        "The tool is up to {before} µm from where it is told to be; with the zero point moved, up to {after} µm",
+        "Инструмент стоит до {before} мкм от заданного места; со сдвинутым нулём — до {after} мкм",
     ),
     (
         "head_diagnosis",
-        "{verdict}: the rows are {before} µm (RMS) from the model, with the causes that were found {after} µm",
-        "{verdict}: строки отходят от модели на {before} мкм (СКЗ), с найденными причинами — на {after} мкм",
+        "{verdict_en}: the rows are {before} µm (RMS) from the model, with the causes that were found {after} µm",
+        "{verdict_ru}: строки отходят от модели на {before} мкм (СКЗ), с найденными причинами — на {after} мкм",
     ),
     (
         "seen",
-        "Displacements are drawn {times} their size; the largest is {largest} µm. Drag to turn, pick a place to see what makes its error.",
-        "Смещения показаны увеличенными: {times}; наибольшее — {largest} мкм. Поверните вид, выберите место — и видно, из чего его погрешность.",
+        "Displacements are drawn {times} their size; the largest is {largest} µm. Drag to turn, pick a place to see what makes its error.",
+        "Смещения показаны увеличенными: {times}; наибольшее — {largest} мкм. Поверните вид, выберите место — и видно, из чего его погрешность.",
     ),
     (
         "seen_without",
-        "Displacements are drawn {times} their size. Without {causes} the largest would be {largest} µm.",
-        "Смещения показаны увеличенными: {times}. Без причин ({causes}) наибольшее было бы {largest} мкм.",
+        "Displacements are drawn {times} their size. Without {causes} the largest would be {largest} µm.",
+        "Смещения показаны увеличенными: {times}. Без причин ({causes}) наибольшее было бы {largest} мкм.",
     ),
     ("still", "Displacements are drawn {times} times their size.", "Увеличение смещений: {times}\u{d7}."),
     ("skip", "Skip to the place that is looked at", "Перейти к выбранному месту"),
@@ -56,7 +56,7 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     ("commanded_diagnosis", "as told", "как задано"),
     ("real_diagnosis", "measured", "измерено"),
     ("corrected_diagnosis", "without what the causes make", "без вклада причин"),
-    ("most", "up to {largest} µm", "до {largest} мкм"),
+    ("most", "up to {largest} µm", "до {largest} мкм"),
     ("shown", "What is shown", "Что показано"),
     ("magnification", "Magnification", "Увеличение"),
     ("along_check", "Along the program", "По программе"),
@@ -82,8 +82,8 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     ("size", "size", "длина"),
     (
         "off_check",
-        "This motion leaves its path by up to {before} µm as posted, {after} µm as corrected.",
-        "Это движение уходит от пути до {before} мкм по исходной программе, до {after} мкм по исправленной.",
+        "This motion leaves its path by up to {before} µm as posted, {after} µm as corrected.",
+        "Это движение уходит от пути до {before} мкм по исходной программе, до {after} мкм по исправленной.",
     ),
     ("off_map", "", ""),
     ("off_diagnosis", "", ""),
@@ -91,8 +91,8 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     ("makers_none", "No cause displaces the tool here.", "Здесь ни одна причина не смещает инструмент."),
     (
         "spoken",
-        "Displaced by {real} µm, corrected {after} µm",
-        "Смещение {real} мкм, исправленное {after} мкм",
+        "Displaced by {real} µm, corrected {after} µm",
+        "Смещение {real} мкм, исправленное {after} мкм",
     ),
     ("um", "µm", "мкм"),
     ("mm", "mm", "мм"),
@@ -120,19 +120,19 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     ),
     (
         "thinned",
-        "{drawn} of {of} places are drawn. Every place that was left out lies within {path} µm of what is drawn, its displacements within {displaced} µm of those between the places that are drawn; places that are drawn have their own numbers.",
-        "Нарисовано мест: {drawn} из {of}. Каждое пропущенное лежит не дальше {path} мкм от нарисованного, его смещения — не дальше {displaced} мкм от промежуточных; у нарисованных мест числа свои.",
+        "{drawn} of {of} places are drawn. Every place that was left out lies within {path} µm of what is drawn, its displacements within {displaced} µm of those between the places that are drawn; places that are drawn have their own numbers.",
+        "Нарисовано мест: {drawn} из {of}. Каждое пропущенное лежит не дальше {path} мкм от нарисованного, его смещения — не дальше {displaced} мкм от промежуточных; у нарисованных мест числа свои.",
     ),
     ("whole", "All {of} places are drawn.", "Нарисованы все места: {of}."),
     (
         "remainder",
-        "A cause is what is missing when the machine model is evaluated without it. Since errors multiply, the causes do not quite add up to the whole: by {remainder} µm at most.",
-        "Причина — то, чего не хватает, если вычислить модель станка без неё. Погрешности перемножаются, поэтому сумма причин не совсем равна целому: разница до {remainder} мкм.",
+        "A cause is what is missing when the machine model is evaluated without it. Since errors multiply, the causes do not quite add up to the whole: by {remainder} µm at most.",
+        "Причина — то, чего не хватает, если вычислить модель станка без неё. Погрешности перемножаются, поэтому сумма причин не совсем равна целому: разница до {remainder} мкм.",
     ),
     (
         "remainder_diagnosis",
-        "Measured is the gap between the rows and the model, the measuring frame aligned; a cause is what it makes of the rows, the frame aligned once more. What the causes do not explain, and what aligning all of them at once does otherwise, is up to {remainder} µm in a row.",
-        "Измерено — это расхождение строк и модели после совмещения систем координат; причина — то, что она даёт в строках, тоже после совмещения. Необъяснённое, вместе с разницей от общего совмещения, — до {remainder} мкм в строке.",
+        "Measured is the gap between the rows and the model, the measuring frame aligned; a cause is what it makes of the rows, the frame aligned once more. What the causes do not explain, and what aligning all of them at once does otherwise, is up to {remainder} µm in a row.",
+        "Измерено — это расхождение строк и модели после совмещения систем координат; причина — то, что она даёт в строках, тоже после совмещения. Необъяснённое, вместе с разницей от общего совмещения, — до {remainder} мкм в строке.",
     ),
     (
         "undivided",
@@ -177,10 +177,11 @@ pub(super) fn say(key: &str, language: Language, values: &[(&str, String)]) -> S
 mod tests {
     use super::*;
 
-    /// What stands in braces, in order of the alphabet.
-    fn blanks(text: &str) -> Vec<&str> {
-        let mut found: Vec<&str> =
-            text.split('{').skip(1).filter_map(|rest| rest.split('}').next()).collect();
+    /// What stands in braces, in order of the alphabet. What is itself a text is there in each language, which its name
+    /// ends in.
+    fn blanks<'t>(text: &'t str, language: &str) -> Vec<&'t str> {
+        let names = text.split('{').skip(1).filter_map(|rest| rest.split('}').next());
+        let mut found: Vec<&str> = names.map(|name| name.strip_suffix(language).unwrap_or(name)).collect();
         found.sort_unstable();
         found
     }
@@ -189,7 +190,7 @@ mod tests {
     fn both_languages_say_the_same_things() {
         for (at, (key, english, russian)) in WORDS.iter().enumerate() {
             assert!(WORDS[..at].iter().all(|(other, ..)| other != key), "{key} stands twice");
-            assert_eq!(blanks(english), blanks(russian), "{key}");
+            assert_eq!(blanks(english, "_en"), blanks(russian, "_ru"), "{key}");
             assert_eq!(english.is_empty(), russian.is_empty(), "{key}");
         }
     }

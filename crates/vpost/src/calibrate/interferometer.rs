@@ -41,6 +41,7 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     let mut found = Vec::new();
     for series in &all {
         plausibility::units(series, messages)?;
+        plausibility::directions(series, messages);
         let fail = |error: &calibration::CalibrationError| failure(&series.source, &[], error);
         let readings = sources::readings(series);
         let function = functions::function(&readings).map_err(|e| fail(&e))?;

@@ -9,6 +9,7 @@ use crate::message::{Failure, Messages};
 use measurement_files::series::{Origin, Series};
 
 use super::codes::{AXES, MISSING, RUNS, UNITS};
+use super::micro;
 use super::output::warn;
 use crate::number::short;
 
@@ -42,12 +43,12 @@ pub(super) fn units(series: &Series, messages: &Messages) -> Result<(), Failure>
         }
         warn(messages, diagnostic(Diagnostic::warning(UNITS, message)));
     } else if large > high {
+        let (scale, unit) = micro(series.function < 3);
         let message = both!(
-            "{}: readings of {name} reach {:.0} {}: are they in a smaller unit than said?",
-            "{}: показания {name} доходят до {:.0} {}: их единица мельче названной?",
+            "{}: readings of {name} reach {:.0} {unit}: are they in a smaller unit than said?",
+            "{}: показания {name} доходят до {:.0} {unit:#}: их единица мельче названной?",
             series.source,
-            large * if series.function < 3 { 1e3 } else { 1e6 },
-            if series.function < 3 { "um" } else { "urad" }
+            large * scale
         );
         warn(
             messages,
@@ -58,6 +59,28 @@ pub(super) fn units(series: &Series, messages: &Messages) -> Result<(), Failure>
         );
     }
     Ok(())
+}
+
+/// Targets that were read again and again, and nothing says from which side.
+pub(super) fn directions(series: &Series, messages: &Messages) {
+    let unsaid: Vec<f64> =
+        series.readings.iter().filter(|r| r.direction == 0).map(|r| r.position_mm).collect();
+    let again = unsaid.iter().enumerate().find(|(k, at)| unsaid[..*k].contains(at));
+    let Some((_, at_mm)) = again.filter(|_| series.function == series.axis.direction()) else { return };
+    let message = both!(
+        "{}: {} was read several times at {} mm, and nothing says from which side: all readings without a direction count as reached towards plus",
+        "{}: {} снята в {} мм несколько раз, и не сказано, с какой стороны: все отсчёты без направления считаются подходом в плюс",
+        series.source,
+        series.name(),
+        short(*at_mm, 3)
+    );
+    warn(
+        messages,
+        Diagnostic::warning(MISSING, message).help(both!(
+            "the direction decides what is lost motion and what is scatter: add a column `dir`, 1 where the axis moved towards plus and -1 where towards minus; without it B stays unknown, and the table holds the mean of both sides",
+            "направление решает, где мёртвый ход, а где разброс: добавьте столбец `dir`: 1 при движении в плюс, -1 в минус; без него B останется неизвестной, а таблица — средней для обеих сторон"
+        )),
+    );
 }
 
 /// Below this no instrument tells two readings apart, mm and rad.
@@ -89,12 +112,12 @@ pub(super) fn copies(
         let differences = || up.iter().zip(down).map(|(u, d)| u - d);
         differences().fold(f64::MIN, f64::max) - differences().fold(f64::MAX, f64::min)
     });
-    let (finest, scale, unit) =
-        if series.function < 3 { (FINEST, 1e3, "um") } else { (FINEST_RAD, 1e6, "urad") };
+    let is_length = series.function < 3;
+    let (finest, (scale, unit)) = (if is_length { FINEST } else { FINEST_RAD }, micro(is_length));
     if apart > finest {
         let message = both!(
             "{message}, while the difference of the directions wanders by {} {unit} from target to target: was one run written several times?",
-            "{message:#}, а разность направлений гуляет от цели к цели на {} {unit}: один проход записан несколько раз?",
+            "{message:#}, а разность направлений гуляет от цели к цели на {} {unit:#}: один проход записан несколько раз?",
             short(apart * scale, 3)
         );
         return Err(Failure::usage(Diagnostic::error(RUNS, message).help(both!(

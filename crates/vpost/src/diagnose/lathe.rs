@@ -257,7 +257,8 @@ struct Said<'a> {
 impl Said<'_> {
     fn text(&self) -> Text {
         let found = self.found;
-        let mut out = both!("{}\n", "{}\n", found.verdict.name());
+        let mut out = words(found.verdict);
+        out.push(&Text::same("\n"));
         let mut line = |text: Text| {
             out.push(&text);
             out.push(&Text::same("\n"));
@@ -428,6 +429,21 @@ impl Said<'_> {
         let separates = std::iter::once(open.cause.id()).chain(open.rivals.iter().map(String::as_str));
         Some((text, separates.collect()))
     }
+}
+
+/// A verdict as people read it: the words that the diagnosis of a mill has for it.
+const fn words(verdict: Verdict) -> Text {
+    use gap_diagnosis::Verdict as Of;
+    match verdict {
+        Verdict::NoGap => Of::NoGap,
+        Verdict::Named => Of::Named,
+        Verdict::Ambiguous => Of::Ambiguous,
+        Verdict::Partial => Of::Partial,
+        Verdict::Unknown => Of::Unknown,
+        Verdict::NoiseModelSuspect => Of::NoiseModelSuspect,
+        Verdict::Underpowered => Of::Underpowered,
+    }
+    .words()
 }
 
 /// A verdict in a sentence.

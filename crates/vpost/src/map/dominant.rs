@@ -81,7 +81,7 @@ pub(super) fn sentence(all: &[Dominant], language: Language) -> Option<String> {
         .filter(|own| own.alone_mm > 0.1 * largest)
         .map(|own| {
             let (name, um) = (called(&own.name, language), um(own.alone_mm, language));
-            say!(language, "{name} (alone {um} \u{b5}m)", "{name} (одно {um} мкм)")
+            say!(language, "{name} (alone {um} \u{b5}m)", "{name} (само по себе {um} мкм)")
         })
         .collect();
     let named = named.join(", ");

@@ -217,8 +217,8 @@ fn figures(study: &Study, language: Language) -> Markup {
         p {
             (say!(
                 language,
-                "\u{b5}m. Ranges per axis are those of ISO 230-1 for the volumetric accuracy of three linear axes; the others are of the length of the error.",
-                "мкм. Размах по каждой оси — тот, что в ISO 230-1 определяет объёмную точность трёх линейных осей; остальное относится к длине вектора погрешности."
+                "In \u{b5}m. Ranges per axis are those of ISO 230-1 for the volumetric accuracy of three linear axes; the others are of the length of the error.",
+                "В мкм. Размах по каждой оси — тот, что в ISO 230-1 определяет объёмную точность трёх линейных осей; остальное относится к длине вектора погрешности."
             ))
         }
         (table(language, &header, &[1, 2, 3, 4, 5, 6, 7, 8, 9], &rows))

@@ -108,6 +108,7 @@ impl Lead {
 
     /// What is wrong, and what to do about it.
     fn says(&self, language: Language) -> String {
+        let um = |mm: f64, language: Language| language.number(mm * 1e3);
         match self {
             Self::Scatter { r_mm, at_mm, from } => say!(
                 language,
@@ -151,28 +152,26 @@ fn head(all: &[Read], facts: &Facts, language: Language) -> Markup {
         @match worst(all) {
             Some((read, e)) => {
                 @let lead = Lead::of(e);
+                @let [a, spread] = language.measured(e.accuracy.value * 1e3, e.accuracy.expanded * 1e3);
                 p { span.verdict { (lead.word().in_language(language)) } }
                 h1 {
                     (say!(
                         language,
-                        "{} positions within A = {} \u{b5}m (\u{b1} {}, 95\u{a0}%)",
-                        "Точность позиционирования {}: A = {} мкм (\u{b1} {}, 95\u{a0}%)",
-                        read.axis,
-                        um(e.accuracy.value, language),
-                        um(e.accuracy.expanded, language)
+                        "{} positions within A = {a} \u{b5}m (\u{b1} {spread}, 95\u{a0}%)",
+                        "Точность позиционирования {}: A = {a} мкм (\u{b1} {spread}, 95\u{a0}%)",
+                        read.axis
                     ))
                 }
                 p { (lead.says(language)) }
                 p { (correction(read, language)) }
                 @for (other, e) in evaluated(all).filter(|(other, _)| other.axis != read.axis) {
+                    @let [a, spread] = language.measured(e.accuracy.value * 1e3, e.accuracy.expanded * 1e3);
                     p {
                         (say!(
                             language,
-                            "{} positions within A = {} \u{b5}m (\u{b1} {}).",
-                            "Точность позиционирования {}: A = {} мкм (\u{b1} {}).",
-                            other.axis,
-                            um(e.accuracy.value, language),
-                            um(e.accuracy.expanded, language)
+                            "{} positions within A = {a} \u{b5}m (\u{b1} {spread}).",
+                            "Точность позиционирования {}: A = {a} мкм (\u{b1} {spread}).",
+                            other.axis
                         ))
                     }
                 }
@@ -222,6 +221,7 @@ fn correction(read: &Read, language: Language) -> String {
             "Что даст коррекция, один проход в направлении не скажет: пройдите ещё раз."
         );
     };
+    let um = |mm: f64, language: Language| language.number(mm * 1e3);
     let words = say!(
         language,
         "Each run of {} corrected by the mean of the others: readings spread over {} \u{b5}m instead of {} (RMS {} \u{b5}m)",

@@ -8,9 +8,9 @@ use machine_profile::Profile;
 use maud::{Markup, html};
 use report::chart::{Fitted, Points, fitted};
 use report::page::{Page, Section, figure, table_of};
-use report::text::{Numbers, number, number_of_digits, shown};
+use report::text::{Numbers, number, number_of_digits, opening, shown, typed};
 
-use super::{Said, meaning, sentence};
+use super::{Said, meaning, sentence, words};
 use crate::file;
 use crate::message::Failure;
 use crate::origin::{Origin, command_row};
@@ -107,9 +107,9 @@ impl<'a> Drawn<'a> {
         };
         html! {
             p.muted { (self.say(&both!("Parts of {}: {}", "Детали станка {}: {}", shown(&facts.profile.name), shown(&file::name(facts.measurements))))) }
-            p { span.verdict { (found.verdict.name()) } }
-            h1 { (self.say(&what)) }
-            @if !found.causes.is_empty() { p { (self.say(&meaning(found.verdict))) "." } }
+            p { span.verdict { (words(found.verdict).in_language(self.language)) } }
+            h1 { (opening(&self.say(&what))) }
+            @if !found.causes.is_empty() { p { (opening(&self.say(&meaning(found.verdict)))) "." } }
             p { (self.say(&both!(
                 "The gap is {} \u{b5}m RMS on the radius beyond sizes and clampings, {} \u{b5}m of it noise ({} rows).",
                 "Невязка {} мкм (среднеквадратичное, по радиусу, без размеров и установок), из них шум {} мкм (строк {}).",
@@ -117,7 +117,7 @@ impl<'a> Drawn<'a> {
                 number_of_digits(found.noise_mm * 1e3, 2),
                 self.said.rows.len()
             ))) }
-            @if let Some(own) = found.causes.first() { p { (self.say(&self.said.remedy(own))) } }
+            @if let Some(own) = found.causes.first() { p { (typed(&self.say(&self.said.remedy(own)))) } }
             @match found.unseen {
                 Some(unseen) => p { (self.say(&both!(
                     "Unseen parts: {} \u{2192} {} \u{b5}m RMS ({} rows, each part at its own size).",
@@ -209,17 +209,17 @@ impl<'a> Drawn<'a> {
         ];
         html! {
             @if found.causes.is_empty() {
-                p { (self.say(&meaning(found.verdict))) "." }
+                p { (opening(&self.say(&meaning(found.verdict)))) "." }
             } @else {
                 (table_of(self.language, &header, &[2, 3, 4, 5, 6], &rows))
             }
             @for own in &found.causes {
                 h3 { (own.cause.id()) }
-                p { (self.say(&sentence(own))) "." }
+                p { (opening(&self.say(&sentence(own)))) "." }
                 @if !own.rivals.is_empty() {
                     p { (self.say(&both!("It cannot be told from {}.", "Не отличить от: {}.", own.rivals.join(", ")))) }
                 }
-                p { (self.say(&self.said.remedy(own))) }
+                p { (typed(&self.say(&self.said.remedy(own)))) }
             }
             @let asked: Vec<&str> = found.asked.iter().map(|cause| cause.id()).collect();
             p.muted { (self.say(&both!("These rows could show: {}.", "Эти строки могли показать: {}.", asked.join(", ")))) }
@@ -228,11 +228,13 @@ impl<'a> Drawn<'a> {
 
     fn numbers(&self, own: &FoundCause) -> Vec<Vec<String>> {
         let row = |n: &calibration::turning::Number| {
+            // The table turns figures into those of its language.
+            let [value, spread] = Language::English.measured(n.value, n.u95);
             vec![
                 own.cause.id().to_owned(),
                 n.name.to_owned(),
-                number_of_digits(n.value, 3),
-                number_of_digits(n.u95, 3),
+                value,
+                spread,
                 number_of_digits(own.rms_mm[0] * 1e3, 2),
                 number_of_digits(own.rms_mm[1] * 1e3, 2),
                 if own.p < 1e-4 { "< 0.0001".to_owned() } else { number_of_digits(own.p, 4) },

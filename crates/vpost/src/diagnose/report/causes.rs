@@ -85,8 +85,10 @@ fn one(c: &Cause, changes: &[Change], language: Language) -> Markup {
             @for p in &c.parameters {
                 dt { (shown(&p.name)) }
                 dd {
-                    (language.number(p.value))
-                    @if let Some(u) = p.u95 { " \u{b1} " (language.number(u)) " (95 %)" }
+                    @match p.u95 {
+                        Some(u) => { @let [value, spread] = language.measured(p.value, u); (value) " \u{b1} " (spread) " (95 %)" },
+                        None => (language.number(p.value)),
+                    }
                 }
             }
             dt { (say!(language, "chance that it is none", "вероятность, что её нет")) } dd { (probability(c.p, language)) }

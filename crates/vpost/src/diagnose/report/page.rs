@@ -133,6 +133,7 @@ fn head(d: &Diagnosis, facts: &Facts, language: Language) -> Markup {
         p.muted { (say!(language, "Simulation against reality: ", "Модель и действительность: ")) (shown(&facts.machine)) ", " (shown(&facts.measurements.name)) }
         p { span.verdict { (d.verdict.words().in_language(language)) } }
         h1 { (shown(&language.prose(&d.sentence))) }
+        @if let Some(words) = in_words(d, language) { p { (shown(&words)) } }
         p { (meaning(d.verdict).in_language(language)) }
         @if g.rms_um > 0.0 {
             p.muted {
@@ -145,6 +146,20 @@ fn head(d: &Diagnosis, facts: &Facts, language: Language) -> Markup {
         }
         @if let Some(gain) = gain(d, language) { p { (gain) } }
         (facts.origin.line(language))
+    }
+}
+
+/// Causes that are said in words on the first screen.
+const IN_WORDS: usize = 3;
+
+/// The largest causes in words.
+fn in_words(d: &Diagnosis, language: Language) -> Option<String> {
+    let said: Vec<String> = d.causes.iter().take(IN_WORDS).map(|c| language.prose(&c.words)).collect();
+    let (said, more) = (said.join("; "), d.causes.len().saturating_sub(IN_WORDS));
+    match (d.causes.len(), more) {
+        (0, _) => None,
+        (_, 0) => Some(format!("{said}.")),
+        _ => Some(say!(language, "{said}; {more} more below.", "{said}; ещё причин ниже: {more}.")),
     }
 }
 

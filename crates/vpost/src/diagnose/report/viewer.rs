@@ -1,6 +1,6 @@
 //! The diagnosis as a page in which the error moves: the rows as told, as measured, and without what the causes make.
 
-use diagnostic::both;
+use diagnostic::{Language, both};
 use report::viewer::scene::{CAUSES, Cause, Displacement, Place, Scene};
 use report::viewer::{Figures, Kind, Viewer};
 
@@ -80,7 +80,7 @@ impl Report<'_> {
         let lines: Vec<&str> = text.lines().collect();
         let blocks =
             viewer::blocks(&scene, |line| lines.get(usize::try_from(line.checked_sub(1)?).ok()?).copied());
-        let count = scene.of.to_string();
+        let (count, verdict) = (scene.of.to_string(), d.verdict.words());
         let page = Viewer {
             kind: Kind::Diagnosis,
             language: messages.language(),
@@ -90,7 +90,8 @@ impl Report<'_> {
             files: &[],
             figures: Figures {
                 names: vec![
-                    ("verdict", d.verdict.name()),
+                    ("verdict_en", verdict.in_language(Language::English)),
+                    ("verdict_ru", verdict.in_language(Language::Russian)),
                     ("machine", &facts.machine),
                     ("file", name),
                     ("drawn", &count),

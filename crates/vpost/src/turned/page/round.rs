@@ -136,7 +136,7 @@ impl Drawn {
         // A circle is drawn as one, and not its last digits.
         let largest = all.iter().map(off).fold(0.01, f64::max);
         let m = Magnification::of(largest, self.radius_um);
-        let times = number_of_digits(m.times, 0);
+        let times = language.digits(m.times, 0);
         let drawn = Polar {
             axes: ["X", "Y"],
             radius: self.radius_um,
