@@ -137,7 +137,7 @@ fn backlash() -> Report {
 }
 
 pub(crate) fn text(path: &Path) -> String {
-    std::fs::read_to_string(path).expect("the report was written")
+    crate::common::page(path)
 }
 
 /// The data that a page carries along.

@@ -31,7 +31,7 @@ fn shown(instrument: &str, files: &[&str], more: &[&str]) -> Shown {
     assert!(output.status.success(), "{files:?}: {}", messages(&output));
     let read = |path: &str| std::fs::read_to_string(path).expect("written");
     Shown {
-        html: read(&html),
+        html: crate::common::page(&html),
         json: serde_json::from_str(&read(&json)).expect("JSON"),
         csv: read(&csv),
         printed: printed(&output),

@@ -80,3 +80,11 @@ pub(crate) fn referee(
     serde_json::from_slice(&ran.stdout)
         .unwrap_or_else(|error| panic!("referee on {}: {error}\n{}", input.display(), messages(&ran)))
 }
+
+/// A page as its words are read: the elements that keep a word with a hyphen whole are left out.
+pub(crate) fn page(path: impl AsRef<std::path::Path>) -> String {
+    let html = std::fs::read_to_string(path).expect("the page was written");
+    let mut parts = html.split("<span class=\"w\">");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |read, part| read + &part.replacen("</span>", "", 1))
+}

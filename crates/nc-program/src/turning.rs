@@ -1,6 +1,6 @@
 //! What is different in a lathe's program: X words are diameters, there is no Y, arcs lie in X and Z.
 
-use diagnostic::both;
+use diagnostic::{Text, both};
 use nc_syntax::dialect::{Action, GCode};
 use toolpath::{Motion, Plane, Shape};
 
@@ -18,6 +18,7 @@ const ON_THE_AXIS_MM: f64 = 1e-9;
 /// G7 and G8, which hold for the words of their own block, and how X words are to be read then; and whether a limit holds the
 /// spindle where the speed rises towards the axis.
 pub(crate) fn read(words: &mut Words<'_, '_, '_>, state: &mut Modal) -> Outcome<()> {
+    no_increments_of_other_axes(words)?;
     let mut distance = state.distance;
     let actions = words.codes.iter().map(|code| &code.entry.action);
     for action in actions.chain(words.commands.iter().map(|(action, _)| *action)) {
@@ -47,6 +48,38 @@ pub(crate) fn read(words: &mut Words<'_, '_, '_>, state: &mut Modal) -> Outcome<
         }
     }
     Ok(())
+}
+
+/// Where U and W add to X and Z, V and H add to Y and C (B-64304EN-1, "Absolute and incremental programming"), and where T
+/// says the offset, H is no tool length. Asked for before the codes are executed, which would take it for one.
+fn no_increments_of_other_axes(words: &Words<'_, '_, '_>) -> Outcome<()> {
+    let takes_words =
+        |action: &Action| matches!(action, Action::Pass { takes_words: true } | Action::LimitOrPreset);
+    let (others, adds) = words.letters_of_other_axes();
+    if !words.has(others) || words.codes.iter().any(|code| takes_words(&code.entry.action)) {
+        return Ok(());
+    }
+    let label = if adds {
+        both!(
+            "in G-code system A V adds to Y and H adds to C",
+            "в системе G-кодов A V прибавляется к Y, а H — к C"
+        )
+    } else {
+        both!(
+            "T says the offset of the tool here, H is of another axis",
+            "коррекцию инструмента здесь задаёт T, а H относится к другой оси"
+        )
+    };
+    let message = both!("{} on a lathe of two axes", "{} на двухосевом токарном станке", words.names(others));
+    Err(words.refuse(codes::NO_TURNING, message, words.span(others), label).help(off_the_axis()))
+}
+
+/// What to do with words of axes that a lathe of two axes has not.
+fn off_the_axis() -> Text {
+    both!(
+        "correct the turning apart from what is milled or drilled off the axis",
+        "исправляйте точение отдельно от того, что фрезеруется или сверлится вне оси"
+    )
 }
 
 /// The letter of a thread's lead.
@@ -132,10 +165,7 @@ pub(crate) fn check(
                  (параметр 3405.4); иначе исправляйте точение отдельно от фрезерования"
             )
         } else {
-            both!(
-                "correct the turning apart from what is milled or drilled off the axis",
-                "исправляйте точение отдельно от того, что фрезеруется или сверлится вне оси"
-            )
+            off_the_axis()
         };
         return Err(words
             .refuse(

@@ -217,6 +217,16 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
         self.dialect.turning.is_some()
     }
 
+    /// Letters of a lathe's program that add to axes which a lathe of two axes has not, or would be taken for a tool length; and
+    /// whether U and W are increments there.
+    pub(crate) fn letters_of_other_axes(&self) -> (Letters, bool) {
+        match &self.dialect.turning {
+            Some(turning) if turning.increments => (Letters::of(b"VH"), true),
+            Some(turning) if turning.offset_in_t => (Letters::of(b"H"), false),
+            _ => (Letters::NONE, false),
+        }
+    }
+
     /// True where nothing is executed: names, comments, `%`, N and O alone.
     pub(crate) fn is_idle(&self) -> bool {
         self.codes.is_empty()

@@ -131,8 +131,25 @@ impl Writer<'_, '_> {
         })
     }
 
-    /// The block without P and Q.
+    /// The block without P and Q. Words that only the block that cuts has say that its contour was left out.
     fn set(&mut self, words: &Words<'_, '_>, cycle: TurningCycle, span: Span) -> Result<(), Fault> {
+        let others: &[u8] = match cycle {
+            TurningCycle::RoughPattern => b"IKD",
+            _ if axis_of(cycle) == 0 => b"WIKD",
+            _ => b"UIKD",
+        };
+        if let Some((letter, (_, at))) =
+            others.iter().find_map(|letter| Some((*letter as char, words.number(*letter)?)))
+        {
+            return Err(words.contour_fault(
+                at,
+                both!("a cycle without P and Q", "цикл без P и Q"),
+                both!(
+                    "{letter} is of the block that cuts: which contour?",
+                    "{letter} относится к кадру, который режет: какой контур?"
+                ),
+            ));
+        }
         let length = |letter: u8| self.state.length(words, letter);
         let mut set = self.first_blocks;
         match cycle {
