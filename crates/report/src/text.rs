@@ -109,7 +109,7 @@ pub fn opening(text: &str) -> String {
 pub fn typed(text: &str) -> Markup {
     let parts: Vec<&str> = text.split('`').collect();
     html! {
-        @if parts.len() % 2 == 0 { (shown(text)) } @else {
+        @if parts.len().is_multiple_of(2) { (shown(text)) } @else {
             @for (k, part) in parts.into_iter().enumerate() { @if k % 2 == 0 { (shown(part)) } @else { code { (shown(part)) } } }
         }
     }
@@ -177,7 +177,7 @@ impl Numbers for Language {
 
     fn of_terminal(self, text: &str) -> String {
         // What stands between backticks is typed, not read.
-        let is_balanced = text.matches('`').count() % 2 == 0;
+        let is_balanced = text.matches('`').count().is_multiple_of(2);
         let part = |(k, part): (usize, &str)| match self {
             _ if is_balanced && k % 2 == 1 => part.to_owned(),
             Self::English => with_micro(&with_minus(part)),
