@@ -296,25 +296,24 @@ pub(crate) fn require_rotary(words: &Words<'_, '_, '_>, axes: &Axes) -> Outcome<
 
 fn unknown(words: &Words<'_, '_, '_>, message: Text, span: Span, lost: &[(char, Lost)]) -> Box<Diagnostic> {
     let names: Vec<String> = lost.iter().map(|(name, _)| format!("{name}…")).collect();
-    let changed =
-        |(_, lost): &(char, Lost)| matches!(lost.why, Why::Miscellaneous { changes_tool: true, .. });
-    let tool_change = if lost.iter().any(changed) {
+    let where_any = |why: &dyn Fn(&Why) -> bool, also: Text| {
+        if lost.iter().any(|(_, lost)| why(&lost.why)) { also } else { Text::EMPTY }
+    };
+    let changed = |why: &Why| matches!(why, Why::Miscellaneous { changes_tool: true, .. });
+    let tool_change = where_any(
+        &changed,
         Text::pair(
             ", or say where a tool change leaves the axes: `tool_change = { keeps = \"XYZ\" }` or a position, under `[program]` in the profile",
             "; или скажите, где оставляет оси смена инструмента: `tool_change = { keeps = \"XYZ\" }` или положение, в разделе `[program]` профиля",
-        )
-    } else {
-        Text::EMPTY
-    };
-    let by_length = |(_, lost): &(char, Lost)| lost.why == Why::ToolLength;
-    let length = if lost.iter().any(by_length) {
+        ),
+    );
+    let length = where_any(
+        &|why| *why == Why::ToolLength,
         Text::pair(
             ", or in the block of the tool length; or, where the control's manual says that the length alone moves nothing, say so as tool_length.alone in a copy of the grammar",
             " или в кадре с коррекцией на длину; а если по руководству стойки сама коррекция оси не перемещает, укажите это как tool_length.alone в копии таблицы диалекта",
-        )
-    } else {
-        Text::EMPTY
-    };
+        ),
+    );
     let rotary_from_start = |(name, lost): &(char, Lost)| lost.why == Why::Start && "ABC".contains(*name);
     let start = if lost.iter().all(rotary_from_start) {
         let places: Vec<String> = lost.iter().map(|(name, _)| format!("{name}=0")).collect();
@@ -332,7 +331,7 @@ fn unknown(words: &Words<'_, '_, '_>, message: Text, span: Span, lost: &[(char, 
         names.join(" ")
     );
     let refusal = words.refuse(codes::POSITION_UNKNOWN, message, span, reasons(lost));
-    if lost.iter().all(changed) {
+    if lost.iter().all(|(_, lost)| changed(&lost.why)) {
         let entry = Entry::new("program", None, "tool_change", "{ keeps = \"XYZ\" }");
         return refusal.settled_by(entry).help(help);
     }
