@@ -46,6 +46,11 @@ fn um(mm: f64, language: Language) -> String {
     language.digits(mm * 1e3, 3)
 }
 
+/// An amount in a sentence, µm, with the digits that are read there; tables have [`um`].
+fn said_um(mm: f64, language: Language) -> String {
+    language.number(mm * 1e3)
+}
+
 /// A position with a real minus sign.
 fn position(mm: f64, language: Language) -> String {
     language.figures(short(mm, 3).replacen('-', "\u{2212}", 1))
@@ -108,27 +113,26 @@ impl Lead {
 
     /// What is wrong, and what to do about it.
     fn says(&self, language: Language) -> String {
-        let um = |mm: f64, language: Language| language.number(mm * 1e3);
         match self {
             Self::Scatter { r_mm, at_mm, from } => say!(
                 language,
                 "Most of it does not repeat: at {} mm, reached from {from}, readings scatter by 4s = {} \u{b5}m. No table corrects that. Run that target again; look at fixture, scale, bearings and drive before correcting.",
                 "Большая часть не повторяется: на {} мм при подходе {from:#} разброс отсчётов 4s = {} мкм. Таблицей это не исправить. Пройдите эту цель ещё раз; прежде чем исправлять, проверьте закрепление, шкалу, подшипники и привод.",
                 position(*at_mm, language),
-                um(*r_mm, language)
+                said_um(*r_mm, language)
             ),
             Self::Reversal { b_mm, at_mm } => say!(
                 language,
                 "Most of it is the direction: at {} mm the axis stands {} \u{b5}m apart by where it comes from. Look at nut, bearings and guideway; what repeats of it, tables of both directions correct.",
                 "Главное здесь — направление: на {} мм ось в зависимости от стороны подхода стоит с разницей {} мкм. Проверьте гайку, подшипники и направляющую; повторяющееся исправят таблицы для обоих направлений.",
                 position(*at_mm, language),
-                um(*b_mm, language)
+                said_um(*b_mm, language)
             ),
             Self::Curve { m_mm } => say!(
                 language,
                 "Most of it repeats: the mean of the readings wanders by M = {} \u{b5}m along the axis. A table corrects it.",
                 "Большая часть повторяется: среднее отсчётов меняется вдоль оси на M = {} мкм. Это исправит таблица.",
-                um(*m_mm, language)
+                said_um(*m_mm, language)
             ),
         }
     }
@@ -221,15 +225,14 @@ fn correction(read: &Read, language: Language) -> String {
             "Что даст коррекция, один проход в направлении не скажет: пройдите ещё раз."
         );
     };
-    let um = |mm: f64, language: Language| language.number(mm * 1e3);
     let words = say!(
         language,
         "Each run of {} corrected by the mean of the others: readings spread over {} \u{b5}m instead of {} (RMS {} \u{b5}m)",
         "Каждый проход {} исправлен по среднему остальных: размах отсчётов {} мкм вместо {} (СКЗ {} мкм)",
         read.axis,
-        um(h.after, language),
-        um(h.before, language),
-        um(h.after_rms, language)
+        said_um(h.after, language),
+        said_um(h.before, language),
+        said_um(h.after_rms, language)
     );
     if h.after < WORTH * h.before {
         let gain = language.percent(1.0 - h.after / h.before);
