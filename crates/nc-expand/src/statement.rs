@@ -231,8 +231,10 @@ impl Compiler<'_, '_> {
             );
             match item.kind {
                 ItemKind::Skip => flags.skip = true,
-                // `NEND` is a number too where it repeats.
-                ItemKind::Name if self.dialect.labels && bytes[item.span.start as usize] != b'O' => {
+                // `NEND` is a number too where it repeats; `OSUB` and `$PART.MIN%` are names.
+                ItemKind::Name
+                    if self.dialect.labels && !matches!(bytes[item.span.start as usize], b'O' | b'$') =>
+                {
                     flags.number = Some(item.span);
                 }
                 ItemKind::Word { letter: b'N', .. } => {

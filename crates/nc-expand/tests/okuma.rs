@@ -26,6 +26,13 @@ fn variables_are_numbers_in_words() {
 }
 
 #[test]
+fn the_file_name_in_front_is_none_of_the_programs_names() {
+    let program = "$PART.MIN%\nOPART\nG15 H1\nG0 X10. Y10. Z60.\nVC1=5\nG1 X=VC1 F100\nM2\n%\n";
+    let text = common::flat("okuma", program, &[], &[]);
+    assert!(text.starts_with("$PART.MIN%\nOPART\n") && text.contains("G1 X=5. F100"), "{text}");
+}
+
+#[test]
 fn jumps_go_to_sequence_names() {
     let lines = flat("VC1=0\nN10 VC1=VC1+1\nG1 X=VC1 F100\nIF [VC1 LT 3] N010\nGOTO NEND\nX99.\nNEND M2\n");
     assert_eq!(lines, ["G1 X=1. F100", "G1 X=2. F100", "G1 X=3. F100", "NEND M2"]);

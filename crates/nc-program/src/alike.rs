@@ -87,6 +87,8 @@ const CONTROLS: [Control; 6] = [
         name: "Okuma OSP",
         dialects: &["okuma"],
         signs: &[
+            Sign::Has(".MIN%"),
+            Sign::Has(".SSB%"),
             Sign::Numbered("VC", "="),
             Sign::Starts("CALL O"),
             Sign::Starts("MODIN O"),
@@ -273,6 +275,7 @@ mod tests {
     fn each_control_is_known_by_what_it_alone_writes() {
         says("fanuc", "G21\nVC1=5\nG0 X=VC1\n", "Okuma OSP");
         says("haas", "N10 G15 H1\n", "Okuma OSP");
+        says("fanuc", "$PART.MIN%\nG0 X0\n", "Okuma OSP");
         says("fanuc", "%_N_PART_MPF\nG0 X0\nCYCLE81(10,0,2,-5)\n", "Sinumerik");
         says("linuxcnc", "R1=5\nG1 X=R1\n", "Sinumerik");
         says("fanuc", "0 BEGIN PGM TEST MM\n1 L X+10 R0 FMAX\n", "Heidenhain");

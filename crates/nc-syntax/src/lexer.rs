@@ -145,6 +145,18 @@ impl<'d> Lexer<'d> {
         }
     }
 
+    /// Okuma: `$PART.MIN%`, the file that a program was in, as the control writes it in front of what it sends. True where
+    /// that is the whole line.
+    pub(crate) fn file_name(&self, line: &[u8], at: usize, items: &mut Vec<Item>) -> bool {
+        let start = skip_blanks(line, at);
+        let end = at + trim_end(&line[at..]);
+        let is_name = self.okuma && end > start + 2 && line[start] == b'$' && line[end - 1] == b'%';
+        if is_name {
+            push(items, ItemKind::Name, start, end);
+        }
+        is_name
+    }
+
     fn push_name(&self, line: &[u8], at: usize, items: &mut Vec<Item>) -> usize {
         let stop = self.before_comment(line, at);
         push(items, ItemKind::Name, at, at + trim_end(&line[at..stop]));

@@ -200,6 +200,10 @@ impl<'a> Reader<'a> {
             return line.len();
         }
         let start = if offset == 0 { mark_length(line) } else { 0 };
+        if (offset == 0 || self.name_line) && self.lexer.file_name(line, start, items) {
+            self.name_line = false;
+            return line.len();
+        }
         let window = &line[..line.len().min(MAX_BLOCK_BYTES)];
         let end = self.lexer.block(window, start, self.name_line, items);
         if end == window.len() && window.len() < line.len() {

@@ -182,6 +182,17 @@ fn program_names() {
 }
 
 #[test]
+fn the_file_name_of_an_okuma_stands_in_front() {
+    let okuma = nc_dialect::builtin("okuma").unwrap();
+    let text = b"$PART.MIN%\nO100\nG0 X1.\n%";
+    assert_eq!(shown(text, okuma), ["Name<$PART.MIN%>", "O100", "G0 X1", "Percent<%>"]);
+    assert_eq!(shown(b"%\n$PART.MIN%\nG0\n%", okuma), ["Percent<%>", "Name<$PART.MIN%>", "G0", "Percent<%>"]);
+    // A second program in one file, and other controls.
+    assert_eq!(shown(b"G0\n$B.MIN%\nG0", okuma)[1], "Text<$B.MIN%>");
+    assert_eq!(one("$PART.MIN%\nG0"), "Text<$PART.MIN%> | G0");
+}
+
+#[test]
 fn block_delete() {
     assert_eq!(one("/G1 X1"), "Skip</> G1 X1");
     assert_eq!(one("/3 N10 G1"), "Skip</3> N10 G1");
