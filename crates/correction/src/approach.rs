@@ -300,7 +300,7 @@ impl<'m> Corrector<'m> {
     /// # Errors
     /// [`CorrectionError::Unnamed`] where it would be the first line of a block that gives an axis of its own another frame:
     /// no word says where that axis begins.
-    fn approach_to(
+    pub(crate) fn approach_to(
         &mut self,
         machine: &Machine<'_>,
         mut wanted: Vector,

@@ -24,6 +24,9 @@ impl<'m> Corrector<'m> {
         part: &Curve,
     ) -> Result<(), CorrectionError> {
         let (distance_mm, s, exactly) = match self.with_play(follow, part, Self::one_line)? {
+            Tried::Beyond { .. } if self.meet_halfway(follow, part)? => {
+                return self.follow_line(follow, part);
+            }
             Tried::Beyond { distance_mm, s } => (distance_mm, s, false),
             Tried::Corner(corner) => (corner.distance_mm, corner.s, true),
             Tried::Done | Tried::Against(_) => return Ok(()),
@@ -119,13 +122,20 @@ impl<'m> Corrector<'m> {
         let solved =
             if follow.foreseen { self.solved_line(&follow.machine.state, part, wanted) } else { None };
         let limit_mm = self.limit_mm(follow.block);
-        let verdict = pair.line_verdict_by(&machine, solved.as_ref(), limit_mm);
         follow.leans_rad = None;
-        let verdict = self.verdict_with_play(&machine, &pair, verdict, limit_mm);
-        let corners_mm = swing
-            .as_ref()
-            .map_or(0.0, |swing| self.beside_corners_mm(follow, part, swing, at_end.state.rotary_rad));
-        match verdict.further_by(corners_mm, limit_mm) {
+        let verdict = match &swing {
+            Some(swing) if swing.has_corners() && !self.model.depends_on_direction() => {
+                self.verdict_by_corners(&machine, &pair, swing, limit_mm)
+            }
+            _ => {
+                let verdict = pair.line_verdict_by(&machine, solved.as_ref(), limit_mm);
+                let corners_mm = swing.as_ref().map_or(0.0, |swing| {
+                    self.beside_corners_mm(follow, part, swing, at_end.state.rotary_rad)
+                });
+                self.verdict_with_play(&machine, &pair, verdict, limit_mm).further_by(corners_mm, limit_mm)
+            }
+        };
+        match verdict {
             Verdict::Within(bound) => {
                 if let (Some(standing), Some(rotary)) = (&directed, &mut rotary) {
                     let may_lean = !(standing.reached && rotary.reached);

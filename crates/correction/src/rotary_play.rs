@@ -2,14 +2,18 @@
 //!
 //! Rotary words are not corrected. A turn that goes back is cut where the play is taken up: until there the model has the
 //! table standing while its command runs, behind it the table runs with its command, and along either the error is as
-//! smooth as without play. Where no word of the axis lies between, what the corner is off the straight is added to the
-//! bound. Equation (25), with the angle for the place.
+//! smooth as without play. Where no word of the axis lies between, a piece is proven before and behind the corner, each by
+//! itself. What the tables of both directions differ by moves the tool at once: by half of that it is led aside before.
+//! Equation (25), with the angle for the place.
 
 use machine_model::{Command, Play, RotaryPlay, Vector};
+use smallvec::SmallVec;
 use toolpath::Partial;
 
 use crate::corrector::Corrector;
 use crate::curve::Curve;
+use crate::deviation::{Begun, Machine, Pair, Verdict};
+use crate::error::CorrectionError;
 use crate::follow::Follow;
 use crate::turning::RotaryWords;
 
@@ -24,6 +28,13 @@ pub(crate) struct Swing {
     pub(crate) ends: [RotaryPlay; 2],
     /// Where on its way the play of an axis is taken up.
     corners: [Option<f64>; 3],
+}
+
+impl Swing {
+    /// The play of some axis is taken up on the way.
+    pub(crate) fn has_corners(&self) -> bool {
+        self.corners != [None; 3]
+    }
 }
 
 /// Where a piece is to be cut.
@@ -98,6 +109,119 @@ impl<'m> Corrector<'m> {
         };
         let s = (0..3).filter_map(between).min_by(f64::total_cmp)?;
         Some(Corner { s, distance_mm: self.beside_corners_mm(follow, part, swing, end.end_rad) })
+    }
+
+    /// What is proven of a piece on whose way the play of rotary axes is taken up: between two such places each axis has one
+    /// side, and its lag runs evenly.
+    pub(crate) fn verdict_by_corners(
+        &self,
+        machine: &Machine<'_>,
+        pair: &Pair<'_>,
+        swing: &Swing,
+        limit_mm: f64,
+    ) -> Verdict {
+        let mut places: SmallVec<[f64; 5]> = SmallVec::from_slice(&[0.0, 1.0]);
+        places.extend(swing.corners.into_iter().flatten());
+        places.sort_by(f64::total_cmp);
+        let at = |s: f64| {
+            let rotary_rad = pair.commanded.rotary_rad(s).unwrap_or(machine.state.rotary_rad);
+            Command { linear_mm: pair.commanded.at(s), rotary_rad, ..machine.state }
+        };
+        let (old, new) = (self.play.rotary_side(), swing.ends[1].direction);
+        let mut worst = 0.0_f64;
+        for ends in places.windows(2).filter(|ends| ends[0] < ends[1]) {
+            let (from, to) = (ends[0], ends[1]);
+            let direction = [0, 1, 2].map(|axis| match swing.corners[axis] {
+                Some(corner) if corner > from => old[axis],
+                _ => new[axis],
+            });
+            let stands = |s: f64| {
+                let mut play = self.play;
+                play.turn(self.model, &at(s), [true; 3]);
+                play.rotary_on(self.model, &at(s), direction)
+            };
+            let play = [from, to].map(stands);
+            let mut machine = machine.clone();
+            machine.state.rotary_play = play[0];
+            machine.lag_rad = Some(play.map(|play| play.lag_rad));
+            let [wanted, commanded] = [pair.wanted, pair.commanded].map(|curve| curve.part(from, to));
+            let begun = if from > 0.0 { Begun::Inside } else { pair.begun };
+            let part = Pair { wanted: &wanted, commanded: &commanded, begun, ..*pair };
+            match part.line_verdict_by(&machine, None, limit_mm) {
+                Verdict::Within(bound_mm) => worst = worst.max(bound_mm),
+                Verdict::Beyond { s, distance_mm } => {
+                    return Verdict::Beyond { s: from + (to - from) * s, distance_mm };
+                }
+            }
+        }
+        Verdict::Within(worst)
+    }
+
+    /// Before rotary axes turn back at the start of a part, leads the tool aside by half of what their tables of both directions
+    /// differ by there; the part undoes the other half. True where a line for that was written: without it no part holds,
+    /// however short.
+    ///
+    /// # Errors
+    /// [`CorrectionError::Sideways`] where half of it is too much.
+    pub(crate) fn meet_halfway(
+        &mut self,
+        follow: &mut Follow<'_, 'm>,
+        part: &Curve,
+    ) -> Result<bool, CorrectionError> {
+        let Some(rotary) = follow.rotary_words(part).filter(|words| words.turning.directed.is_none()) else {
+            return Ok(false);
+        };
+        let from = follow.machine.state;
+        let Some(swing) = self.swing(&from, rotary.end_rad) else { return Ok(false) };
+        let ([Some(x), Some(y), Some(z)], true) = (self.standing, follow.may_split) else { return Ok(false) };
+        if self.model.depends_on_direction() {
+            return Ok(false);
+        }
+        let way = (rotary.end_rad - from.rotary_rad).abs();
+        let old = self.rotary_play(from.rotary_rad);
+        let turns_here = |axis: usize| {
+            let corner_rad = swing.corners[axis].unwrap_or(0.0) * way[axis];
+            old.direction[axis] != 0
+                && swing.ends[1].direction[axis] != old.direction[axis]
+                && corner_rad <= follow.block.rotary_step_rad(axis)
+        };
+        let (mut direction, mut lag_rad) = (old.direction, old.lag_rad);
+        for axis in (0..3).filter(|axis| turns_here(*axis)) {
+            (direction[axis], lag_rad[axis]) = (swing.ends[1].direction[axis], 0.0);
+        }
+        let start = follow.machine.target(part, 0.0);
+        let limit_mm = self.limit_mm(follow.block);
+        let state = |rotary_play: RotaryPlay| Command { rotary_play, ..from };
+        let sides = [old, RotaryPlay { direction, lag_rad }].map(state);
+        let off_mm = |here: Vector, state: &Command| {
+            (here - start + self.model.error_mm(&Command { linear_mm: here, ..*state })).norm()
+        };
+        if direction == old.direction || off_mm(Vector::new(x, y, z), &sides[1]) <= limit_mm {
+            return Ok(false);
+        }
+        let halfway = 0.5 * (self.solve(&sides[0], start)? + self.solve(&sides[1], start)?);
+        let before = self.clone();
+        let (written, correction) = (follow.corrected.pieces.len(), follow.corrected.correction);
+        let length_mm = follow.whole.length_mm;
+        let led =
+            self.approach_to(&follow.machine, halfway, start, follow.block, length_mm, follow.corrected)?;
+        let here = self.standing_or(&start);
+        let off_mm = sides.map(|state| off_mm(here, &state)).into_iter().fold(0.0, f64::max);
+        if off_mm > limit_mm && follow.block.named == [true; 3] {
+            let tolerance_um = self.options.tolerance_mm * 1e3;
+            return Err(CorrectionError::Sideways { distance_um: off_mm * 1e3, tolerance_um });
+        }
+        if !led || off_mm > limit_mm {
+            // What keeps the tool away may be an axis that must not have a word: the caller says so.
+            *self = before;
+            follow.corrected.pieces.truncate(written);
+            follow.corrected.correction = correction;
+            return Ok(false);
+        }
+        follow.alone = false;
+        let after_mm = &mut follow.corrected.correction.after_mm;
+        *after_mm = after_mm.max(off_mm);
+        Ok(true)
     }
 
     /// By how much the corners of a piece that is not cut there leave what is straight, mm; with what changes there besides

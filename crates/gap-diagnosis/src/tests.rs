@@ -287,6 +287,41 @@ fn one_tool_cannot_tell_a_curve_from_an_angle() {
     assert!(set.contains(&"straightness.EXZ") && set.contains(&"angular.EBZ"), "{set:?} {:?}", cause.nearest);
 }
 
+/// The same rows on a machine whose head turns from row to row; what arises along X, Y and Z is as it was.
+fn with_a_turning_head(mut data: Measurements) -> Measurements {
+    data.geometry =
+        EffectGeometry::from_chain(&machine_model::Chain::parse("[w X b Y Z C A t]").expect("a chain"));
+    for (k, row) in data.rows.iter_mut().enumerate() {
+        let turn =
+            |period: f64, most: f64| most * units::math::sin(std::f64::consts::TAU * k as f64 / period);
+        row.command.rotary_rad = Vector::new(turn(7.3, 1.1), 0.0, turn(11.7, 2.6));
+    }
+    data
+}
+
+/// Where a head turns the tool, the frame cannot take the slope of a curve: it belongs to the curve, and no droop is made of it.
+#[test]
+fn a_slope_that_no_frame_takes_is_the_curves() {
+    let plan = Plan { tools_mm: &[-150.0], ..GOOD };
+    let curve = |x: f64| {
+        let u = (x - 200.0) / 205.0;
+        12.0 * (1.5 * u * u - 0.5) + 9.0 * (2.5 * u * u * u - 1.5 * u) + 8.0 * u
+    };
+    let bent = |row: &Row| Vector::new(0.0, 0.0, curve(row.command.linear_mm.x));
+    let turned = diagnose(&with_a_turning_head(measured(plan, bent)), None, &Options::default());
+    assert_eq!(names(&turned), ["straightness.EZX"], "{:?}", turned.verdict);
+    let slope = turned.causes[0].parameters.iter().find(|p| p.name == "p1_um").expect("its slope");
+    assert!((slope.value - 8.0).abs() < 1.5, "{slope:?}");
+    // Of the positions of an axis it is the scale's, here as anywhere.
+    let along = |row: &Row| Vector::new(curve(row.command.linear_mm.x), 0.0, 0.0);
+    for data in [with_a_turning_head(measured(plan, along)), measured(plan, along)] {
+        let answer = diagnose(&data, None, &Options::default());
+        let mut found = names(&answer);
+        found.sort_unstable();
+        assert_eq!(found, ["positioning.EXX", "scale.X"], "{:?}", answer.verdict);
+    }
+}
+
 /// Weighted Bonferroni: the level is shared by the effects, and each effect's by its forms.
 #[test]
 fn every_question_costs_its_share_of_the_level() {

@@ -153,6 +153,14 @@ impl Feeding {
         self.stretches.iter().map(Stretch::length_mm).sum()
     }
 
+    /// Minutes, under G93, and the way that they are shared by, mm: where rotary axes turn, the linear axes may have farther
+    /// to go than the tool.
+    pub(crate) fn timed(&self) -> (f64, f64) {
+        let way_mm =
+            || self.length_mm().max(self.way.as_ref().map_or(0.0, Way::length_mm)).max(self.limit_mm);
+        self.minutes.map_or((0.0, 0.0), |minutes| (minutes, way_mm()))
+    }
+
     /// So short that rounding decides whether it leads anywhere.
     pub(crate) fn is_short(&self) -> bool {
         /// Rounding at either end, and the limit.

@@ -20,7 +20,7 @@ const AHEAD_IS_FAR: usize = 200;
 const NEARLY_MM: f64 = 1.0;
 /// By so much the time of a motion may differ under G93, whose F is rounded.
 const SAME_TIME: f64 = 0.02;
-/// What of a motion's time is nothing.
+/// So much longer than it should, as a share of a motion's time, one of its pieces may take: no line of an approach is given less.
 const NO_TIME: f64 = 1e-3;
 
 pub(crate) struct Matcher<'m, W, C> {
@@ -40,14 +40,35 @@ pub(crate) struct Matcher<'m, W, C> {
 /// Minutes under G93, counted from the start of the first feed ahead.
 #[derive(Clone, Copy, Debug, Default)]
 struct Time {
-    made: f64,
-    /// Up to where it was compared.
-    compared: f64,
+    /// At least and at most: a place within the limit is reached over some way, which is a long time for a fast piece that
+    /// goes on from a slow one.
+    made: [f64; 2],
+    /// How far along the way that leads at least, mm.
+    made_mm: f64,
 }
 
 impl Time {
     /// The first motion was under way.
-    const UNKNOWN: Self = Self { made: f64::NAN, compared: f64::NAN };
+    const UNKNOWN: Self = Self { made: [f64::NAN; 2], made_mm: f64::NAN };
+}
+
+/// What is reached of the feeds ahead, from its first place to its last.
+#[derive(Clone, Copy, Debug)]
+struct Reach {
+    /// Minutes at either.
+    minutes: [f64; 2],
+    /// How far along the way either is, mm.
+    way_mm: [f64; 2],
+    /// Of the slowest motion.
+    minutes_per_mm: f64,
+}
+
+impl Reach {
+    /// How far along the way it is after so many minutes, mm.
+    fn at_least_mm(&self, minutes: f64) -> f64 {
+        let ([from, to], [from_mm, to_mm]) = (self.minutes, self.way_mm);
+        if to > from { from_mm + (minutes - from) / (to - from) * (to_mm - from_mm) } else { from_mm }
+    }
 }
 
 impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
@@ -286,45 +307,59 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     ///
     /// * `way_mm` – the length that is commanded
     fn compare_time(&mut self, minutes: f64, way_mm: f64, short: bool, ahead: usize, line: u64) {
-        let Some((from, to)) = self.wanted_time() else { return };
+        let Some(reach) = self.wanted_time() else { return };
+        let [from, to] = reach.minutes;
         let Some(feed) = self.alignment.wanted.feed(ahead) else { return };
-        let (wanted_line, whole, short) = (feed.line, feed.minutes.unwrap_or(0.0), short || feed.is_short());
-        // Where rotary axes turn, the linear axes may have farther to go than the tool.
-        let linear_mm = feed.way.as_ref().map_or(0.0, Way::length_mm);
-        let minutes_per_mm = whole / feed.length_mm().max(linear_mm).max(feed.limit_mm);
-        if self.time.made.is_nan() {
-            self.time = Time { made: to, compared: to };
-        }
-        self.time.made += minutes;
-        let since = (self.time.made - self.time.compared).abs().max(to - self.time.compared);
-        // What leads no farther, as while play is taken up, takes its time at the motion's speed.
-        let detour = (way_mm * minutes_per_mm - (to - self.time.compared).max(0.0)).max(0.0);
+        let (wanted_line, whole) = (feed.line, feed.minutes.unwrap_or(0.0));
         // Of two motions about as long as the limit only one may count.
-        let room =
-            SAME_TIME * since + NO_TIME * whole + detour + if short { minutes.max(whole) } else { 0.0 };
-        if self.time.made < from - room || self.time.made > to + room {
-            let wanted = (0.5 * (from + to) - self.time.compared).max(1e-12);
-            let times = (self.time.made - self.time.compared) / wanted;
-            self.mismatch(What::Time(times), wanted_line, line);
+        let of_short = |short: bool, minutes: f64| if short { minutes } else { 0.0 };
+        let few = of_short(short, minutes).max(of_short(feed.is_short(), whole));
+        if self.time.made[0].is_nan() {
+            self.time = Time { made: [to - minutes; 2], made_mm: reach.way_mm[1] };
         }
-        self.time.made = self.time.made.clamp(from, to);
-        self.time.compared = self.time.made;
+        let before = self.time.made[0];
+        let since = minutes.max(to - before);
+        let early = SAME_TIME * since + few;
+        // What leads no farther, as while play is taken up, takes its time at the motion's speed: of one that ends at a corner
+        // nobody knows whose. No way takes less time for it.
+        let farther_mm = (reach.way_mm[1] - self.time.made_mm).max(0.0);
+        let detour = (way_mm - farther_mm).max(0.0) * reach.minutes_per_mm;
+        let late = early + NO_TIME * whole + detour;
+        let [least, most] = self.time.made.map(|made| made + minutes);
+        let differs = most < from - early || least > to + late;
+        if differs {
+            let wanted = (0.5 * (from + to) - before).max(1e-12);
+            self.mismatch(What::Time((least - before) / wanted), wanted_line, line);
+        }
+        let made = if differs { [from, to] } else { [from.max(least - late), to.min(most + early)] };
+        self.time = Time { made, made_mm: reach.at_least_mm(made[0]) };
     }
 
-    /// The minutes at the first and the last place that are reached.
-    fn wanted_time(&mut self) -> Option<(f64, f64)> {
-        let (mut so_far, mut from, mut to, mut k) = (0.0, None, 0.0, 0);
+    /// The minutes and the way at the first and the last place that are reached.
+    fn wanted_time(&mut self) -> Option<Reach> {
+        let (mut reach, mut so_far, mut so_far_mm, mut k): (Option<Reach>, f64, f64, usize) =
+            (None, 0.0, 0.0, 0);
         while let Some(feed) = self.alignment.wanted.feed(k).filter(|feed| feed.left.asked) {
-            let minutes = feed.minutes.unwrap_or(0.0);
+            let (minutes, way_mm) = feed.timed();
             for (stretch, span) in feed.left.reached() {
-                let time = |s: f64| so_far + minutes * (stretch as f64 + s) / feed.stretches.len() as f64;
-                from.get_or_insert(time(span.low));
-                to = time(span.high);
+                let at = |s: f64| {
+                    let share = (stretch as f64 + s) / feed.stretches.len() as f64;
+                    (so_far + minutes * share, so_far_mm + way_mm * share)
+                };
+                let (low, high) = (at(span.low), at(span.high));
+                let reach = reach.get_or_insert(Reach {
+                    minutes: [low.0; 2],
+                    way_mm: [low.1; 2],
+                    minutes_per_mm: 0.0,
+                });
+                (reach.minutes[1], reach.way_mm[1]) = high;
+                if way_mm > 0.0 {
+                    reach.minutes_per_mm = reach.minutes_per_mm.max(minutes / way_mm);
+                }
             }
-            so_far += minutes;
-            k += 1;
+            (so_far, so_far_mm, k) = (so_far + minutes, so_far_mm + way_mm, k + 1);
         }
-        Some((from?, to))
+        reach
     }
 
     /// What is left of the run lies in the air above a hole.
@@ -348,8 +383,8 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     /// What is to be remembered of a programmed item.
     fn record(&mut self, item: Item) {
         let Item::Feed(feed) = item else { return };
-        let Feeding { line, way, off_mm: before_mm, made_off_mm: after_mm, minutes, made: made_mm, .. } =
-            *feed;
+        let (minutes, way_mm) = feed.timed();
+        let Feeding { line, way, off_mm: before_mm, made_off_mm: after_mm, made: made_mm, .. } = *feed;
         self.result.leans_before.note(feed.leans_rad, line);
         self.result.leans_after.note(feed.made_leans_rad, line);
         self.result.before.note(before_mm, line);
@@ -357,8 +392,8 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
         if let (Traces::Kept | Traces::WithPlaces, Some(way)) = (self.traces, way) {
             self.result.traces.push(Trace { line, way, before_mm, after_mm, made_mm });
         }
-        let minutes = minutes.unwrap_or(0.0);
-        (self.time.made, self.time.compared) = (self.time.made - minutes, self.time.compared - minutes);
+        self.time.made = self.time.made.map(|made| made - minutes);
+        self.time.made_mm -= way_mm;
     }
 
     fn compare_processes(&mut self, [(wanted_line, wanted), (line, made)]: [(u64, Process); 2]) {

@@ -3,7 +3,7 @@
 use machine_model::{
     Chain, Description, LinearAxis, Models, Range, RigidBody, RotaryAxis, Squareness, Vector,
 };
-use path_comparison::{Act, Comparison, Step, Traces, compare};
+use path_comparison::{Act, Comparison, Step, Traces, What, compare};
 use proptest::prelude::*;
 use toolpath::{Arc, Division, Feed, FeedRate, Kinematics, Motion, Plane, Position, Shape};
 
@@ -146,5 +146,75 @@ proptest! {
         for damaged in [gone, exchanged, twice] {
             prop_assert!(!compared(&lines(&places), &lines(&damaged)).mismatches.is_empty(), "{:?}", damaged);
         }
+    }
+}
+
+/// The lines of the corrected program that take another time under G93, where a motion is known by its time and not by F.
+fn timed(wanted: &[Feed], made: &[Feed]) -> Vec<u64> {
+    let steps = |feeds: &[Feed]| -> Vec<Step> {
+        let under_g93 = |(k, one): (usize, &Feed)| {
+            let act = match step(*one, k + 1).act {
+                Act::Motion { motion, tool_mm, kinematics, dwell, .. } => {
+                    Act::Motion { motion, tool_mm, kinematics, dwell, feed: None }
+                }
+                act @ Act::Deed(_) => act,
+            };
+            Step { act, ..step(*one, k + 1) }
+        };
+        feeds.iter().enumerate().map(under_g93).collect()
+    };
+    let retreats = toolpath::PeckRetreats { clearance_mm: 0.25, chip_mm: 0.5 };
+    let models = Models { axes: &straight(), tip: None };
+    let found = compare(models, steps(wanted).into_iter(), steps(made).into_iter(), retreats, Traces::Kept);
+    assert!(found.mismatches.iter().all(|one| matches!(one.what, What::Time(_))), "{found:?}");
+    found.mismatches.iter().map(|one| one.commanded_line).collect()
+}
+
+fn per_minute(from: [f64; 2], to: [f64; 2], f: f64) -> Feed {
+    let [from, to] = [from, to].map(|[x, y]| [x, y, 0.0]);
+    Feed { rate: FeedRate::InverseTime(f), ..feed(from, to, Shape::Line) }
+}
+
+/// A motion within the limit of its end has taken any of the minutes of that way: many for the short piece that goes on a
+/// hundred times as fast.
+#[test]
+fn the_time_of_a_fast_piece_behind_a_slow_one_is_its_own() {
+    let line = |from: f64, to: f64, f: f64| per_minute([from, 0.0], [to, 0.0], f);
+    let wanted = [line(0.0, 10.0, 1.0), line(10.0, 20.0, 100.0)];
+    // By its words the slow one takes less than it should, as rounded words do: by less than 2 %.
+    let (slow, first) = (line(0.0, 10.0, 1.005), line(10.0, 10.008, 125_000.0));
+    let last = |f: f64| line(10.008, 20.0, f);
+    assert_eq!(timed(&wanted, &[slow, first, last(100.08)]), []);
+    assert_eq!(timed(&wanted, &[slow, first, last(1000.8)]), [3]);
+    assert_eq!(timed(&wanted, &[line(0.0, 10.0, 10.0), first, last(100.08)]), [1]);
+}
+
+/// A piece that ends at a corner, a little nearer to the motion behind it, has not gone at that one's speed.
+#[test]
+fn the_time_of_a_piece_goes_by_its_own_motion() {
+    let wanted = [per_minute([0.0, 0.0], [10.0, 0.0], 100.0), per_minute([10.0, 0.0], [10.0, 2.0], 20.0)];
+    let made =
+        |f: f64| [per_minute([0.0, 0.0], [10.0, 0.0005], f), per_minute([10.0, 0.0005], [10.0, 2.0], 20.0)];
+    assert_eq!(timed(&wanted, &made(100.0)), []);
+    for f in [1000.0, 300.0, 10.0] {
+        assert_eq!(timed(&wanted, &made(f)), [1], "F{f}");
+    }
+}
+
+/// What is off by a tenth on each of many short pieces adds up: places within the limit are no excuse on every one.
+#[test]
+fn the_time_of_short_pieces_adds_up() {
+    let differs = |count: u32, times: f64| {
+        let mm = f64::from(count) * 0.01;
+        let wanted = [per_minute([0.0, 0.0], [mm, 0.0], 10.0 / mm)];
+        let piece =
+            |k: u32| per_minute([f64::from(k) * 0.01, 0.0], [f64::from(k + 1) * 0.01, 0.0], 1000.0 * times);
+        !timed(&wanted, &(0..count).map(piece).collect::<Vec<Feed>>()).is_empty()
+    };
+    for (count, times) in [(1000, 1.1), (1000, 10.0), (100, 1.1), (100, 0.8), (100, 0.1)] {
+        assert!(differs(count, times), "{count} {times}");
+    }
+    for (count, times) in [(1000, 0.99), (1000, 1.0), (1000, 1.01), (100, 0.99), (100, 1.01)] {
+        assert!(!differs(count, times), "{count} {times}");
     }
 }

@@ -21,6 +21,8 @@ LOCATIONS = {
 }
 # Each kind is weighed by how sure its meaning is: the last ones are told apart in the figures.
 MODES = (57, 57, 57, 27, 27, 39, 39, 45, 30, 54, 64, 64, 185)
+# Three programs of four hold only what docs/reference.md says is followed: one word that is refused hides all the rest.
+FOLLOWED = (57, 57, 57, 27, 27, 39, 39, 45, 30, 54)
 
 
 def number(v, digits=3):
@@ -159,11 +161,11 @@ def arcs(w, rng):
         w("G17")
 
 
-def call(w, rng, spec, stands, additive):
+def call(w, rng, spec, stands, additive, modes):
     """A plane that both rotary axes reach, as words of CYCLE800; None where none was found."""
     m = Machine(spec)
     for _ in range(300):
-        mode = rng.choice(MODES)
+        mode = rng.choice(modes)
         words = {"FR": rng.choice((0, 1, 1)), "TC": "TC1", "ST": 1 if additive else 0, "MODE": mode, "FR_I": 100, "DMODE": 1}
         digits = rng.choice((0, 0, 1, 3))
         words.update({k: round(rng.uniform(-55, 55), digits) for k in "ABC"})
@@ -185,15 +187,18 @@ def call(w, rng, spec, stands, additive):
     return None
 
 
-def program(rng, spec):
-    """A program and what it has of all that there is, for the figures."""
+def program(rng, spec, followed):
+    """A program and what it has of all that there is, for the figures. `followed`: nothing that the reference refuses."""
     m, w, has = Machine(spec), Writer(rng), []
     w("G17 G90 G71 G94 G40")
     w(rng.choice(("G54", "G55")))
     stands = {k: None for k in m.rotary}
-    direction, way = {}, None
     for plane in range(rng.randint(1, 3)):
-        if plane == 0 or rng.random() < 0.4:
+        additive = plane > 0 and rng.random() < 0.3
+        fresh, turned_before = plane == 0 or rng.random() < 0.4, rng.random() < 0.3
+        if followed and plane and not additive and (fresh or turned_before):
+            w("CYCLE800()")
+        if fresh and not (followed and additive):
             tool = rng.choice((1, 2))
             if rng.random() < 0.4:
                 w("SUPA G0 Z600 D0")
@@ -204,20 +209,19 @@ def program(rng, spec):
             if plane == 0:
                 stands = {k: 0.0 for k in m.rotary}
                 w("G0 " + " ".join("%s0" % k for k in m.rotary))
-        additive = plane > 0 and rng.random() < 0.3
-        found = call(w, rng, spec, stands, additive)
+        found = call(w, rng, spec, stands, additive, FOLLOWED if followed else MODES)
         if found is None:
             continue
         words, w.standing, theta = found
         # Posts write the way into the hundreds of thousands too.
         if rng.random() < 0.5:
             words["ST"] += 100000 if words["DIR"] < 0 else 200000
-        written = rng.random() < 0.3
-        if written:
+        if turned_before and not (followed and additive):
             has.append("angles before")
             w("G0 " + " ".join("%s%s" % (k, number(v, 6)) for k, v in theta.items()))
-            if rng.random() < 0.5:
+            if rng.random() < 0.5 and not followed:
                 words["DIR"] = 0
+                words["ST"] %= 100000
         has += ["mode %d" % words["MODE"], "additive" if additive else "new", "DIR %d" % words["DIR"]]
         keys = cycle.NAMES if rng.random() < 0.7 else cycle.NAMES[:14]
         w("CYCLE800(" + ",".join('"%s"' % words[k] if k == "TC" else number(words[k], 6) for k in keys) + ")")
@@ -230,7 +234,7 @@ def program(rng, spec):
         for _ in range(rng.randint(1, 3)):
             rng.choice((lines, arcs))(w, rng)
             w("G0 Z40")
-        if rng.random() < 0.5:
+        if rng.random() < 0.5 and not followed:
             shift = rng.choice(("TRANS", "ATRANS"))
             has.append("frame in plane")
             w("%s %s" % (shift, w.point("XYZ", [rng.uniform(-20, 20), rng.uniform(-20, 20), 0])))
@@ -255,5 +259,5 @@ def case(seed, n):
     rng = random.Random("swivel %d %d" % (seed, n))
     kind = ("tt", "ht", "hh")[n % 3]
     spec = machine(rng, kind, "perfect" if n % 12 == 5 else "crooked")
-    text, has = program(rng, spec)
+    text, has = program(rng, spec, n % 4 != 3)
     return spec, text, has

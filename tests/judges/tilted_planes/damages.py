@@ -9,6 +9,11 @@ def shifted(line, letter, by, decimals=4):
     return re.sub(r"(?<![A-Z])%s(-?[\d.]+)" % letter, lambda f: letter + generate.number(float(f.group(1)) + by, decimals), line, count=1)
 
 
+def numbers(line, letters):
+    found = (re.search(r"(?<![A-Z])%s(-?[\d.]+)" % letter, line) for letter in letters)
+    return [float(x.group(1)) if x else 0.0 for x in found]
+
+
 def number_of(line):
     found = re.match(r"N(\d+) ", line)
     return int(found.group(1)) if found else None
@@ -65,7 +70,11 @@ def all_of(rng, m, text_in, text_out):
         if plane:
             k = rng.choice(plane)
             size = by / (25.4 if inch else 1) or 1e-3 * max(abs(float(x)) for x in re.findall(r"[IJK](-?[\d.]+)", lines[k]))
-            add("%s turned a little" % kind, k, shifted(lines[k], rng.choice(letters), size, 6))
+            # A vector, or an edge from the first point, that only becomes longer turns nothing.
+            start = [j for j in range(k) if re.search(r"G68\.2 P2 Q1", lines[j])][-1:] if kind == "P2" else []
+            edge = [n - o for n, o in zip(numbers(lines[k], letters), numbers(lines[start[0]], letters) if start else (0, 0, 0))]
+            turning = [c for j, c in enumerate(letters) if any(edge[i] for i in range(3) if i != j)]
+            add("%s turned a little" % kind, k, shifted(lines[k], rng.choice(turning), size, 6))
     turned = [k for k, x in enumerate(lines) if re.search(r"G68\.2 (P0 )?X.*I.*J.*K", x)]
     if turned:
         k = rng.choice(turned)

@@ -115,6 +115,16 @@ impl Library {
         &self.candidates[part.candidate].variants[part.variant]
     }
 
+    /// Nameable forms of a part's effect with some of its columns, not all.
+    pub(crate) fn plainer(&self, part: Part) -> Vec<Part> {
+        let own = &self.form(part).columns;
+        let forms = self.candidates[part.candidate].variants.iter().enumerate();
+        let fewer = forms.filter(|(_, form)| {
+            !form.only_rival && form.columns.len() < own.len() && form.columns.iter().all(|c| own.contains(c))
+        });
+        fewer.map(|(variant, _)| Part { variant, ..part }).collect()
+    }
+
     /// Columns of a model: the set-up's, then those of its parts.
     #[must_use]
     pub(crate) fn model_columns(&self, parts: &[Part]) -> Vec<usize> {

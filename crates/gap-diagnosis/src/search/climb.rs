@@ -129,14 +129,17 @@ impl State<'_, '_> {
     /// none.
     ///
     /// One after the other, a curve that is a little of two causes comes first and stays, and more curves mend what it gets
-    /// wrong: none of them can be changed for the better alone.
+    /// wrong: none of them can be changed for the better alone. So is the curve of high order that has taken a slope over: as
+    /// it is, it leaves the scale too little to be named, and a plainer form of it comes only with the scale.
     fn exchange(&mut self) -> bool {
         let parts = self.parts.clone();
         let mut better: Vec<(Fit, Vec<Part>)> = Vec::new();
         for (first, second) in self.entangled() {
             let rest = without(&without(&parts, second), first);
             let firsts = by_effect(self.space.scan(&self.library, &rest, Asked::Nameable), f64::INFINITY);
-            for (new, _) in firsts.into_iter().take(MOST_TRIED) {
+            let firsts = firsts.into_iter().take(MOST_TRIED).map(|(new, _)| new);
+            let plainer = [first, second].into_iter().flat_map(|place| self.library.plainer(parts[place]));
+            for new in firsts.chain(plainer).collect::<Vec<Part>>() {
                 // One of the two again: that was a change of the other alone.
                 if new == parts[first] || new == parts[second] {
                     continue;

@@ -106,7 +106,14 @@ pub fn legendre(order: usize, v: f64) -> f64 {
     now
 }
 
-const POLYNOMIAL: [&str; 8] = ["p0_um", "p1_um", "p2_um", "p3_um", "p4_um", "p5_um", "p6_um", "p7_um"];
+/// Of a curve along an axis; its slope comes last, for that is mostly the business of a scale, a squareness or the frame.
+const CURVE: [&str; 7] = ["p2_um", "p3_um", "p4_um", "p5_um", "p6_um", "p7_um", "p1_um"];
+
+/// Order of the polynomial that a coefficient of [`CURVE`] belongs to.
+pub(super) const fn curve_order(index: usize) -> usize {
+    if index == CURVE.len() - 1 { 1 } else { index + 2 }
+}
+
 const ANGULAR: [&str; 8] =
     ["p0_urad", "p1_urad", "p2_urad", "p3_urad", "p4_urad", "p5_urad", "p6_urad", "p7_urad"];
 const HALF_WIDTH: [&str; 4] = ["half_width_um", "half_width_p1_um", "half_width_p2_um", "half_width_p3_um"];
@@ -135,7 +142,7 @@ impl EffectKind {
             Self::Warmup(_) => &["amplitude_um", "amplitude2_um"],
             Self::Backlash(_) | Self::LostMotion { .. } => &HALF_WIDTH,
             Self::Squareness(..) => &["angle_urad"],
-            Self::Positioning(_) | Self::Straightness { .. } => POLYNOMIAL.split_at(2).1,
+            Self::Positioning(_) | Self::Straightness { .. } => &CURVE,
             Self::Pitch(_) => &PITCH,
             Self::Angular { .. } => ANGULAR.split_at(1).1,
             Self::Sag(_) => &["droop3_um", "droop2_um", "droop4_um", "tilt_urad"],
@@ -252,9 +259,9 @@ impl EffectKind {
             }
             Self::Squareness(0, 2) => along(0, 1e-6 * q[2]),
             Self::Squareness(a, b) => along(a, -1e-6 * q[b]),
-            Self::Positioning(a) => along(a, 1e-3 * legendre(index + 2, shape.relative(q[a]))),
+            Self::Positioning(a) => along(a, 1e-3 * legendre(curve_order(index), shape.relative(q[a]))),
             Self::Straightness { direction, axis } => {
-                along(direction, 1e-3 * legendre(index + 2, shape.relative(q[axis])))
+                along(direction, 1e-3 * legendre(curve_order(index), shape.relative(q[axis])))
             }
             Self::Pitch(a) => {
                 let harmonic = (index % 6) / 2 + 1;

@@ -1,5 +1,6 @@
 //! How far the displacement by one effect can leave its chord: equation (24) of `docs/equations.md`.
 
+use super::basis::curve_order;
 use super::{Conditions, EffectKind, EffectTerm};
 use crate::{Command, Move, Range, Tilt, Vector};
 
@@ -90,15 +91,18 @@ impl EffectTerm {
             EffectKind::Tracker(_) => return None,
             EffectKind::Backlash(axis) | EffectKind::LostMotion { axis, .. } => {
                 let reversed = f64::from(stretch.state.direction[axis].abs());
-                direct(axis, self.polynomial(0, stretch.range_mm[axis]).times(1e-3 * reversed))
+                direct(axis, self.polynomial(|k| k, stretch.range_mm[axis]).times(1e-3 * reversed))
             }
             EffectKind::Positioning(axis) | EffectKind::Straightness { axis, .. } => {
-                direct(axis, self.polynomial(2, stretch.range_mm[axis]).times(1e-3))
+                direct(axis, self.polynomial(curve_order, stretch.range_mm[axis]).times(1e-3))
             }
             EffectKind::Pitch(axis) => direct(axis, self.waves(stretch.range_mm[axis]).times(1e-3)),
-            EffectKind::Angular { about, axis } => {
-                self.turned(about, axis, self.polynomial(1, stretch.range_mm[axis]).times(1e-6), stretch)
-            }
+            EffectKind::Angular { about, axis } => self.turned(
+                about,
+                axis,
+                self.polynomial(|k| k + 1, stretch.range_mm[axis]).times(1e-6),
+                stretch,
+            ),
             EffectKind::Sag(axis) => {
                 let droop = [(0, 3), (1, 2), (2, 4)].map(|(index, power)| {
                     self.overhang(power, stretch.range_mm[axis]).times(1e-3 * first(index).abs())
@@ -127,18 +131,18 @@ impl EffectTerm {
         })
     }
 
-    /// Sum of the Legendre polynomials from order `from` on with the coefficients, on an interval.
+    /// Sum of the Legendre polynomials with the coefficients, each of the order that its place has, on an interval.
     ///
     /// Between: value at the middle and, by the mean value theorem, half the interval times the bound of the
     /// next derivative; `|P_n⁽ᵏ⁾(v)| ≤ P_n⁽ᵏ⁾(1)` on the interval.
-    fn polynomial(&self, from: usize, range: Range) -> Growth {
+    fn polynomial(&self, order: impl Fn(usize) -> usize, range: Range) -> Growth {
         let half_mm = 0.5 * (self.shape.to_mm - self.shape.from_mm);
         let centre_mm = 0.5 * (self.shape.to_mm + self.shape.from_mm);
         let terms = || self.coefficients.iter().enumerate();
         if half_mm <= 0.0 {
             let value = legendre_derivatives(0.0);
             return Growth {
-                value: terms().map(|(k, c)| c * value[k + from][0]).sum::<f64>().abs(),
+                value: terms().map(|(k, c)| c * value[order(k)][0]).sum::<f64>().abs(),
                 ..Growth::default()
             };
         }
@@ -148,15 +152,15 @@ impl EffectTerm {
             .filter(|at| end(range.low) < *at && *at < end(range.high))
             .map(|at| {
                 let there = legendre_derivatives(at);
-                terms().map(|(k, c)| c * there[k + from][1]).sum::<f64>().abs() / half_mm
+                terms().map(|(k, c)| c * there[order(k)][1]).sum::<f64>().abs() / half_mm
             })
             .sum();
         let outside = end(range.high) <= -1.0 || 1.0 <= end(range.low);
         let (low, high) = (end(range.low).clamp(-1.0, 1.0), end(range.high).clamp(-1.0, 1.0));
         let middle = legendre_derivatives(0.5 * (low + high));
         let most = legendre_derivatives(1.0);
-        let here = |order: usize| terms().map(|(k, c)| c * middle[k + from][order]).sum::<f64>().abs();
-        let bound = |order: usize| terms().map(|(k, c)| c.abs() * most[k + from][order]).sum::<f64>();
+        let here = |nth: usize| terms().map(|(k, c)| c * middle[order(k)][nth]).sum::<f64>().abs();
+        let bound = |nth: usize| terms().map(|(k, c)| c.abs() * most[order(k)][nth]).sum::<f64>();
         let reach = 0.5 * (high - low);
         let curvature = (here(2) + reach * bound(3)).min(bound(2));
         let slope = (here(1) + reach * curvature).min(bound(1));
