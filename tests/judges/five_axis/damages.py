@@ -65,7 +65,7 @@ def all_of(text, spec, rng):
     yield "a feed left out", pick(feeds[:-1], lambda s: "")
 
 
-def judge(vpost, spec, result, folder, check, seed):
+def judge(vpost, spec, result, folder, check, seed, orientation=None):
     """{name: "found", "missed" or "harmless"}: whether `check` finds each damage that makes another motion of the program."""
     import compare
 
@@ -88,7 +88,7 @@ def judge(vpost, spec, result, folder, check, seed):
             try:
                 taken, _ = reader.read(text, spec)
                 found = compare.compare(spec, wanted, taken)
-                real = found["um"] > found["limit_um"] + 0.1 or found["turned"] > compare.TURNED or bool(compare.times(wanted, taken, found))
+                real = found["um"] > found["limit_um"] + 0.1 or found["turned"] > (compare.ASIDE if orientation == "full" else compare.TURNED) or bool(compare.times(wanted, taken, found))
             except (compare.Structure, reader.Unreadable):
                 real = True
             out[name] = "missed" if real else "harmless"

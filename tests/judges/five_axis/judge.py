@@ -234,7 +234,7 @@ def one(arguments):
         elif verdict["check"].get("passed") and bad:
             verdict["problems"].append(("check-blind", "check passes it"))
         if damage:
-            verdict["damages"] = damages.judge(vpost, spec, result, folder, check, f"{seed}/{number}")
+            verdict["damages"] = damages.judge(vpost, spec, result, folder, check, f"{seed}/{number}", orientation)
             for name, state in verdict["damages"].items():
                 if state == "missed":
                     verdict["problems"].append(("damage", f"{name} is not found by check"))

@@ -335,7 +335,8 @@ def sample(motions, machine, control, sag=1e-5, mm=0.25, degrees=0.1):
             second = np.abs(np.diff(tip, 2, axis=0)).max(axis=0, initial=0.0)
             pieces = 16 * math.sqrt(np.linalg.norm(second) / 8 / sag)
             pieces = max(pieces, np.linalg.norm(np.diff(tip, axis=0), axis=1).sum() / mm, np.abs(m.rot1 - m.rot0).max(initial=0) / degrees, np.abs(np.diff(p, axis=0)).sum(axis=0).max() / mm)
-            u = np.linspace(0, 1, min(int(math.ceil(pieces)), 40000) + 1 if pieces > 1 else 2)
+            # The middle at least: by that a piece is told to belong to a block, and its ends lie on two.
+            u = np.linspace(0, 1, min(max(int(math.ceil(pieces)), 2), 40000) + 1)
         p, r = joints(m, control, u)
         q.append(p), rot.append(r), number.append(np.full(len(u), n)), share.append(u), tools.append(np.repeat(m.tool[None, :], len(u), axis=0))
     return np.concatenate(q), np.concatenate(rot), np.concatenate(number), np.concatenate(share), np.concatenate(tools)
