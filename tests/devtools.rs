@@ -93,7 +93,7 @@ impl Browser {
             .is_ok_and(|output| output.status.success());
         assert!(there || std::env::var_os("CI").is_none(), "chromium must be installed where CI is set");
         if !there {
-            println!("skipped: chromium is not installed");
+            skipped();
             return None;
         }
         let folder = tempfile::tempdir().expect("a temporary folder");
@@ -123,12 +123,12 @@ impl Browser {
         });
         let (session, asked, events, page) = (None, 0, Vec::new(), String::new());
         let mut browser = Self { process, to, answers, session, asked, events, page, folder };
-        let target = browser.ask("Target.createTarget", json!({ "url": "about:blank" }));
+        let target = browser.ask("Target.createTarget", &json!({ "url": "about:blank" }));
         let attached = json!({ "targetId": target["targetId"], "flatten": true });
-        let session = browser.ask("Target.attachToTarget", attached);
+        let session = browser.ask("Target.attachToTarget", &attached);
         browser.session = session["sessionId"].as_str().map(str::to_owned);
         for part in ["Page", "Runtime", "Log", "Network"] {
-            browser.ask(&format!("{part}.enable"), json!({}));
+            browser.ask(&format!("{part}.enable"), &json!({}));
         }
         browser.look(View::DESK);
         Some(browser)
@@ -138,7 +138,7 @@ impl Browser {
         self.answers.recv_timeout(PATIENCE).expect("the browser answers")
     }
 
-    fn ask(&mut self, method: &str, parameters: Value) -> Value {
+    fn ask(&mut self, method: &str, parameters: &Value) -> Value {
         self.asked += 1;
         let mut question = json!({ "id": self.asked, "method": method, "params": parameters });
         if let Some(session) = &self.session {
@@ -161,21 +161,21 @@ impl Browser {
     pub(crate) fn look(&mut self, view: View) {
         let View { width, height, is_dark, is_paper, is_calm } = view;
         let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
-        self.ask("Emulation.setDeviceMetricsOverride", size);
+        self.ask("Emulation.setDeviceMetricsOverride", &size);
         let features = json!([
             { "name": "prefers-color-scheme", "value": if is_dark { "dark" } else { "light" } },
             { "name": "prefers-reduced-motion", "value": if is_calm { "reduce" } else { "no-preference" } },
         ]);
         // Named, it would be that of what is printed, too.
         let media = if is_paper { "print" } else { "" };
-        self.ask("Emulation.setEmulatedMedia", json!({ "media": media, "features": features }));
+        self.ask("Emulation.setEmulatedMedia", &json!({ "media": media, "features": features }));
     }
 
     /// Opens a page, and waits until it is loaded.
     pub(crate) fn open(&mut self, page: &Path) {
         self.events.clear();
         self.page = format!("file://{}", page.display());
-        let went = self.ask("Page.navigate", json!({ "url": self.page }));
+        let went = self.ask("Page.navigate", &json!({ "url": self.page }));
         assert!(went.get("errorText").is_none(), "{}: {went}", self.page);
         while !self.events.iter().any(|event| event["method"] == "Page.loadEventFired") {
             let event = self.receive();
@@ -187,7 +187,7 @@ impl Browser {
     pub(crate) fn evaluate(&mut self, script: &str) -> Value {
         let mut parameters = json!({ "expression": script, "awaitPromise": true });
         parameters["returnByValue"] = json!(true);
-        let mut answer = self.ask("Runtime.evaluate", parameters);
+        let mut answer = self.ask("Runtime.evaluate", &parameters);
         assert!(answer.get("exceptionDetails").is_none(), "{}: {answer}", self.page);
         answer["result"]["value"].take()
     }
@@ -236,13 +236,13 @@ impl Browser {
         const HIGHEST: f64 = 8000.0;
         let mut parameters = json!({ "format": "png" });
         if is_whole {
-            let size = self.ask("Page.getLayoutMetrics", json!({}));
+            let size = self.ask("Page.getLayoutMetrics", &json!({}));
             let of = |side: &str| size["cssContentSize"][side].as_f64().expect("a size");
             parameters["captureBeyondViewport"] = json!(true);
             let clip = json!({ "x": 0, "y": 0, "width": of("width"), "height": of("height").min(HIGHEST), "scale": 1 });
             parameters["clip"] = clip;
         }
-        let answer = self.ask("Page.captureScreenshot", parameters);
+        let answer = self.ask("Page.captureScreenshot", &parameters);
         decoded(answer["data"].as_str().expect("a picture"))
     }
 
@@ -253,7 +253,7 @@ impl Browser {
         let mut parameters = json!({ "preferCSSPageSize": true, "generateTaggedPDF": true });
         parameters["generateDocumentOutline"] = json!(true);
         [parameters["paperWidth"], parameters["paperHeight"]] = SHEET.map(|side| json!(side));
-        let answer = self.ask("Page.printToPDF", parameters);
+        let answer = self.ask("Page.printToPDF", &parameters);
         decoded(answer["data"].as_str().expect("a PDF"))
     }
 
@@ -266,7 +266,7 @@ impl Browser {
     /// Ends the browser, and gives the addresses in its log that are of the network.
     pub(crate) fn requests(mut self) -> Vec<String> {
         self.session = None;
-        self.ask("Browser.close", json!({}));
+        self.ask("Browser.close", &json!({}));
         self.process.wait().expect("the browser ends");
         let log = std::fs::read_to_string(self.folder.path().join("net.json"));
         let log = log.expect("the browser writes its log of requests");
@@ -287,6 +287,11 @@ impl Browser {
         found.dedup();
         found
     }
+}
+
+#[expect(clippy::print_stdout, reason = "whoever tests is told")]
+fn skipped() {
+    println!("skipped: chromium is not installed");
 }
 
 impl Drop for Browser {

@@ -90,11 +90,11 @@ pub fn matrix(language: Language, title: &str, m: &Matrix) -> Markup {
     let body = html! {
         @for (column, name) in m.columns.iter().enumerate() {
             @let x = LEFT + (column as f64 + 0.5) * width + 4.0;
-            text x=(px(x)) y=(px(TOP - 6.0)) transform={ "rotate(-55 " (px(x)) " " (px(TOP - 6.0)) ")" } { (short(name, 24)) }
+            text.long[name.chars().count() > 14] x=(px(x)) y=(px(TOP - 6.0)) transform={ "rotate(-55 " (px(x)) " " (px(TOP - 6.0)) ")" } { (short(name, 24)) }
         }
         @for (row, name) in m.rows.iter().enumerate() {
             @let y = TOP + row as f64 * height;
-            (text(LEFT - 8.0, y + 16.0, "e", &short(name, 24)))
+            (super::name(LEFT - 8.0, y + 16.0, "e", &short(name, 24)))
             @for column in 0..m.columns.len() {
                 @let x = LEFT + column as f64 * width;
                 @match m.values.get(row * m.columns.len() + column).copied().flatten() {

@@ -62,6 +62,13 @@ fn text(x: f64, y: f64, class: &str, words: &str) -> Markup {
     html! { text x=(px(x)) y=(px(y)) class=(class) { (shown(words)) } }
 }
 
+/// A name left of a bar or a row. A telephone writes larger, but for long ones, for which there is no room.
+fn name(x: f64, y: f64, class: &str, words: &str) -> Markup {
+    const SHORT: usize = 18;
+    let is_long = words.chars().count() > SHORT;
+    text(x, y, &format!("{class}{}", if is_long { " long" } else { "" }), words)
+}
+
 /// A line with a head, where it is long enough for one to be seen.
 fn with_head((x1, y1): (f64, f64), (x2, y2): (f64, f64)) -> String {
     /// Length of a head, and half its width as a part of that, drawing units.

@@ -89,6 +89,24 @@ fn flat([x, y, z]: [f64; 3]) -> (f64, f64) {
     ((x + y) * COS, (y - x) * 0.5 + z)
 }
 
+/// An edge of the box along which an axis has its numbers.
+struct Edge {
+    axis: usize,
+    /// Corners.
+    from: usize,
+    to: usize,
+    /// The way outwards.
+    out: (f64, f64),
+    class: &'static str,
+}
+
+/// X along the lower left edge, Y along the lower right one, Z at the right.
+const EDGES: [Edge; 3] = [
+    Edge { axis: 0, from: 0b000, to: 0b001, out: (-0.6, 0.8), class: "m e halo" },
+    Edge { axis: 1, from: 0b001, to: 0b011, out: (0.6, 0.8), class: "m halo" },
+    Edge { axis: 2, from: 0b011, to: 0b111, out: (1.0, 0.0), class: "m halo" },
+];
+
 impl Placed {
     fn at(&self, place: [f64; 3]) -> (f64, f64) {
         let (right, up) = flat(place);
@@ -115,15 +133,8 @@ impl Placed {
     ///
     /// * `away` – how far what is drawn reaches out of the box, drawing units
     fn labels(&self, language: Language, away: f64) -> Markup {
-        /// X along the lower left edge, Y along the lower right one, Z at the right: corners, the way outwards, where
-        /// numbers end.
-        const EDGES: [(usize, usize, usize, (f64, f64), &str); 3] = [
-            (0, 0b000, 0b001, (-0.6, 0.8), "m e halo"),
-            (1, 0b001, 0b011, (0.6, 0.8), "m halo"),
-            (2, 0b011, 0b111, (1.0, 0.0), "m halo"),
-        ];
         html! {
-            @for (axis, from, to, out, class) in EDGES {
+            @for Edge { axis, from, to, out, class } in EDGES {
                 @let (a, b) = (self.at(self.solid.corner(from)), self.at(self.solid.corner(to)));
                 @let here = |share: f64, far: f64| (a.0 + share * (b.0 - a.0) + far * out.0, a.1 + share * (b.1 - a.1) + far * out.1);
                 @for (value, label) in Scale::new(self.solid.ranges[axis], (0.0, 1.0)).ticks(4, language) {

@@ -106,7 +106,7 @@ impl<'a> Drawn<'a> {
             None => meaning(found.verdict),
         };
         html! {
-            p.muted { (self.say(&both!("Parts of {}: {}", "Детали станка {}: {}", shown(&facts.profile.name), shown(&file::name(facts.measurements))))) }
+            p.muted { (self.say(&both!("Parts of {}: {}", "Детали станка {}: {}", shown(&facts.profile.name), shown(&short_name(facts.measurements))))) }
             p { span.verdict { (words(found.verdict).in_language(self.language)) } }
             h1 { (opening(&self.say(&what))) }
             @if !found.causes.is_empty() { p { (opening(&self.say(&meaning(found.verdict)))) "." } }
@@ -271,6 +271,11 @@ impl<'a> Drawn<'a> {
         };
         html! { p { (self.say(&text)) } }
     }
+}
+
+/// A name without its folders, which stand at the end of the page.
+fn short_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| file::name(path), |name| file::name(Path::new(name)))
 }
 
 /// The mean of each place, in order.
