@@ -1,115 +1,12 @@
-//! Reports in a browser: Debian's `chromium`, headless, driven by its command line.
+//! Reports in a browser: Debian's `chromium`, headless.
 //!
 //! No console message, no request, no script that acts, prints to PDF. Where the browser is missing the tests say that they
 //! were skipped; with `CI` set they fail.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 
 use crate::common::{messages, root, run};
-
-/// The browser.
-pub(crate) fn chromium() -> Option<&'static str> {
-    let there = Command::new("chromium")
-        .arg("--version")
-        .stderr(Stdio::null())
-        .output()
-        .is_ok_and(|output| output.status.success());
-    assert!(there || std::env::var_os("CI").is_none(), "chromium must be installed where CI is set");
-    there.then_some("chromium")
-}
-
-/// What the browser said about a page.
-pub(crate) struct Visit {
-    /// The document after everything had its chance to run.
-    pub(crate) dom: String,
-    /// Lines of the console.
-    console: Vec<String>,
-    /// Everything that was requested except the page itself.
-    requests: Vec<String>,
-}
-
-impl Visit {
-    pub(crate) fn was_quiet(&self) {
-        assert!(
-            self.console.is_empty() && self.requests.is_empty(),
-            "{:?} {:?}",
-            self.console,
-            self.requests
-        );
-    }
-}
-
-const QUIET: [&str; 12] = [
-    "--headless",
-    "--no-sandbox",
-    NO_GPU,
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--disable-default-apps",
-    "--disable-extensions",
-    "--hide-scrollbars",
-    "--enable-logging=stderr",
-];
-
-const NO_GPU: &str = "--disable-gpu";
-
-/// For pages that draw in space: WebGL by the processor.
-pub(crate) const SPACE: [&str; 3] =
-    ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-
-/// One run of the browser with an empty profile.
-pub(crate) fn browse(browser: &str, page: &Path, more: &[String]) -> (String, String) {
-    let profile = tempfile::tempdir().expect("a temporary folder");
-    let ran = Command::new(browser)
-        .args(
-            QUIET.into_iter().filter(|flag| *flag != NO_GPU || !more.iter().any(|option| option == SPACE[0])),
-        )
-        .arg(format!("--user-data-dir={}", profile.path().display()))
-        .args(more)
-        .arg(format!("file://{}", page.display()))
-        .output()
-        .expect("the browser starts");
-    assert!(ran.status.success(), "{more:?}: {}", messages(&ran));
-    (String::from_utf8_lossy(&ran.stdout).into_owned(), messages(&ran))
-}
-
-pub(crate) fn visit(browser: &str, page: &Path) -> Visit {
-    visit_with(browser, page, &[])
-}
-
-/// The same with more options.
-pub(crate) fn visit_with(browser: &str, page: &Path, more: &[&str]) -> Visit {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let log = folder.path().join("net.json");
-    let own = ["--dump-dom".to_owned(), format!("--log-net-log={}", log.display())];
-    let more: Vec<String> = own.into_iter().chain(more.iter().map(|option| (*option).to_owned())).collect();
-    let (dom, said) = browse(browser, page, &more);
-    let console = said.lines().filter(|line| line.contains(":CONSOLE")).map(str::to_owned).collect();
-    let net = std::fs::read_to_string(&log).expect("the browser writes its log of requests");
-    Visit { dom, console, requests: requests(&net, page) }
-}
-
-/// Addresses in the browser's log that are of the network. (Files and data are the page itself.)
-fn requests(log: &str, page: &Path) -> Vec<String> {
-    let mut found: Vec<String> = log
-        .split("\"url\":\"")
-        .skip(1)
-        .filter_map(|part| part.split('"').next())
-        .filter(|url| !url.starts_with("data:") && !url.ends_with(&page.display().to_string()))
-        // The browser's own errands, which have nothing to do with the page.
-        .filter(|url| {
-            !["google.com", "googleapis.com", "gvt1.com", "gstatic.com"].iter().any(|own| url.contains(own))
-        })
-        .map(str::to_owned)
-        .collect();
-    found.sort();
-    found.dedup();
-    found
-}
+use crate::devtools::{Browser, View, sheets_and_headings};
 
 /// A report in a folder of its own.
 pub(crate) struct Report {
@@ -148,66 +45,79 @@ pub(crate) fn data_of(page: &str) -> serde_json::Value {
 
 /// A page full of elements that try to act: none does. The page's own policy would hide a mistake, so it is tried
 /// without it, too.
-pub(crate) fn nothing_acted(browser: &str, report: &Report, more: &[&str]) {
+pub(crate) fn nothing_acted(browser: Option<Browser>, report: &Report) {
+    let Some(mut browser) = browser else { return };
     let page = text(&report.page);
     let policy = page.find("<meta http-equiv").expect("a policy");
     let end = policy + page[policy..].find('>').expect("it ends") + 1;
     let unprotected = report.folder.path().join("unprotected.html");
     std::fs::write(&unprotected, format!("{}{}", &page[..policy], &page[end..])).expect("writable");
     for page in [&report.page, &unprotected] {
-        let visit = visit_with(browser, page, more);
-        let root = visit.dom.split('>').nth(1).unwrap_or_default();
+        browser.open(page);
+        // Time for whatever begins behind the page.
+        browser.evaluate("new Promise(done => requestAnimationFrame(() => setTimeout(done, 300)))");
+        let document = browser.document();
+        let root = document.split('>').next().unwrap_or_default();
         assert!(root.contains("<html") && !root.contains("acted"), "{root}");
-        assert!(!visit.dom.contains("<img") && !visit.dom.contains("<b onmouseover"), "an element got in");
-        visit.was_quiet();
+        assert!(!document.contains("<img") && !document.contains("<b onmouseover"), "an element got in");
+        browser.was_quiet();
     }
+    browser.end();
 }
 
 #[test]
 fn the_checks_of_this_test_can_fail() {
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let folder = tempfile::tempdir().expect("a temporary folder");
     let page = folder.path().join("bad.html");
     let bad = "<html><img src='http://127.0.0.1:9/a.png'><script>console.error('here');document.documentElement.setAttribute('acted','1')</script></html>";
     std::fs::write(&page, bad).expect("writable");
-    let visit = visit(browser, &page);
-    assert!(visit.dom.contains("acted"), "{}", visit.dom);
-    assert!(visit.console.iter().any(|line| line.contains("here")), "{:?}", visit.console);
-    assert!(visit.requests.iter().any(|url| url.contains("127.0.0.1:9/a.png")), "{:?}", visit.requests);
+    browser.open(&page);
+    let document = browser.document();
+    assert!(document.contains("acted"), "{document}");
+    let [console, requests] = browser.said_and_asked();
+    assert!(console.iter().any(|line| line.contains("here")), "{console:?}");
+    assert!(requests.iter().any(|url| url.contains("127.0.0.1:9/a.png")), "{requests:?}");
+    // The log of the whole browser has it, too.
+    let requests = browser.requests();
+    assert!(requests.iter().any(|url| url.contains("127.0.0.1:9/a.png")), "{requests:?}");
 }
 
 #[test]
 fn reports_open_without_a_message_and_without_a_request() {
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     for report in [stan(), backlash()] {
-        let visit = visit(browser, &report.page);
-        visit.was_quiet();
-        let sections = visit.dom.matches("<section ").count();
+        browser.open(&report.page);
+        browser.was_quiet();
+        let document = browser.document();
+        let sections = document.matches("<section ").count();
         assert_eq!(sections, 12, "sections of {}", report.page.display());
-        assert!(visit.dom.matches("<svg ").count() >= 9);
+        assert!(document.matches("<svg ").count() >= 9);
     }
+    browser.end();
 }
 
 #[test]
 fn a_report_prints_to_pdf() {
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    let report = stan();
-    let pdf = report.folder.path().join("report.pdf");
-    let more = [format!("--print-to-pdf={}", pdf.display()), "--no-pdf-header-footer".to_owned()];
-    browse(browser, &report.page, &more);
-    let bytes = std::fs::read(&pdf).expect("a PDF");
-    assert!(bytes.starts_with(b"%PDF-"), "no PDF");
-    let pages = bytes.windows(12).filter(|w| w == b"/Type /Page\n").count();
-    assert!((3..20).contains(&pages), "{pages} pages, {} bytes", bytes.len());
+    let Some(mut browser) = Browser::start() else { return };
+    browser.open(&stan().page);
+    let sheets = sheets_of(&mut browser);
+    assert!((3..20).contains(&sheets), "{sheets} sheets");
+    browser.end();
+}
+
+/// The sheets on which the open page is printed: no heading stands alone at the foot of one.
+pub(crate) fn sheets_of(browser: &mut Browser) -> usize {
+    /// Margin of 15 mm, the heading itself, and a line behind it, points.
+    const LOWEST: f64 = 42.5 + 14.0 + 12.0;
+    let pdf = browser.printed();
+    assert!(pdf.starts_with(b"%PDF-"), "no PDF");
+    let (sheets, headings) = sheets_and_headings(&pdf);
+    assert!(headings.len() > 1, "{} headings", headings.len());
+    for (sheet, height) in headings {
+        assert!(height > LOWEST, "a heading alone at the foot of sheet {}: {height} points", sheet + 1);
+    }
+    sheets
 }
 
 /// Names of everything that a file or an option can name, each trying to act.
@@ -244,11 +154,7 @@ fn nothing_in_a_file_can_act() {
         page.contains("Перспектива \u{2400}\u{241b}[31m"),
         "Windows-1251 and control characters are shown"
     );
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    nothing_acted(browser, &report, &[]);
+    nothing_acted(Browser::start(), &report);
 }
 
 #[test]
@@ -268,33 +174,22 @@ fn a_report_is_small_whole_and_the_same_each_time() {
 /// What a reader sees, in `docs/img`: `VPOST_UPDATE_DOCS=1` writes the pictures anew.
 #[test]
 fn pictures_of_a_report() {
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    pictures(browser, &stan(), "diagnosis");
+    let Some(mut browser) = Browser::start() else { return };
+    pictures(&mut browser, &stan(), "diagnosis");
 }
 
 /// Light, dark and print.
-pub(crate) fn pictures(browser: &str, report: &Report, what: &str) {
-    // Paper has no command line option: its styles are given to the screen.
-    let paper = report.folder.path().join("paper.html");
-    std::fs::write(&paper, text(&report.page).replace("@media print", "@media all")).expect("writable");
-    let dark = "--blink-settings=preferredColorScheme=0";
-    for (name, page, option) in
-        [("light", &report.page, "--light"), ("dark", &report.page, dark), ("print", &paper, "--light")]
-    {
-        let picture = report.folder.path().join(format!("{what}_{name}.png"));
-        let more = [
-            "--window-size=900,1100".to_owned(),
-            option.to_owned(),
-            format!("--screenshot={}", picture.display()),
-        ];
-        browse(browser, page, &more);
-        let bytes = std::fs::read(&picture).expect("a picture");
-        assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 20_000, "{name}: {} bytes", bytes.len());
+pub(crate) fn pictures(browser: &mut Browser, report: &Report, what: &str) {
+    let view = View { width: 900, height: 1100, ..View::DESK };
+    let dark = View { is_dark: true, ..view };
+    let print = View { is_paper: true, ..view };
+    for (name, view) in [("light", view), ("dark", dark), ("print", print)] {
+        browser.look(view);
+        browser.open(&report.page);
+        let picture = browser.picture(false);
+        assert!(picture.starts_with(b"\x89PNG") && picture.len() > 20_000, "{name}: {} bytes", picture.len());
         if std::env::var_os("VPOST_UPDATE_DOCS").is_some() {
-            std::fs::copy(&picture, root().join(format!("docs/img/{what}_{name}.png"))).expect("docs/img");
+            std::fs::write(root().join(format!("docs/img/{what}_{name}.png")), picture).expect("docs/img");
         }
     }
 }
@@ -336,16 +231,15 @@ fn a_map_opens_without_a_message_is_small_and_the_same_each_time() {
     let counted: u64 =
         data["histogram"]["before"].as_array().expect("counts").iter().filter_map(|n| n.as_u64()).sum();
     assert_eq!(counted, 10_164, "the histogram counts every node");
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    let visit = visit(browser, &report.page);
-    visit.was_quiet();
-    assert_eq!(visit.dom.matches("<section ").count(), 12);
-    assert_eq!(visit.dom.matches("<svg ").count(), 7);
+    let Some(mut browser) = Browser::start() else { return };
+    browser.open(&report.page);
+    browser.was_quiet();
+    let document = browser.document();
+    assert_eq!(document.matches("<section ").count(), 12);
+    assert_eq!(document.matches("<svg ").count(), 8);
     // Thinned in the drawing, not in the numbers: 11 of each axis, twice.
-    assert_eq!(visit.dom.matches("<circle ").count(), 2 * 11 * 11 * 11);
+    assert_eq!(document.matches("<circle ").count(), 2 * 11 * 11 * 11);
+    browser.end();
 }
 
 #[test]
@@ -374,21 +268,13 @@ fn nothing_in_a_profile_or_an_option_can_act_in_a_map() {
     assert_eq!(html.matches("<script").count(), 1, "the data block is the only one");
     assert!(html.contains("&lt;svg/onload=") && html.contains("&lt;img src=x onerror="), "they are shown");
     assert!(html.contains("U+202E"));
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    nothing_acted(browser, &Report { folder, page }, &[]);
+    nothing_acted(Browser::start(), &Report { folder, page });
 }
 
 #[test]
 fn pictures_of_a_map() {
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    let report = map();
-    pictures(browser, &report, "map");
+    let Some(mut browser) = Browser::start() else { return };
+    pictures(&mut browser, &map(), "map");
 }
 
 /// A sample, corrected and checked.
@@ -418,15 +304,30 @@ fn a_check_shows_the_path_and_the_worst_blocks() {
     let block = posted.lines().nth(line as usize - 1).expect("that line");
     let first = page.split("As posted</h3>").nth(1).and_then(|t| t.split("</tr>").nth(1)).expect("a row");
     assert!(first.contains(&format!(">{line}<")) && first.contains(block.trim_end()), "{first}\n{block}");
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    let visit = visit(browser, &report.page);
-    visit.was_quiet();
+    let Some(mut browser) = Browser::start() else { return };
+    browser.open(&report.page);
+    browser.was_quiet();
+    // What is corrected is listed by the lines of the corrected program.
+    let corrected = text(&report.folder.path().join("out.nc"));
+    let list = page.split("As corrected</h3>").nth(1).expect("a list");
+    let rows = list.split("<tr").skip(2).take(20).map(|row| {
+        row.split("<td")
+            .map(|cell| {
+                let cell = cell.split('>').nth(1).unwrap_or_default();
+                cell.split('<').next().unwrap_or_default().to_owned()
+            })
+            .skip(1)
+            .collect::<Vec<_>>()
+    });
+    for row in rows {
+        let line: usize = row[0].parse().expect("a line");
+        let block = corrected.lines().nth(line - 1).expect("that line").trim_end();
+        assert!(row[3].trim_end() == block, "line {line}: {row:?}, {block}");
+    }
     // Before and after on one scale, and what is left on its own.
-    assert_eq!(visit.dom.matches("<svg ").count(), 3);
-    pictures(browser, &report, "check");
+    assert_eq!(browser.document().matches("<svg ").count(), 3);
+    pictures(&mut browser, &report, "check");
+    browser.end();
 }
 
 #[test]
@@ -447,9 +348,5 @@ fn nothing_in_a_program_can_act_in_a_check() {
     let page = text(&report.page);
     assert_eq!(page.matches("<script").count(), 1, "the data block is the only one");
     assert!(page.contains("&lt;script&gt;") && page.contains("&lt;b onmouseover=x&gt;"), "they are shown");
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    nothing_acted(browser, &report, &[]);
+    nothing_acted(Browser::start(), &report);
 }

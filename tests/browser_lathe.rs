@@ -1,9 +1,10 @@
 //! Pages of lathes: what `predict --lathe` and `calibrate turning` show, in both languages, and in a browser.
 
-use crate::browser::{Report, chromium, data_of, nothing_acted, pictures, text};
+use crate::browser::{Report, data_of, nothing_acted, pictures, text};
 use crate::browser_calibrate::opens_prints_and_fits;
 use crate::calibrate_turning::{BAR, diagnosed};
 use crate::common::{messages, run};
+use crate::devtools::Browser;
 
 pub(crate) const LATHE: &str = "machine-profiles/generic_lathe.toml";
 
@@ -200,10 +201,7 @@ fn the_page_of_a_diagnosis_says_what_the_summary_says() {
 
 #[test]
 fn pages_of_lathes_open_print_and_fit_a_telephone() {
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let russian = ["--lang", "ru"];
     let reports = [
         (turned(SHAFT, &[]), 5, 4),
@@ -212,8 +210,9 @@ fn pages_of_lathes_open_print_and_fit_a_telephone() {
         (diagnosis(-30.0, &russian), 4, 1),
     ];
     for (report, sections, drawings) in reports {
-        opens_prints_and_fits(browser, &report, sections, drawings, 1..8);
+        opens_prints_and_fits(&mut browser, &report, sections, drawings, 1..8);
     }
+    browser.end();
 }
 
 #[test]
@@ -226,18 +225,13 @@ fn nothing_in_a_turning_program_can_act() {
     let page = text(&report.page);
     assert_eq!(page.matches("<script").count(), 1, "the data block is the only one");
     assert!(page.contains("&lt;script&gt;"), "{page}");
-    if let Some(browser) = chromium() {
-        nothing_acted(browser, &report, &[]);
-    }
+    nothing_acted(Browser::start(), &report);
 }
 
 #[test]
 fn pictures_of_lathes() {
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    pictures(browser, &turned(SHAFT, &[]), "turned");
-    pictures(browser, &pieces(&[]), "turning");
-    pictures(browser, &diagnosis(-30.0, &[]), "turned-diagnosis");
+    let Some(mut browser) = Browser::start() else { return };
+    pictures(&mut browser, &turned(SHAFT, &[]), "turned");
+    pictures(&mut browser, &pieces(&[]), "turning");
+    pictures(&mut browser, &diagnosis(-30.0, &[]), "turned-diagnosis");
 }

@@ -5,10 +5,12 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::OnceLock;
 
-use crate::browser::{SPACE, browse, chromium, text};
+use crate::browser::{sheets_of, text};
 use crate::browser_lathe::{LATHE, SHAFT, written_diagnosis, written_pieces};
 use crate::common::{messages, root, run};
+use crate::devtools::{Browser, View};
 
 const AXE: &str = "axe-core@4.14.1";
 const STAN: &str = "machine-profiles/stan_s500.toml";
@@ -37,6 +39,39 @@ fn axe() -> Option<String> {
     found
 }
 
+/// Every kind of page in both languages, made once for all tests.
+fn all_pages() -> impl Iterator<Item = PathBuf> {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    let folder = FOLDER.get_or_init(|| {
+        let folder = made_in();
+        std::fs::create_dir_all(&folder).expect("writable");
+        for language in LANGUAGES {
+            pages(&folder, language);
+        }
+        folder
+    });
+    let made = |language| KINDS.map(|kind| folder.join(format!("{kind}_{language}.html")));
+    LANGUAGES.into_iter().flat_map(made)
+}
+
+/// A folder of this process: runners may give each test its own. What others left long ago is removed.
+fn made_in() -> PathBuf {
+    const OLD: std::time::Duration = std::time::Duration::from_secs(3600);
+    let all = root().join("target/pictures");
+    for folder in std::fs::read_dir(&all).into_iter().flatten().flatten() {
+        let age =
+            folder.metadata().and_then(|data| data.modified()).ok().and_then(|time| time.elapsed().ok());
+        let is_pages = folder.file_name().to_string_lossy().starts_with("pages-");
+        if is_pages && age.is_some_and(|age| age > OLD) {
+            let _ = std::fs::remove_dir_all(folder.path());
+        }
+    }
+    all.join(format!("pages-{}", std::process::id()))
+}
+
+const KINDS: [&str; 9] =
+    ["map", "check", "viewer", "diagnosis", "positioning", "ballbar", "turned", "pieces", "leaning"];
+
 /// Every kind of page in one language.
 fn pages(folder: &Path, language: &str) -> Vec<PathBuf> {
     let path = |name: &str| folder.join(format!("{name}_{language}.html"));
@@ -49,9 +84,7 @@ fn pages(folder: &Path, language: &str) -> Vec<PathBuf> {
     let shaft = plain(&folder.join("shaft.nc"));
     std::fs::write(&shaft, SHAFT).expect("writable");
     let [lathe, parts, third] = written_pieces(folder);
-    let made =
-        ["map", "check", "viewer", "diagnosis", "positioning", "ballbar", "turned", "pieces", "leaning"]
-            .map(path);
+    let made = KINDS.map(path);
     let [map, check, viewer, diagnosis, positioning, ballbar, turned, pieces, leaning] =
         made.each_ref().map(|page| plain(page));
     make(&["map", "-m", STAN, "--grid", "9x9x9", "--clamp", "120,80,40", "--second-order", "--html", &map]);
@@ -82,113 +115,116 @@ fn pages(folder: &Path, language: &str) -> Vec<PathBuf> {
     made.to_vec()
 }
 
-/// What axe-core finds on a page, a rule and an element in a line.
-fn faults(browser: &str, axe: &str, page: &Path, is_dark: bool) -> Vec<String> {
-    const ASK: &str = "addEventListener('load', () => setTimeout(() => axe.run(document, { resultTypes: ['violations'] }).then(
-        found => found.violations.flatMap(one => one.nodes.map(node => one.id + ': ' + node.html.slice(0, 120))),
-        error => ['error: ' + error]).then(lines => document.documentElement.setAttribute('found', encodeURIComponent(JSON.stringify(lines)))), 300))";
-    // Without the page's policy, which lets no script act; nothing of the rest is changed.
-    let whole = text(page);
-    let policy = whole.find("<meta http-equiv").expect("a policy");
-    let end = policy + whole[policy..].find('>').expect("it ends") + 1;
-    let axe = axe.replace("</script", "<\\/script");
-    let copy = page.with_extension("axe.html");
-    let asked = format!("{}{}<script>{axe}</script><script>{ASK}</script>", &whole[..policy], &whole[end..]);
-    std::fs::write(&copy, asked).expect("writable");
-    let mut more: Vec<String> = SPACE.map(str::to_owned).to_vec();
-    more.extend(["--dump-dom", "--virtual-time-budget=20000", "--window-size=1400,900"].map(str::to_owned));
-    more.extend(is_dark.then(|| "--blink-settings=preferredColorScheme=0".to_owned()));
-    let (dom, said) = browse(browser, &copy, &more);
-    let found = dom.split("found=\"").nth(1).and_then(|rest| rest.split('"').next());
-    let found = found.unwrap_or_else(|| panic!("{}: axe-core says nothing: {said}", page.display()));
-    serde_json::from_str(&unescaped(found)).expect("lines")
-}
-
-/// What `encodeURIComponent` wrote.
-fn unescaped(text: &str) -> String {
-    let mut bytes = Vec::new();
-    let mut rest = text.as_bytes();
-    while let Some((first, behind)) = rest.split_first() {
-        let code = (*first == b'%').then(|| text_of(behind)).flatten();
-        bytes.push(code.unwrap_or(*first));
-        rest = if code.is_some() { &behind[2..] } else { behind };
-    }
-    String::from_utf8(bytes).expect("UTF-8")
-}
-
-fn text_of(hexadecimal: &[u8]) -> Option<u8> {
-    u8::from_str_radix(std::str::from_utf8(hexadecimal.get(..2)?).ok()?, 16).ok()
+/// What axe-core finds on the open page, a rule and an element in a line.
+///
+/// * `rules` – those that are asked for; all if empty
+fn faults(browser: &mut Browser, axe: &str, rules: &[&str]) -> Vec<String> {
+    browser.evaluate(axe);
+    let only = if rules.is_empty() {
+        String::new()
+    } else {
+        format!(", runOnly: {{ type: 'rule', values: {rules:?} }}")
+    };
+    let ask = format!(
+        "axe.run(document, {{ resultTypes: ['violations']{only} }}).then(
+        found => found.violations.flatMap(one => one.nodes.map(node => one.id + ': ' + node.html.slice(0, 120))))"
+    );
+    let lines = browser.evaluate(&ask);
+    lines.as_array().expect("lines").iter().filter_map(|line| line.as_str().map(str::to_owned)).collect()
 }
 
 #[test]
 fn no_page_has_an_accessibility_fault() {
-    let (Some(browser), Some(axe)) = (chromium(), axe()) else {
+    let (Some(mut browser), Some(axe)) = (Browser::start(), axe()) else {
         println!("skipped: chromium or axe-core cannot be had");
         return;
     };
     let folder = tempfile::tempdir().expect("a temporary folder");
     // The judge finds what is wrong: grey on grey, a picture without words, a heading of nothing.
     let bad = folder.path().join("bad.html");
-    let wrong = "<!DOCTYPE html><html><head><meta http-equiv=x><title>t</title></head><body><main><h1>t</h1>\
+    let wrong = "<!DOCTYPE html><html><head><title>t</title></head><body><main><h1>t</h1>\
         <p style='color:#aaa;background:#bbb'>grey</p><img src='data:,'><table><tr><th></th><td>1</td></tr></table></main></body></html>";
     std::fs::write(&bad, wrong).expect("writable");
-    let known = faults(browser, &axe, &bad, false);
+    browser.open(&bad);
+    let known = faults(&mut browser, &axe, &[]);
     for rule in ["html-has-lang", "color-contrast", "image-alt", "empty-table-header"] {
         assert!(known.iter().any(|fault| fault.starts_with(rule)), "{rule} is not found: {known:?}");
     }
+    let known = faults(&mut browser, &axe, &COLOURS);
+    assert!(known.iter().any(|fault| fault.starts_with("color-contrast")), "{known:?}");
     let mut found = Vec::new();
-    for page in LANGUAGES.iter().flat_map(|language| pages(folder.path(), language)) {
-        for is_dark in [false, true] {
+    for page in all_pages() {
+        // What is dark differs in its colours alone.
+        for (view, rules) in [(View::DESK, &[][..]), (View::DARK, &COLOURS)] {
+            browser.look(View { is_calm: true, ..view });
+            browser.open(&page);
+            settle(&mut browser, &page);
             let name = page.file_name().expect("a name").to_string_lossy().into_owned();
-            let style = if is_dark { "dark" } else { "light" };
-            found.extend(
-                faults(browser, &axe, &page, is_dark)
-                    .into_iter()
-                    .map(|fault| format!("{name}, {style}: {fault}")),
-            );
+            let style = if view.is_dark { "dark" } else { "light" };
+            let lines = faults(&mut browser, &axe, rules);
+            found.extend(lines.into_iter().map(|fault| format!("{name}, {style}: {fault}")));
         }
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
+    browser.end();
 }
 
-/// Of a page in a frame as wide as a telephone: its width, and how many drawings and tables reach out of what holds them.
-fn in_a_frame(browser: &str, page: &Path) -> (u32, u32) {
-    let outside = page.with_extension("frame.html");
-    let script = "document.getElementById('f').onload = function () {
-        const inside = this.contentDocument, held = [...inside.querySelectorAll('.scroll')].filter(e => e.querySelector('svg, table'));
-        const cut = held.filter(e => e.scrollWidth > e.clientWidth + 1).length;
-        document.documentElement.setAttribute('reaches', inside.documentElement.scrollWidth + ' ' + cut);
-    }";
-    let name = page.file_name().and_then(|name| name.to_str()).expect("a plain name");
-    let frame = format!(
-        "<html><body><iframe id=f src='{name}' width=390 height=800 style='border:0'></iframe><script>{script}</script></body></html>"
-    );
-    std::fs::write(&outside, frame).expect("writable");
-    let more = ["--dump-dom", "--allow-file-access-from-files"].map(str::to_owned);
-    let (dom, _) = browse(browser, &outside, &more);
-    let reaches = dom.split("reaches=\"").nth(1).and_then(|rest| rest.split('"').next()).expect("widths");
-    let (width, cut) = reaches.split_once(' ').expect("two numbers");
-    (width.parse().expect("a number"), cut.parse().expect("a number"))
+/// Rules of axe-core about colours, of those that it asks for unasked.
+const COLOURS: [&str; 2] = ["color-contrast", "link-in-text-block"];
+
+/// Waits until the page in space is drawn as it is at rest.
+fn settle(browser: &mut Browser, page: &Path) {
+    if page.file_name().is_some_and(|name| name.to_string_lossy().starts_with("viewer")) {
+        browser.evaluate(DRAWN);
+    }
 }
+
+/// Promised when a viewer is drawn as it is at rest, the reader wanting no motion.
+pub(crate) const DRAWN: &str = "new Promise(done => {
+    const look = () => document.documentElement.dataset.whole ? setTimeout(done, 300) : setTimeout(look, 20);
+    look();
+})";
 
 #[test]
-fn no_page_is_clipped_on_a_telephone() {
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    for page in LANGUAGES.iter().flat_map(|language| pages(folder.path(), language)) {
-        assert_eq!(in_a_frame(browser, &page), (390, 0), "{}", page.display());
+fn no_page_is_clipped_on_a_telephone_or_on_paper() {
+    let Some(mut browser) = Browser::start() else { return };
+    // Its width, and how many drawings and tables reach out of what holds them.
+    const WIDTHS: &str = "(() => {
+        const held = [...document.querySelectorAll('.scroll')].filter(e => e.querySelector('svg, table'));
+        return [document.documentElement.scrollWidth, held.filter(e => e.scrollWidth > e.clientWidth + 1).length];
+    })()";
+    for page in all_pages() {
+        for view in [View::PHONE, View::PAPER] {
+            browser.look(View { is_calm: true, ..view });
+            browser.open(&page);
+            let found = browser.evaluate(WIDTHS);
+            assert_eq!(found, serde_json::json!([view.width, 0]), "{}", page.display());
+        }
+        // What is wrong, how bad and what to do stand above the first section, on the first screen.
+        browser.look(View::DESK);
+        browser.open(&page);
+        let head = browser.evaluate(
+            "(document.querySelector('nav') ?? document.querySelector('h1')).getBoundingClientRect().bottom",
+        );
+        assert!(
+            head.as_f64().is_some_and(|bottom| bottom < f64::from(View::DESK.height)),
+            "{}: {head}",
+            page.display()
+        );
+        // No heading alone at the foot of a sheet; a viewer is one sheet.
+        if !page.file_name().is_some_and(|name| name.to_string_lossy().starts_with("viewer")) {
+            sheets_of(&mut browser);
+        }
     }
+    browser.end();
 }
 
 /// What is wrong, how bad, what to do, and how the machine was measured stand above the first section; what else a result
 /// rests on stands at the end.
 #[test]
 fn each_page_says_where_its_numbers_come_from() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    for page in pages(folder.path(), "en") {
+    let folder = made_in();
+    for page in all_pages().filter(|page| page.to_string_lossy().ends_with("_en.html")) {
         let name = page.file_name().expect("a name").to_string_lossy().into_owned();
         let all = text(&page);
         if name.starts_with("viewer") {
@@ -201,10 +237,10 @@ fn each_page_says_where_its_numbers_come_from() {
         }
         assert!(end.contains(concat!("vpost ", env!("CARGO_PKG_VERSION"))), "{name}");
         // A page is the same wherever it is written.
-        assert!(!end.contains(folder.path().join("map_en.html").to_str().expect("plain")), "{name}");
+        assert!(!end.contains(folder.join("map_en.html").to_str().expect("plain")), "{name}");
     }
     let head = |name: &str| {
-        let all = text(&folder.path().join(format!("{name}_en.html")));
+        let all = text(&folder.join(format!("{name}_en.html")));
         all.split("<nav").next().expect("a head").to_owned()
     };
     let map = head("map");
@@ -219,56 +255,35 @@ fn each_page_says_where_its_numbers_come_from() {
     }
 }
 
-/// What a reader sees: 1400 px light and dark, 390 px, paper; in `target/pictures`. `VPOST_UPDATE_DOCS=1` writes a few of
-/// them, those that the other tests do not make, into `docs/img`.
+/// What a reader sees: 1400 px light and dark, 390 px, paper; whole pages in `target/pictures`. `VPOST_UPDATE_DOCS=1` writes
+/// a few of them, those that the other tests do not make, into `docs/img`.
 #[test]
 fn pictures_of_every_page() {
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    let (folder, pictures) =
-        (tempfile::tempdir().expect("a temporary folder"), root().join("target/pictures"));
-    std::fs::create_dir_all(&pictures).expect("writable");
-    for page in LANGUAGES.iter().flat_map(|language| pages(folder.path(), language)) {
+    let Some(mut browser) = Browser::start() else { return };
+    let pictures = root().join("target/pictures");
+    let phone = View { height: 1600, ..View::PHONE };
+    for page in all_pages() {
         let name = page.file_stem().expect("a name").to_string_lossy().into_owned();
-        // Paper has no command line option: its styles are given to the screen. Nor is a window as narrow as a telephone.
-        let paper = page.with_extension("paper.html");
-        std::fs::write(&paper, text(&page).replace("@media print", "@media all")).expect("writable");
-        let phone = page.with_extension("phone.html");
-        let inside = page.file_name().and_then(|name| name.to_str()).expect("a plain name");
-        let frame = format!(
-            "<body style='margin:0'><iframe src='{inside}' width=390 height=1600 style='border:0'></iframe>"
-        );
-        std::fs::write(&phone, frame).expect("writable");
-        let dark = "--blink-settings=preferredColorScheme=0";
-        let views = [
-            ("1400", &page, "1400,1000", "--light"),
-            ("1400_dark", &page, "1400,1000", dark),
-            ("390", &phone, "500,1600", "--light"),
-            ("print", &paper, "720,1000", "--light"),
-        ];
-        for (view, page, size, option) in views {
-            let picture = pictures.join(format!("{name}_{view}.png"));
-            let mut more = SPACE.map(str::to_owned).to_vec();
-            more.extend([
-                format!("--window-size={size}"),
-                option.to_owned(),
-                format!("--screenshot={}", picture.display()),
-            ]);
-            browse(browser, page, &more);
-            let bytes = std::fs::read(&picture).expect("a picture");
+        for (what, view) in
+            [("1400", View::DESK), ("1400_dark", View::DARK), ("390", phone), ("print", View::PAPER)]
+        {
+            browser.look(View { is_calm: true, ..view });
+            browser.open(&page);
+            settle(&mut browser, &page);
+            let seen = browser.picture(false);
             assert!(
-                bytes.starts_with(b"\x89PNG") && bytes.len() > 12_000,
-                "{name} {view}: {} bytes",
-                bytes.len()
+                seen.starts_with(b"\x89PNG") && seen.len() > 12_000,
+                "{name} {what}: {} bytes",
+                seen.len()
             );
-            let is_kept = matches!(view, "390") && !name.starts_with("viewer")
-                || view == "1400" && name.ends_with("_ru");
+            let is_kept =
+                what == "390" && !name.starts_with("viewer") || what == "1400" && name.ends_with("_ru");
             if is_kept && std::env::var_os("VPOST_UPDATE_DOCS").is_some() {
-                std::fs::copy(&picture, root().join(format!("docs/img/{name}_{view}.png")))
-                    .expect("docs/img");
+                std::fs::write(root().join(format!("docs/img/{name}_{what}.png")), seen).expect("docs/img");
             }
+            let whole = browser.picture(true);
+            std::fs::write(pictures.join(format!("{name}_{what}.png")), whole).expect("writable");
         }
     }
+    browser.end();
 }

@@ -5,13 +5,12 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::browser::{Report, SPACE, browse, chromium, data_of, nothing_acted, text, visit_with};
-use crate::browser_calibrate::width_in_a_frame;
+use crate::browser::{Report, data_of, nothing_acted, text};
+use crate::browser_pages::DRAWN;
 use crate::common::{messages, root, run};
+use crate::devtools::{Browser, View};
 
 const STAN: &str = "machine-profiles/stan_s500.toml";
-/// WebGL by the processor, and time for everything that a page does by itself.
-const SETTLED: [&str; 4] = [SPACE[0], SPACE[1], SPACE[2], "--virtual-time-budget=4000"];
 
 fn plain(path: &Path) -> &str {
     path.to_str().expect("a plain path")
@@ -57,62 +56,24 @@ fn diagnosis() -> Report {
 
 /// Runs a script in a page as a reader would act on it, and gives what it finds: `$` finds by id, `key` presses a key in the
 /// drawing, `go` moves the slider, `frames` waits for drawn ones, `say` ends with a value.
-///
-/// In a copy of the page without its policy, and with frames by the clock: the browser draws none where nobody looks.
-fn act(browser: &str, report: &Report, script: &str, more: &[&str]) -> Value {
-    const FRAMES: &str = "<script>
-        const queue = [];
-        window.requestAnimationFrame = callback => {
-            queue.push(callback);
-            if (queue.length === 1) setTimeout(() => { for (const each of queue.splice(0)) each(performance.now()); }, 16);
-        };
-        const say = value => document.documentElement.setAttribute('found', encodeURIComponent(JSON.stringify(value)));
-        window.onerror = message => say({ error: message });
-    </script>";
-    const HANDS: &str = "<script>
+fn act(browser: &mut Browser, report: &Report, script: &str) -> Value {
+    const HANDS: &str = "new Promise((say, fail) => {
         const $ = id => document.getElementById(id);
         const key = (name, more) => $('view').dispatchEvent(new KeyboardEvent('keydown', { key: name, bubbles: true, cancelable: true, ...more }));
         const go = i => { $('at').value = i; $('at').dispatchEvent(new Event('input')); };
         const frames = (count, then) => (count ? requestAnimationFrame(() => frames(count - 1, then)) : then());
-        setTimeout(() => { SCRIPT }, 1500);
-    </script>";
-    let page = text(&report.page);
-    let policy = page.find("<meta http-equiv").expect("a policy");
-    let end = policy + page[policy..].find('>').expect("it ends") + 1;
-    let (body, rest) = page[end..].split_once("<script id=\"data\"").expect("data");
-    let rest = rest.replace("</body>", &format!("{}</body>", HANDS.replace("SCRIPT", script)));
-    let copy = report.folder.path().join("act.html");
-    std::fs::write(&copy, format!("{}{body}{FRAMES}<script id=\"data\"{rest}", &page[..policy]))
-        .expect("writable");
-    let own = ["--dump-dom", "--window-size=1200,800", "--virtual-time-budget=6000"];
-    let options: Vec<String> =
-        own.iter().chain(&SPACE).chain(more).map(|option| (*option).to_owned()).collect();
-    let (dom, said) = browse(browser, &copy, &options);
-    let found = dom.split("found=\"").nth(1).and_then(|rest| rest.split('"').next());
-    let found = found.unwrap_or_else(|| panic!("the script said nothing: {said}"));
-    let mut bytes = Vec::new();
-    let mut rest = found.as_bytes();
-    while let [first, more @ ..] = rest {
-        rest = more;
-        if *first == b'%' {
-            let hex = std::str::from_utf8(&rest[..2]).expect("two digits");
-            bytes.push(u8::from_str_radix(hex, 16).expect("two digits"));
-            rest = &rest[2..];
-        } else {
-            bytes.push(*first);
-        }
-    }
-    let value: Value = serde_json::from_slice(&bytes).expect("JSON");
-    assert!(value.get("error").is_none(), "{value}");
-    value
+        window.onerror = message => fail(new Error(message));
+        SCRIPT
+    })";
+    browser.look(View { width: 1200, height: 800, is_calm: true, ..View::DESK });
+    browser.open(&report.page);
+    browser.evaluate(DRAWN);
+    browser.evaluate(&HANDS.replace("SCRIPT", script))
 }
 
 #[test]
 fn viewers_are_quiet_drawn_and_fit_a_telephone() {
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
+    let Some(mut browser) = Browser::start_in_space() else { return };
     // How many pixels have the colours of the real path and of the other one.
     let count = "key('ArrowLeft'); requestAnimationFrame(() => {
         const c = document.createElement('canvas'), from = $('canvas');
@@ -124,15 +85,20 @@ fn viewers_are_quiet_drawn_and_fit_a_telephone() {
         say([warm, cold]);
     });";
     for report in [plate(), map(), diagnosis()] {
-        let visit = visit_with(browser, &report.page, &SETTLED);
-        visit.was_quiet();
-        let root = visit.dom.split('>').nth(1).unwrap_or_default();
+        // On a telephone, the error growing to its magnified size.
+        browser.look(View::PHONE);
+        browser.open(&report.page);
+        browser.evaluate(DRAWN);
+        browser.was_quiet();
+        let document = browser.document();
+        let root = document.split('>').next().unwrap_or_default();
         assert!(root.contains("data-webgl=\"yes\"") && root.contains("data-drawn"), "{root}");
-        let pixels = act(browser, &report, count, &[]);
+        assert_eq!(browser.evaluate("document.documentElement.scrollWidth"), View::PHONE.width);
+        let pixels = act(&mut browser, &report, count);
         let [warm, cold] = [0, 1].map(|k| pixels[k].as_u64().expect("a count"));
         assert!(warm > 500 && cold > 500, "{}: {pixels}", report.page.display());
-        assert_eq!(width_in_a_frame(browser, &report, 390), 390);
     }
+    browser.end();
 }
 
 #[test]
@@ -146,10 +112,7 @@ fn the_picked_line_is_the_block_with_its_figures() {
     let anywhere = |report: &Report| text(&report.page).replace(plain(report.folder.path()), "");
     assert!(anywhere(&report) == anywhere(&plate()), "two runs differ");
     let places = data["places"].as_u64().expect("a count");
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let script = format!(
         "const found = [];
         for (let k = 0; k < 40; k++) {{
@@ -167,7 +130,7 @@ fn the_picked_line_is_the_block_with_its_figures() {
             say({{ found, picked: $('line').textContent, left: $('after_most').textContent, first: found[0][0] }});
         }});"
     );
-    let value = act(browser, &report, &script, &[]);
+    let value = act(&mut browser, &report, &script);
     let posted = text(&root().join("samples/plate_linuxcnc.nc"));
     let lines: Vec<&str> = posted.lines().collect();
     for row in value["found"].as_array().expect("rows") {
@@ -192,10 +155,7 @@ fn the_picked_line_is_the_block_with_its_figures() {
 /// What is shown without a cause is what the machine does without it: the same program on a machine that has not got it.
 #[test]
 fn a_cause_that_is_switched_off_is_gone() {
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let folder = tempfile::tempdir().expect("a temporary folder");
     let original = text(&root().join(STAN));
     let tables = root().join("machine-profiles").display().to_string();
@@ -214,17 +174,16 @@ fn a_cause_that_is_switched_off_is_gone() {
     let off = format!(
         "document.querySelector('[data-symbol=EC0Y]').click(); {read} say([found, $('seen').textContent]);"
     );
-    let one = act(browser, &crooked, &off, &[]);
+    let one = act(&mut browser, &crooked, &off);
     assert!(one[1].as_str().is_some_and(|said| said.contains("squareness EC0Y")), "{}", one[1]);
     let number = |value: &Value| -> f64 {
         value.as_str().expect("a number").replace('\u{2212}', "-").parse().expect("a number")
     };
     // Interpolated places may differ: the line is looked for.
     let all = act(
-        browser,
+        &mut browser,
         &without,
         "const found = []; for (let i = 0; i <= Number($('at').max); i++) { go(i); found.push([$('line').textContent, $('place').textContent, ...[0, 1, 2].map(a => $('r' + a).textContent)]); } say(found);",
-        &[],
     );
     let mut compared = 0;
     for row in one[0].as_array().expect("rows") {
@@ -247,21 +206,15 @@ fn causes_of_a_diagnosis_add_up_to_what_they_explain() {
     let report = diagnosis();
     let data = data_of(&text(&report.page));
     let remainder = data["values"]["remainder"].as_f64().expect("a number");
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    let left = act(browser, &report, "say($('after_most').textContent.split(/\\s/)[2]);", &[]);
+    let Some(mut browser) = Browser::start() else { return };
+    let left = act(&mut browser, &report, "say($('after_most').textContent.split(/\\s/)[2]);");
     let left: f64 = left.as_str().and_then(|text| text.parse().ok()).expect("a number");
     assert!(left > 10.0 && (remainder - left).abs() < 0.1, "{remainder} {left}");
 }
 
 #[test]
 fn the_keyboard_alone_suffices() {
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let report = plate();
     let script = "
         const tip = () => ['cx', 'cy'].map(name => Number($('tip').getAttribute(name)));
@@ -283,7 +236,7 @@ fn the_keyboard_alone_suffices() {
             say({ states, lines, playing, swinging, count: controls.length, unreachable: controls.filter(c => c.tabIndex < 0).length, nameless: nameless.map(c => c.id) });
         };
         next();";
-    let found = act(browser, &report, script, &[]);
+    let found = act(&mut browser, &report, script);
     for (what, places) in found["states"].as_object().expect("states") {
         assert_ne!(places[0], places[1], "{what}");
     }
@@ -308,18 +261,17 @@ fn without_webgl_a_drawing_with_the_same_words_and_without_a_script_too() {
         page.contains("As posted the tool leaves its path by up to 332\u{a0}\u{b5}m"),
         "the heading is in the text"
     );
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    let off = ["--disable-3d-apis"];
+    let Some(mut browser) = Browser::start() else { return };
+    let Some(mut flat) = Browser::start_without_space() else { return };
     let words = "const all = [...document.querySelectorAll('h1,h2,.legend,#causes,#seen')].map(e => e.textContent); const before = document.querySelector('.way.real')?.getAttribute('d'); key('ArrowLeft'); frames(2, () => say({ webgl: document.documentElement.dataset.webgl, all, before, after: document.querySelector('.way.real')?.getAttribute('d') }));";
-    let [with, without] = [&[][..], &off].map(|more| act(browser, &report, words, more));
+    let [with, without] = [&mut browser, &mut flat].map(|browser| act(browser, &report, words));
     assert_eq!((&with["webgl"], &without["webgl"]), (&Value::from("yes"), &Value::from("no")));
     assert_eq!(with["all"], without["all"], "the same words");
     let [before, after] = [&without["before"], &without["after"]].map(|way| way.as_str().expect("a path"));
     assert!(before.len() > 2000 && before != after, "{} {}", before.len(), after.len());
-    visit_with(browser, &report.page, &[&SETTLED[..], &off].concat()).was_quiet();
+    flat.was_quiet();
+    browser.end();
+    flat.end();
 }
 
 #[test]
@@ -328,14 +280,11 @@ fn it_speaks_russian_where_asked() {
     let page = text(&report.page);
     assert!(
         page.contains("<html lang=\"ru\">")
-            && page.contains("По исходной программе инструмент уходит от пути до")
+            && page.contains("По исходной программе инструмент отходит от траектории до")
     );
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let script = "const first = $('line').textContent + ' ' + $('real_most').textContent; $('en').click(); say([first, document.documentElement.lang, $('line').textContent]);";
-    let found = act(browser, &report, script, &[]);
+    let found = act(&mut browser, &report, script);
     assert_eq!(found, serde_json::json!(["Строка 22 до 332\u{a0}мкм", "en", "Line 22"]));
 }
 
@@ -357,11 +306,7 @@ fn nothing_in_a_program_can_act_in_a_viewer() {
     let page = text(&report.page);
     assert_eq!(page.matches("<script").count(), 3, "data, places and the script are the only ones");
     assert!(page.contains("script-src 'sha256-") && !page.contains("unsafe"), "the policy names it");
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    nothing_acted(browser, &report, &SETTLED);
+    nothing_acted(Browser::start_in_space(), &report);
 }
 
 #[test]
@@ -435,45 +380,30 @@ fn a_million_blocks_are_less_than_three_megabytes_and_drawn() {
         page.split("lies within ").nth(1).and_then(|rest| rest.split_whitespace().next()).expect("a bound");
     let bound: f64 = bound.parse().expect("a number");
     assert!(bound < 1000.0, "left out within {bound} um of a path of 360 mm");
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
-    // How long it takes to draw is for a quiet machine to say; here it is drawn, however busy the cores are.
-    let drawn = ["4000", "60000", "900000"].into_iter().find_map(|budget| {
-        let patience = format!("--virtual-time-budget={budget}");
-        let visit = visit_with(browser, &report.page, &[&SPACE[..], &[patience.as_str()]].concat());
-        let drawn = visit.dom.split("data-drawn=\"").nth(1).and_then(|rest| rest.split('"').next());
-        let milliseconds: f64 = drawn?.parse().ok()?;
-        visit.was_quiet();
-        Some(milliseconds)
-    });
-    println!("drawn {} ms after the script began", drawn.expect("it is drawn"));
+    let Some(mut browser) = Browser::start_in_space() else { return };
+    browser.open(&report.page);
+    browser.evaluate(DRAWN);
+    browser.was_quiet();
+    // The first frame, of fewer places, and all of them.
+    let times = browser.evaluate("(() => { const d = document.documentElement.dataset, t = performance.getEntriesByType('navigation')[0]; return [Number(d.drawn) - t.loadEventEnd, Number(d.whole) - t.loadEventEnd]; })()");
+    let [drawn, whole] = [0, 1].map(|k| times[k].as_f64().expect("milliseconds"));
+    println!("drawn {drawn:.0} ms after loading, whole {whole:.0} ms");
+    assert!(drawn < 1000.0, "drawn {drawn:.0} ms after loading");
+    browser.end();
 }
 
 /// What a reader sees, in `docs/img`: `VPOST_UPDATE_DOCS=1` writes the picture anew.
 #[test]
 fn a_picture_of_a_viewer() {
-    let Some(browser) = chromium() else {
-        println!("skipped: chromium is not installed");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let report = plate();
-    // In a frame: the browser lays out a picture's window once more without drawing again.
-    let outside = report.folder.path().join("picture.html");
-    let frame = "<html><body style='margin:0'><iframe src='viewer.html' width=1400 height=880 style='border:0;display:block'></iframe></body></html>";
-    std::fs::write(&outside, frame).expect("writable");
-    let picture = report.folder.path().join("viewer.png");
-    let more = [
-        "--window-size=1400,880".to_owned(),
-        "--blink-settings=preferredColorScheme=1".to_owned(),
-        format!("--screenshot={}", picture.display()),
-    ];
-    let more: Vec<String> = more.into_iter().chain(SETTLED.map(str::to_owned)).collect();
-    browse(browser, &outside, &more);
-    let bytes = std::fs::read(&picture).expect("a picture");
-    assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 60_000, "{} bytes", bytes.len());
+    browser.look(View { height: 880, is_calm: true, ..View::DESK });
+    browser.open(&report.page);
+    browser.evaluate(DRAWN);
+    let picture = browser.picture(false);
+    assert!(picture.starts_with(b"\x89PNG") && picture.len() > 60_000, "{} bytes", picture.len());
     if std::env::var_os("VPOST_UPDATE_DOCS").is_some() {
-        std::fs::copy(&picture, root().join("docs/img/viewer_light.png")).expect("docs/img");
+        std::fs::write(root().join("docs/img/viewer_light.png"), picture).expect("docs/img");
     }
+    browser.end();
 }

@@ -92,7 +92,7 @@ impl Outcome {
     pub fn text(&self) -> Text {
         let mut text = both!(
             "{} feed motions in, {} out\nbefore: the tool is up to {:8.3} um off its path (line {})\nafter:  the tool is up to {:8.3} um off its path (line {}), allowed are {:.3} um\n",
-            "рабочих ходов было {}, стало {}\nдо:    инструмент отходит от пути не больше чем на {:8.3} мкм (строка {})\nпосле: инструмент отходит от пути не больше чем на {:8.3} мкм (строка {}), допускается {:.3} мкм\n",
+            "рабочих ходов было {}, стало {}\nдо:    инструмент отходит от траектории не больше чем на {:8.3} мкм (строка {})\nпосле: инструмент отходит от траектории не больше чем на {:8.3} мкм (строка {}), допускается {:.3} мкм\n",
             self.feed_motions_in,
             self.feed_motions_out,
             self.deviation_before_um,

@@ -201,7 +201,7 @@ impl<'a> Summary<'a> {
         });
         both!(
             "{} blocks in, {} out, {} split; largest correction {:.1} um (line {}); path off by at most {:.1} um before, {:.2} um after{tilt}",
-            "кадров было {}, стало {}, разделено {}; наибольшая поправка {:.1} мкм (строка {}); отклонение пути не больше {:.1} мкм до, {:.2} мкм после{tilt:#}",
+            "кадров было {}, стало {}, разделено {}; наибольшая поправка {:.1} мкм (строка {}); отклонение от траектории не больше {:.1} мкм до, {:.2} мкм после{tilt:#}",
             figures.blocks_in,
             figures.blocks_out,
             figures.splits,

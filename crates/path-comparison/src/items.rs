@@ -126,8 +126,9 @@ pub(crate) struct Feeding {
     pub(crate) way: Option<Way>,
     /// Largest distance from its own path, mm: of a programmed motion run uncorrected.
     pub(crate) off_mm: f64,
-    /// Largest distance of what was made of it, mm.
+    /// Largest distance of what was made of it, mm, and the line that makes it.
     pub(crate) made_off_mm: f64,
+    pub(crate) made_line: Option<u64>,
     /// Where the tool was brought for it, where that is to be remembered.
     pub(crate) made: Vec<[f64; 3]>,
     /// The errors along it, where they are asked for.
@@ -141,6 +142,14 @@ pub(crate) struct Feeding {
 }
 
 impl Feeding {
+    /// So far from it is what a line makes of it.
+    pub(crate) fn note_made(&mut self, off_mm: f64, line: u64) {
+        if self.made_line.is_none() || off_mm > self.made_off_mm {
+            self.made_line = Some(line);
+        }
+        self.made_off_mm = self.made_off_mm.max(off_mm);
+    }
+
     pub(crate) fn start(&self) -> Place {
         self.stretches[0].at(0.0)
     }
@@ -429,6 +438,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             way: None,
             off_mm: 0.0,
             made_off_mm: 0.0,
+            made_line: None,
             made: Vec::new(),
             course: None,
             pointing: None,
@@ -678,6 +688,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             way: Some(way),
             off_mm,
             made_off_mm: 0.0,
+            made_line: None,
             made: Vec::new(),
             course,
             pointing: self.pointing.map(|pointing| (common.limit_mm, pointing)),

@@ -155,7 +155,8 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     /// A run of feeds, until one of the programs does something else; the real path begins at a place.
     fn follow(&mut self, at: &Place, begins: Begins) {
         if let Some(distance_mm) = self.alignment.begin(at, begins) {
-            self.note(0, distance_mm);
+            let line = self.commanded.feed(0).map_or(0, |feed| feed.line);
+            self.note(0, distance_mm, line);
         }
         self.time = if begins == Begins::Anywhere { Time::UNKNOWN } else { Time::default() };
         // The process of a piece of no length that was made last.
@@ -247,7 +248,7 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
                 Reached::OnTheWay => {}
                 Reached::At(ahead, distance_mm) => {
                     if !self.judge(stretch, ahead, line) {
-                        self.note(ahead, distance_mm);
+                        self.note(ahead, distance_mm, line);
                     }
                     self.remember(stretch, ahead);
                 }
@@ -270,11 +271,11 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
         self.reached = ahead;
     }
 
-    /// A distance from the feed so many ahead.
-    fn note(&mut self, ahead: usize, distance_mm: f64) {
+    /// A distance from the feed so many ahead, and the line that makes it.
+    fn note(&mut self, ahead: usize, distance_mm: f64, line: u64) {
         if let Some(feed) = self.alignment.wanted.feed(ahead) {
             // What is known of the programmed motion until it is dropped.
-            feed.made_off_mm = feed.made_off_mm.max(distance_mm);
+            feed.note_made(distance_mm, line);
         }
     }
 
@@ -291,7 +292,7 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
         let Some(feed) = self.alignment.wanted.feed(ahead) else { return false };
         let Some((limit_mm, pointing)) = feed.pointing else { return false };
         let (off_mm, leans_rad) = feed.off(&place, limit_mm, pointing.leans_rad);
-        feed.made_off_mm = feed.made_off_mm.max(off_mm);
+        feed.note_made(off_mm, line);
         feed.made_leans_rad = feed.made_leans_rad.max(leans_rad);
         let wanted_line = feed.line;
         if off_mm > limit_mm {
@@ -385,12 +386,13 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
         let Item::Feed(feed) = item else { return };
         let (minutes, way_mm) = feed.timed();
         let Feeding { line, way, off_mm: before_mm, made_off_mm: after_mm, made: made_mm, .. } = *feed;
+        let after_line = feed.made_line;
         self.result.leans_before.note(feed.leans_rad, line);
         self.result.leans_after.note(feed.made_leans_rad, line);
         self.result.before.note(before_mm, line);
         self.result.after.note(after_mm, line);
         if let (Traces::Kept | Traces::WithPlaces, Some(way)) = (self.traces, way) {
-            self.result.traces.push(Trace { line, way, before_mm, after_mm, made_mm });
+            self.result.traces.push(Trace { line, way, before_mm, after_mm, after_line, made_mm });
         }
         self.time.made = self.time.made.map(|made| made - minutes);
         self.time.made_mm -= way_mm;

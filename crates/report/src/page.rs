@@ -83,6 +83,15 @@ impl Page<'_> {
     }
 }
 
+/// A heading beside a cell: a short one stays on its line.
+fn unbroken(label: &str) -> String {
+    const SHORT: usize = 12;
+    if label.chars().count() > SHORT {
+        return label.to_owned();
+    }
+    label.replace('-', "\u{2011}").replace(' ', "\u{a0}")
+}
+
 /// Characters of the widest words of a row for which a telephone has room.
 const PHONE: usize = 42;
 
@@ -110,9 +119,10 @@ pub fn table(language: Language, header: &[&str], numbers: &[usize], rows: &[Vec
             table.wide[is_wide] role=[role("table")] {
                 thead role=[role("rowgroup")] {
                     tr role=[role("row")] {
-                        @for cell in header {
+                        @for (at, cell) in header.iter().enumerate() {
                             // Nothing is no heading: it would be read out as an empty one.
-                            @if cell.is_empty() { td role=[role("cell")] {} } @else { th scope="col" role=[role("columnheader")] { (cell) } }
+                            @if cell.is_empty() { td role=[role("cell")] {} }
+                            @else { th.n[numbers.contains(&at)] scope="col" role=[role("columnheader")] { (cell) } }
                         }
                     }
                 }
@@ -120,7 +130,7 @@ pub fn table(language: Language, header: &[&str], numbers: &[usize], rows: &[Vec
                     @for row in rows {
                         tr role=[role("row")] {
                             @for (at, cell) in row.iter().enumerate() {
-                                td.n[numbers.contains(&at)] role=[role("cell")] data-label=[header.get(at).filter(|_| is_wide)] { (shown(cell)) }
+                                td.n[numbers.contains(&at)] role=[role("cell")] data-label=[header.get(at).filter(|_| is_wide).map(|label| unbroken(label))] { (shown(cell)) }
                             }
                         }
                     }

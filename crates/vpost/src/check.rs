@@ -50,6 +50,7 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
             input: &wanted_name,
             output: &commanded_name,
             text: &measurement_files::utf8_or_1251(&wanted),
+            output_text: &measurement_files::utf8_or_1251(&commanded),
             machine: &settings.profile.name,
             profile: &settings.profile_name,
             profile_hash: &settings.profile_hash.to_string(),

@@ -197,7 +197,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("Interval whose directions make G and r01, from 0", "Интервал, по направлениям которого составлены G и r01, с 0"),
     ("Its step l of model time; 0.1 if not given", "Его шаг l модельного времени; если не задан, 0.1"),
     ("K of the astatic law of `kmtpp-published`; 1.5 if not given", "K астатического закона `kmtpp-published`; если не задан, 1.5"),
-    ("Largest path deviation, um", "Наибольшее отклонение пути, мкм"),
+    ("Largest path deviation, um", "Наибольшее отклонение от траектории, мкм"),
     ("Length of an H number, mm (repeatable)", "Длина по номеру H, мм (можно повторять)"),
     ("List or check dialect tables", "Перечислить или проверить таблицы диалектов"),
     ("Machine", "Станок"),

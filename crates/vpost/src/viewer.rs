@@ -24,7 +24,7 @@ const LONGEST: usize = 160;
 pub(crate) fn too_large(name: &str, refused: &TooLarge) -> Failure {
     let message = both!(
         "{name}: the path is too large for `--viewer`: left out what lies within {:.0} um, {} of its places remain, and a page holds {}",
-        "{name}: путь слишком велик для `--viewer`: если пропустить всё, что ближе {:.0} мкм, точек остаётся {}, а страница вмещает {}",
+        "{name}: траектория слишком велика для `--viewer`: если пропустить всё, что ближе {:.0} мкм, точек остаётся {}, а страница вмещает {}",
         refused.path_bound_um,
         refused.left,
         refused.most
@@ -48,7 +48,7 @@ pub(crate) fn no_path(name: &str, what: &Text, help: Text) -> Failure {
 /// Causes as the page knows them.
 pub(crate) fn causes(causes: Option<&Causes>) -> Vec<Cause> {
     let all = causes.map_or(&[][..], Causes::causes);
-    all.iter().map(|cause| Cause { kind: cause.kind, symbol: cause.symbol.clone() }).collect()
+    all.iter().map(|cause| Cause { kind: cause.kind, symbol: cause.symbol.clone(), russian: None }).collect()
 }
 
 /// Displacements of a place, µm: the whole, what is left after, and by each cause what is missing without it.

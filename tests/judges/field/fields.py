@@ -43,14 +43,9 @@ class Rigid:
             x = q[:, i : i + 1] * np.array(n, float) + six[:, :3] + np.einsum("nij,nj->ni", exp(six[:, 3:]), x)
         return 1e3 * (x - q - self.tool)
 
-    def tables(self, step):
+    def tables(self, nodes):
         """Nodes and rows of six, um and urad, for each axis: the profile of engine `rigid-body`."""
-        out = []
-        for i in range(3):
-            low, high = self.box[i]
-            nodes = np.linspace(low, high, int(round((high - low) / step)) + 1)
-            out.append((nodes, np.stack([f(nodes) for f in self.f[i]], axis=1)))
-        return out
+        return [(nodes[i], np.stack([f(nodes[i]) for f in self.f[i]], axis=1)) for i in range(3)]
 
 
 class Loose:

@@ -13,7 +13,7 @@ KINDS = {
     "loose-scattered": "the same of a field that no rigid body makes",
     "rigid-lattice": "a lattice of some 250, 1 um",
     "loose-lattice": "the same of a field that no rigid body makes",
-    "exact": "a lattice without noise, noise_um = 0: nodes are met, places between them nearly",
+    "exact": "a lattice without noise, noise_um = 0: nodes are met, and between them it is linear along each axis",
     "repeats": "80 places, each read three times",
     "nothing": "240 vectors of a machine without errors, 1 um",
 }

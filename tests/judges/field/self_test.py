@@ -24,6 +24,7 @@ SLIPS = [
     ("stiff", ["loose-lattice"], 1, ("unseen",)),
     ("swap", ["rigid-scattered"], 1, ("unseen",)),
     ("missed", ["exact"], 1, ("nodes",)),
+    ("curved", ["exact"], 1, ("between",)),
     ("extrapolates", ["rigid-lattice"], 1, ("outside",)),
     ("ends", ["loose-scattered"], 1, ("path",)),
     ("half", ["loose-scattered"], 1, ("path",)),

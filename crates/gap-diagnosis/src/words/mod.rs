@@ -1,6 +1,7 @@
 //! The answer in words.
 
 pub(crate) mod cause;
+pub(crate) mod name;
 pub(crate) mod notes;
 pub(crate) mod remedy;
 pub(crate) mod report;

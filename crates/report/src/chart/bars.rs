@@ -3,7 +3,7 @@
 use diagnostic::{Language, say};
 use maud::{Markup, html};
 
-use super::{WIDTH, line, rect, svg, text, ticks_below};
+use super::{WIDTH, line, name, rect, svg, text, ticks_below};
 use crate::scale::Scale;
 use crate::text::{Numbers, short};
 
@@ -78,7 +78,7 @@ pub fn waterfall(
             @let y = TOP + STEP * at as f64 + 0.5 * (STEP - BAR);
             @let before = if at == 0 { values[at] } else { values[at - 1] };
             @let (low, high) = (values[at].min(before), values[at].max(before));
-            (text(LEFT - 10.0, y + 11.0, "e", &short(&bar.label, 30)))
+            (name(LEFT - 10.0, y + 11.0, "e", &short(&bar.label, 30)))
             (rect(if at == 0 || values[at] > before { "gone" } else { "bar" }, (LEFT, y), scale.at(low) - LEFT, BAR))
             @if at > 0 {
                 (rect(if values[at] > before { "gone" } else { "faint" }, (scale.at(low), y), scale.at(high) - scale.at(low), BAR))
@@ -106,7 +106,7 @@ pub fn bars(language: Language, title: &str, all: &[Bar], unit: &str) -> Markup 
         (text(RIGHT + 8.0, bottom + 14.0, "m", unit))
         @for (at, bar) in all.iter().enumerate() {
             @let y = TOP + STEP * at as f64 + 0.5 * (STEP - BAR);
-            (text(LEFT - 10.0, y + 11.0, "e", &short(&bar.label, 30)))
+            (name(LEFT - 10.0, y + 11.0, "e", &short(&bar.label, 30)))
             (rect("bar", (LEFT, y), scale.at(finite(bar.value)) - LEFT, BAR))
             (text(scale.at(finite(bar.value)) + 6.0, y + 11.0, "", &language.number(bar.value)))
         }
@@ -133,7 +133,7 @@ pub fn ranges(language: Language, title: &str, all: &[Range]) -> Markup {
             @let y = TOP + STEP * at as f64 + 0.5 * (STEP - BAR);
             @let (low, high) = (scale.at(finite(range.low)), scale.at(finite(range.high)));
             @let middle = y + 0.5 * BAR;
-            (text(LEFT - 10.0, y + 11.0, if range.faint { "e m" } else { "e" }, &short(&range.label, 30)))
+            (name(LEFT - 10.0, y + 11.0, if range.faint { "e m" } else { "e" }, &short(&range.label, 30)))
             (rect(if range.faint { "faint" } else { "bar" }, (LEFT, y), low - LEFT, BAR))
             @if range.high > range.low {
                 (line("whisker", (low, middle), (high, middle)))

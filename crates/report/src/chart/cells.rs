@@ -3,6 +3,7 @@
 use diagnostic::{Language, say};
 use maud::{Markup, html};
 
+use super::amounts::{Amounts, shade};
 use super::{WIDTH, rect, right_and_up, svg, text};
 use crate::scale::{Scale, px};
 use crate::text::{Numbers, short};
@@ -35,24 +36,15 @@ pub struct Matrix {
     pub limit: f64,
 }
 
-/// Steps of lightness in the palette.
-pub(super) const SHADES: usize = 10;
 const PER_ROW: usize = 3;
 const SIDE: f64 = 168.0;
 
-pub(super) fn shade(value: f64, largest: f64) -> usize {
-    if largest <= 0.0 || !value.is_finite() {
-        return 0;
-    }
-    ((value / largest * SHADES as f64).floor().max(0.0) as usize).min(SHADES - 1)
-}
-
-/// Slices, three in a row, all on one scale from zero to `largest`.
+/// Slices, three in a row, all coloured alike.
 #[must_use]
-pub fn slices(language: Language, title: &str, all: &[Slice], largest: f64, unit: &str) -> Markup {
+pub fn slices(language: Language, title: &str, all: &[Slice], amounts: &Amounts<'_>) -> Markup {
     let step = (SIDE + 68.0, SIDE + 64.0);
     let place = |at: usize| (46.0 + step.0 * (at % PER_ROW) as f64, 22.0 + step.1 * (at / PER_ROW) as f64);
-    let largest_said = language.number(largest);
+    let largest = amounts.largest_said(language);
     let height = 22.0 + step.1 * all.len().div_ceil(PER_ROW) as f64;
     let body = html! {
         @for (at, slice) in all.iter().enumerate() {
@@ -65,27 +57,24 @@ pub fn slices(language: Language, title: &str, all: &[Slice], largest: f64, unit
                 @let column = (cell % slice.cells[0].max(1)) as f64;
                 @let row = (cell / slice.cells[0].max(1)) as f64;
                 @let corner = (left + column * size[0], top + SIDE - (row + 1.0) * size[1]);
-                @let class = value.map_or_else(|| "cell none".to_owned(), |v| format!("cell h{}", shade(v, largest)));
+                @let class = value.map_or_else(|| "cell none".to_owned(), |v| format!("cell {}", amounts.class(v)));
                 (rect(&class, corner, size[0], size[1]))
             }
             @for (value, label) in x.ticks(3, language) { (text(x.at(value), top + SIDE + 14.0, "m c", &label)) }
             @for (value, label) in y.ticks(3, language) { (text(left - 5.0, y.at(value) + 4.0, "m e", &label)) }
             (text(left + 0.5 * SIDE, top + SIDE + 28.0, "m c", &right_and_up(language, slice.axes)))
         }
-        @for k in 0..SHADES {
-            (rect(&format!("h{k}"), (46.0 + 24.0 * k as f64, height), 24.0, 10.0))
-        }
-        (text(46.0, height + 24.0, "m", "0"))
-        (text(46.0 + 24.0 * SHADES as f64, height + 24.0, "m e", &format!("{largest_said} {unit}")))
+        (amounts.key(language, (46.0, height)))
         @if all.iter().any(|slice| slice.values.iter().any(Option::is_none)) {
-            (rect("cell none", (330.0, height), 24.0, 10.0))
-            (text(360.0, height + 9.0, "m", &say!(language, "not measured", "не измерялось")))
+            @let behind = 46.0 + amounts.width() + 44.0;
+            (rect("cell none", (behind, height), 24.0, 10.0))
+            (text(behind + 30.0, height + 9.0, "m", &say!(language, "not measured", "не измерялось")))
         }
     };
     let described = say!(
         language,
-        "one scale for all slices, 0 to {largest_said} {unit}",
-        "общая шкала для всех сечений, от 0 до {largest_said} {unit}"
+        "one scale for all slices, 0 to {largest}",
+        "общая шкала для всех сечений, от 0 до {largest}"
     );
     svg(height + 30.0, title, &described, &body)
 }
@@ -93,19 +82,19 @@ pub fn slices(language: Language, title: &str, all: &[Slice], largest: f64, unit
 /// A table of likeness, darker where more alike.
 #[must_use]
 pub fn matrix(language: Language, title: &str, m: &Matrix) -> Markup {
-    const LEFT: f64 = 150.0;
-    const TOP: f64 = 110.0;
+    const LEFT: f64 = 176.0;
+    const TOP: f64 = 132.0;
     let width = ((WIDTH - LEFT - 70.0) / m.columns.len().max(1) as f64).min(46.0);
     let height = 24.0;
     let text_size = if width < 30.0 { "font-size:9px" } else { "font-size:11px" };
     let body = html! {
         @for (column, name) in m.columns.iter().enumerate() {
             @let x = LEFT + (column as f64 + 0.5) * width + 4.0;
-            text x=(px(x)) y=(px(TOP - 6.0)) transform={ "rotate(-55 " (px(x)) " " (px(TOP - 6.0)) ")" } { (short(name, 20)) }
+            text.long[name.chars().count() > 14] x=(px(x)) y=(px(TOP - 6.0)) transform={ "rotate(-55 " (px(x)) " " (px(TOP - 6.0)) ")" } { (short(name, 24)) }
         }
         @for (row, name) in m.rows.iter().enumerate() {
             @let y = TOP + row as f64 * height;
-            (text(LEFT - 8.0, y + 16.0, "e", &short(name, 20)))
+            (super::name(LEFT - 8.0, y + 16.0, "e", &short(name, 24)))
             @for column in 0..m.columns.len() {
                 @let x = LEFT + column as f64 * width;
                 @match m.values.get(row * m.columns.len() + column).copied().flatten() {

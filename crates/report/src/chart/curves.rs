@@ -120,7 +120,7 @@ pub fn histogram(
     title: &str,
     h: &Histogram,
     limit: Option<(f64, &str)>,
-    label: &str,
+    [label, counted]: [&str; 2],
     unit: &str,
 ) -> Markup {
     let (top, bottom) = (36.0, 226.0);
@@ -133,6 +133,7 @@ pub fn histogram(
     });
     let body = html! {
         (before_and_after(language, LEFT))
+        (text(LEFT - 5.0, top - 8.0, "m e", counted))
         (rect("frame", (LEFT, top), RIGHT - LEFT, bottom - top))
         (ticks_left(language, &y, 5, LEFT, RIGHT))
         (ticks_below(language, &x, 10, top, bottom))

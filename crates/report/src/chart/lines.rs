@@ -3,7 +3,9 @@
 use diagnostic::{Language, say};
 use maud::{Markup, html};
 
-use super::{WIDTH, before_and_after, line, rect, right_and_up, svg, text, ticks_below, ticks_left};
+use super::{
+    WIDTH, before_and_after, line, rect, right_and_up, svg, text, ticks_below, ticks_left, with_head,
+};
 use crate::scale::{Scale, px};
 use crate::text::Numbers;
 
@@ -69,7 +71,7 @@ fn strokes(view: &View, x: &Scale, y: &Scale, which: impl Fn(&Arrow) -> (f64, f6
         let end = (arrow.at.0 + right, arrow.at.1 + up);
         if end.0.is_finite() && end.1.is_finite() {
             let (from, to) = ((x.at(arrow.at.0), y.at(arrow.at.1)), (x.at(end.0), y.at(end.1)));
-            path.push_str(&format!("M{} {}L{} {}", px(from.0), px(from.1), px(to.0), px(to.1)));
+            path.push_str(&with_head(from, to));
         }
     }
     path

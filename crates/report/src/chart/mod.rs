@@ -3,6 +3,7 @@
 //! Each takes numbers and texts and gives an `svg` element that says what it shows (`title`, `desc`) and takes its colours
 //! from the page's styles.
 
+mod amounts;
 mod bands;
 mod bars;
 mod cells;
@@ -16,6 +17,7 @@ pub mod solid;
 use diagnostic::{Language, say};
 use maud::{Markup, html};
 
+pub use amounts::Amounts;
 pub use bands::{Band, Bands, bands};
 pub use bars::{Bar, Interval, Range, bars, interval, ranges, waterfall};
 pub use cells::{Matrix, Slice, matrix, slices};
@@ -58,6 +60,33 @@ fn narrow((width, height): (f64, f64), title: &str, description: &str, body: &Ma
 
 fn text(x: f64, y: f64, class: &str, words: &str) -> Markup {
     html! { text x=(px(x)) y=(px(y)) class=(class) { (shown(words)) } }
+}
+
+/// A name left of a bar or a row. A telephone writes larger, but for long ones, for which there is no room.
+fn name(x: f64, y: f64, class: &str, words: &str) -> Markup {
+    const SHORT: usize = 18;
+    let is_long = words.chars().count() > SHORT;
+    text(x, y, &format!("{class}{}", if is_long { " long" } else { "" }), words)
+}
+
+/// A line with a head, where it is long enough for one to be seen.
+fn with_head((x1, y1): (f64, f64), (x2, y2): (f64, f64)) -> String {
+    /// Length of a head, and half its width as a part of that, drawing units.
+    const HEAD: f64 = 5.0;
+    const HALF: f64 = 0.45;
+    /// Shorter lines are a direction without a head.
+    const SHORTEST: f64 = 3.0;
+    let mut path = format!("M{} {}L{} {}", px(x1), px(y1), px(x2), px(y2));
+    let (dx, dy) = (x2 - x1, y2 - y1);
+    let length = (dx * dx + dy * dy).sqrt();
+    if length > SHORTEST {
+        let head = HEAD.min(0.6 * length) / length;
+        let (back, aside) = ((dx * head, dy * head), (-dy * head * HALF, dx * head * HALF));
+        let side = |way: f64| (px(x2 - back.0 + way * aside.0), px(y2 - back.1 + way * aside.1));
+        let (left, right) = (side(1.0), side(-1.0));
+        path.push_str(&format!("M{} {}L{} {}L{} {}", left.0, left.1, px(x2), px(y2), right.0, right.1));
+    }
+    path
 }
 
 fn line(class: &str, (x1, y1): (f64, f64), (x2, y2): (f64, f64)) -> Markup {
@@ -123,6 +152,12 @@ mod tests {
         let drawing = waterfall(Language::English, hostile, &[bar.clone(), bar], Some((0.5, hostile)), "um")
             .into_string();
         assert!(!drawing.contains("<script") && drawing.contains("&lt;script&gt;"), "{drawing}");
+    }
+
+    #[test]
+    fn arrows_have_a_head_where_it_is_seen() {
+        assert_eq!(with_head((0.0, 0.0), (2.0, 0.0)), "M0 0L2 0");
+        assert_eq!(with_head((0.0, 0.0), (20.0, 0.0)), "M0 0L20 0M15 2.3L20 0L15 -2.3");
     }
 
     #[test]

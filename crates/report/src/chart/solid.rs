@@ -3,8 +3,9 @@
 use diagnostic::{Language, say};
 use maud::{Markup, html};
 
-use super::{WIDTH, before_and_after, cells, legend, line, svg, text};
-use crate::scale::px;
+use super::amounts::{Amounts, shade};
+use super::{WIDTH, before_and_after, legend, line, svg, text, with_head};
+use crate::scale::{Scale, px};
 use crate::text::Numbers;
 
 /// A box that is drawn from a corner, X to the lower right, Y to the upper right, Z up.
@@ -56,6 +57,7 @@ struct Placed {
     scale: f64,
     shift: (f64, f64),
     bottom: f64,
+    right: f64,
 }
 
 impl Solid {
@@ -72,7 +74,8 @@ impl Solid {
         let height = size.1 * scale * (1.0 + 2.0 * room);
         let middle = (0.5 * (left + right), 0.5 * (low + high));
         let shift = (0.5 * WIDTH - middle.0 * scale, TOP + 0.5 * height + middle.1 * scale);
-        Placed { solid: self, scale, shift, bottom: TOP + height }
+        let right = shift.0 + right * scale;
+        Placed { solid: self, scale, shift, bottom: TOP + height, right }
     }
 
     /// Corner number `k`, an axis per bit.
@@ -85,6 +88,24 @@ impl Solid {
 fn flat([x, y, z]: [f64; 3]) -> (f64, f64) {
     ((x + y) * COS, (y - x) * 0.5 + z)
 }
+
+/// An edge of the box along which an axis has its numbers.
+struct Edge {
+    axis: usize,
+    /// Corners.
+    from: usize,
+    to: usize,
+    /// The way outwards.
+    out: (f64, f64),
+    class: &'static str,
+}
+
+/// X along the lower left edge, Y along the lower right one, Z at the right.
+const EDGES: [Edge; 3] = [
+    Edge { axis: 0, from: 0b000, to: 0b001, out: (-0.6, 0.8), class: "m e halo" },
+    Edge { axis: 1, from: 0b001, to: 0b011, out: (0.6, 0.8), class: "m halo" },
+    Edge { axis: 2, from: 0b011, to: 0b111, out: (1.0, 0.0), class: "m halo" },
+];
 
 impl Placed {
     fn at(&self, place: [f64; 3]) -> (f64, f64) {
@@ -108,51 +129,37 @@ impl Placed {
         }
     }
 
-    /// Names and ends of the axes along the edges that the eye meets first.
-    fn labels(&self, language: Language) -> Markup {
-        let corner = |k: usize| self.solid.corner(k);
-        // X along the lower left edge, Y along the lower right one, Z at the right.
-        let edges =
-            [(0, 0b000, 0b001, -14.0, 16.0), (1, 0b001, 0b011, 12.0, 16.0), (2, 0b011, 0b111, 10.0, 4.0)];
+    /// Names and ticks of the axes along the edges that the eye meets first.
+    ///
+    /// * `away` – how far what is drawn reaches out of the box, drawing units
+    fn labels(&self, language: Language, away: f64) -> Markup {
         html! {
-            @for (axis, from, to, right, down) in edges {
-                @let (low, high) = self.solid.ranges[axis];
-                @let class = if axis == 0 { "m e halo" } else { "m halo" };
-                @let (a, b) = (self.at(corner(from)), self.at(corner(to)));
-                @for (value, share) in [(low, 0.1), (high, 0.9)] {
-                    @let here = (a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1));
-                    (text(here.0 + right, here.1 + down, class, &language.digits(value, 0)))
+            @for Edge { axis, from, to, out, class } in EDGES {
+                @let (a, b) = (self.at(self.solid.corner(from)), self.at(self.solid.corner(to)));
+                @let here = |share: f64, far: f64| (a.0 + share * (b.0 - a.0) + far * out.0, a.1 + share * (b.1 - a.1) + far * out.1);
+                @for (value, label) in Scale::new(self.solid.ranges[axis], (0.0, 1.0)).ticks(4, language) {
+                    @let share = Scale::new(self.solid.ranges[axis], (0.0, 1.0)).at(value);
+                    @let away = if axis == 2 { away } else { 0.0 };
+                    @let place = here(share, away + 9.0);
+                    (line("zero", here(share, 0.0), here(share, 5.0)))
+                    (text(place.0, place.1 + if axis == 2 { 4.0 } else { 8.0 }, class, &label))
                 }
-                (text(0.5 * (a.0 + b.0) + 1.4 * right, 0.5 * (a.1 + b.1) + 1.2 * down, if axis == 0 { "e halo" } else { "halo" },
+                // Z has its name above its end: beside the numbers there is no room.
+                @let place = if axis == 2 { (b.0 + 9.0, b.1 - 14.0) } else { here(0.5, 44.0) };
+                (text(place.0, place.1 + 4.0, if axis == 0 { "e halo" } else { "halo" },
                     &format!("{}, {}", ["X", "Y", "Z"][axis], say!(language, "mm", "мм"))))
             }
         }
     }
 }
 
-/// Colours of the amounts, below a drawing.
-fn key(language: Language, y: f64, largest: f64, unit: &str) -> Markup {
-    html! {
-        @for k in 0..cells::SHADES {
-            (super::rect(&format!("h{k}"), (LEFT + 24.0 * k as f64, y), 24.0, 10.0))
-        }
-        (text(LEFT, y + 24.0, "m", "0"))
-        (text(LEFT + 24.0 * cells::SHADES as f64, y + 24.0, "m e", &format!("{} {unit}", language.number(largest))))
-    }
-}
-
 const LEFT: f64 = 46.0;
+/// Numbers stand no farther from the box.
+const FARTHEST: f64 = 40.0;
 
-/// Places coloured by an amount, from zero to `largest`, the near ones over the far ones.
+/// Places coloured by an amount, the near ones over the far ones.
 #[must_use]
-pub fn spots(
-    language: Language,
-    title: &str,
-    solid: Solid,
-    all: &[Spot],
-    largest: f64,
-    unit: &str,
-) -> Markup {
+pub fn spots(language: Language, title: &str, solid: Solid, all: &[Spot], amounts: &Amounts<'_>) -> Markup {
     let placed = solid.placed(0.04);
     let mut order: Vec<&Spot> = all.iter().collect();
     let depth = |s: &Spot| s.at[0] - s.at[1] + s.at[2];
@@ -161,18 +168,15 @@ pub fn spots(
         (placed.edges(false))
         @for spot in order {
             @let (x, y) = placed.at(spot.at);
-            circle class={ "spot h" (cells::shade(spot.value, largest)) } cx=(px(x)) cy=(px(y)) r="3.4" {}
+            circle class={ "spot " (amounts.class(spot.value)) } cx=(px(x)) cy=(px(y)) r="3.4" {}
         }
         (placed.edges(true))
-        (placed.labels(language))
-        (key(language, placed.bottom + 34.0, largest, unit))
+        (placed.labels(language, 0.0))
+        (amounts.key(language, (LEFT, placed.bottom + 34.0)))
     };
-    let (count, to) = (all.len(), language.number(largest));
-    let described = say!(
-        language,
-        "{count} places coloured from 0 to {to} {unit}",
-        "точек: {count}, цвет от 0 до {to} {unit}"
-    );
+    let (count, to) = (all.len(), amounts.largest_said(language));
+    let described =
+        say!(language, "{count} places coloured from 0 to {to}", "точек: {count}, цвет от 0 до {to}");
     svg(placed.bottom + 66.0, title, &described, &body)
 }
 
@@ -187,13 +191,17 @@ pub fn displacements(
 ) -> Markup {
     let placed = solid.placed(0.12);
     let times = language.number(magnification);
+    // To the right, where numbers stand.
+    let right = |d: &Displacement, by: [f64; 3]| {
+        flat(by).0.max(0.0) * placed.scale - (placed.right - placed.at(d.at).0)
+    };
+    let out =
+        all.iter().flat_map(|d| [right(d, d.before), right(d, d.after)]).fold(0.0, f64::max).min(FARTHEST);
     let strokes = |which: fn(&Displacement) -> [f64; 3]| {
-        all.iter().fold(String::new(), |mut path, d| {
+        all.iter().fold(String::new(), |path, d| {
             let by = which(d);
             let end = [0, 1, 2].map(|axis| d.at[axis] + by[axis]);
-            let (from, to) = (placed.at(d.at), placed.at(end));
-            path.push_str(&format!("M{} {}L{} {}", px(from.0), px(from.1), px(to.0), px(to.1)));
-            path
+            path + &with_head(placed.at(d.at), placed.at(end))
         })
     };
     let feet = all.iter().fold(String::new(), |mut path, d| {
@@ -209,7 +217,7 @@ pub fn displacements(
         path class="line s0" style="stroke-width:2" d=(strokes(|d| d.after)) {}
         path class="dots s3" style="stroke-width:2" d=(feet) {}
         (placed.edges(true))
-        (placed.labels(language))
+        (placed.labels(language, out))
     };
     let count = all.len();
     let described = say!(
@@ -220,15 +228,15 @@ pub fn displacements(
     svg(placed.bottom + 40.0, title, &described, &body)
 }
 
-/// A path coloured by an amount, stretch by stretch.
+/// A path coloured by an amount, stretch by stretch, and where it begins.
 #[must_use]
 pub fn path(
     language: Language,
     title: &str,
     solid: Solid,
     all: &[Stretch],
-    largest: f64,
-    unit: &str,
+    start: Option<[f64; 3]>,
+    amounts: &Amounts<'_>,
 ) -> Markup {
     let placed = solid.placed(0.04);
     let body = html! {
@@ -237,17 +245,21 @@ pub fn path(
         // Below the colours, so that dark ones are seen in the dark and bright ones in the light.
         path class="casing" d=(all.iter().map(|s| way(&placed, &s.places)).collect::<String>()) {}
         @for stretch in all {
-            path class={ "path v" (cells::shade(stretch.value, largest)) } d=(way(&placed, &stretch.places)) {}
+            path class={ "path v" (shade(stretch.value, amounts.largest)) } d=(way(&placed, &stretch.places)) {}
         }
-        (placed.labels(language))
-        (key(language, placed.bottom + 34.0, largest, unit))
+        @if let Some(start) = start {
+            @let (x, y) = placed.at(start);
+            circle class="start" cx=(px(x)) cy=(px(y)) r="5" {}
+            // Towards the middle: beside the box stand the names of its axes.
+            @let (aside, class) = if x > 0.5 * WIDTH { (-9.0, "e halo") } else { (9.0, "halo") };
+            (text(x + aside, y - 7.0, class, &say!(language, "start", "начало")))
+        }
+        (placed.labels(language, 0.0))
+        (amounts.key(language, (LEFT, placed.bottom + 34.0)))
     };
-    let (count, to) = (all.len(), language.number(largest));
-    let described = say!(
-        language,
-        "{count} stretches coloured from 0 to {to} {unit}",
-        "участков: {count}, цвет от 0 до {to} {unit}"
-    );
+    let (count, to) = (all.len(), amounts.largest_said(language));
+    let described =
+        say!(language, "{count} stretches coloured from 0 to {to}", "участков: {count}, цвет от 0 до {to}");
     svg(placed.bottom + 66.0, title, &described, &body)
 }
 
@@ -274,7 +286,7 @@ pub fn ways(language: Language, title: &str, solid: Solid, all: &[Way]) -> Marku
         @for one in all {
             path class={ "path " (one.class.1) } d=(one.pieces.iter().map(|piece| way(&placed, piece)).collect::<String>()) {}
         }
-        (placed.labels(language))
+        (placed.labels(language, 0.0))
     };
     let described: Vec<&str> = names.iter().map(|(_, words)| *words).collect();
     svg(placed.bottom + 40.0, title, &described.join(", "), &body)

@@ -150,9 +150,9 @@ impl Viewer<'_> {
                         @for id in ["x", "x0", "x1", "y", "y0", "y1", "z", "z0", "z1"] { text id=(id) {} }
                         path #whole {}
                         g #arms {}
-                        circle #foot r="3.5" {}
-                        circle #left r="5" {}
-                        circle #tip r="7" {}
+                        circle #foot r="3.5" visibility="hidden" {}
+                        circle #left r="5" visibility="hidden" {}
+                        circle #tip r="7" visibility="hidden" {}
                     }
                 }
                 div.corner.views role="group" data-label="views" aria-label=(word("views", language)) {
@@ -356,10 +356,13 @@ impl Viewer<'_> {
                         .causes
                         .iter()
                         .map(|cause| {
-                            object(vec![
+                            let mut entries = vec![
                                 ("kind", json_string(cause.kind)),
                                 ("symbol", json_string(&shown(&cause.symbol))),
-                            ])
+                            ];
+                            entries
+                                .extend(cause.russian.as_ref().map(|name| ("ru", json_string(&shown(name)))));
+                            object(entries)
                         })
                         .collect(),
                 ),

@@ -36,6 +36,8 @@ pub struct Cause {
     pub kind: &'static str,
     /// Which one, as in the profile: `EC0Y`, `X`, `thermal.X`.
     pub symbol: String,
+    /// The same in Russian, where it is another word.
+    pub russian: Option<String>,
 }
 
 /// Places in the order of the program, with what was left out of them.

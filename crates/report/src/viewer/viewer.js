@@ -1,7 +1,6 @@
 'use strict';
 // A path in space, its error magnified. Everything that is drawn stands in the page: #data (JSON) and #places (numbers).
-(() => {
-  const started = performance.now();
+(async () => {
   const $ = id => document.getElementById(id);
   const data = JSON.parse($('data').textContent);
   const root = document.documentElement;
@@ -157,10 +156,7 @@
     return all;
   });
   const before = vectors(Float32Array, data.displaced_um), after = vectors(Float32Array, data.displaced_um);
-  const causes = data.causes.map((cause, index) => ({ ...cause, index, on: true, by: vectors(Float32Array, data.displaced_um) }));
   const real = Float32Array.from(before); // by the causes that are switched on
-  const blocks = new Map();
-  data.lines.reduce((sum, step, k) => (blocks.set(sum + step, data.blocks[k]), sum + step), 0);
 
   const norm = (x, y, z) => Math.sqrt(x * x + y * y + z * z); // Math.hypot is many times slower
   const size = (v, i) => norm(v[3 * i], v[3 * i + 1], v[3 * i + 2]);
@@ -170,22 +166,14 @@
     return at;
   };
   const largest = v => size(v, worst(v));
-  const largestAfter = largest(after);
   let largestReal = largest(real);
   const scaleUm = largestReal || 1;
-  for (const cause of causes) cause.largest = largest(cause.by);
-  causes.sort((a, b) => b.largest - a.largest);
 
-  // The box, its middle, and how far the path is along at each place (only where something leads there).
+  // The box and its middle.
   const low = [0, 1, 2].map(a => { let m = Infinity; for (let i = 0; i < n; i++) m = Math.min(m, at[3 * i + a]); return m; });
   const high = [0, 1, 2].map(a => { let m = -Infinity; for (let i = 0; i < n; i++) m = Math.max(m, at[3 * i + a]); return m; });
   const middle = low.map((v, a) => (v + high[a]) / 2);
   const reach = Math.hypot(...low.map((v, a) => high[a] - v)) / 2 || 1;
-  const along = new Float64Array(n);
-  for (let i = 1; i < n; i++) {
-    const step = begins[i] ? 0 : norm(at[3 * i] - at[3 * i - 3], at[3 * i + 1] - at[3 * i - 2], at[3 * i + 2] - at[3 * i - 1]);
-    along[i] = along[i - 1] + step;
-  }
 
   // ---------------------------------------------------------------- state
   const VIEWS = { corner: [45, 35.264], top: [0, 90], front: [0, 0], side: [90, 0] };
@@ -221,6 +209,76 @@
     state.target = [0, 0, 0];
     state.zoom = Math.min((width / 2 - 40) / (half[0] || 1), (height / 2 - 34) / (half[1] || 1));
   };
+
+  /** A drawing of fewer places, which the graphics process has no part in. */
+  const sketched = most => {
+    const step = Math.max(1, Math.ceil(n / most)), few = [];
+    for (let i = 0, k = 0; i < n; i++, k++) {
+      if (begins[i] || i === n - 1 || begins[i + 1]) k = 0;
+      if (k % step === 0) few.push(i);
+    }
+    const paths = ['real', 'corrected', 'commanded'].map(name => {
+      const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
+      path.setAttribute('class', 'way ' + name);
+      overlay.prepend(path);
+      return [name, path];
+    });
+    return {
+      changed() {},
+      remove() { for (const [, path] of paths) path.remove(); },
+      draw(axes) {
+        for (const [name, path] of paths) {
+          const shift = name === 'real' ? real : name === 'corrected' ? after : null;
+          let d = '', open = false;
+          if (state.shown[name]) for (const i of few) {
+            if (state.cut && i > state.here) break;
+            const lost = name === 'corrected' && unknown[i];
+            const [x, y] = project(axes, i, shift, magnified());
+            if (!lost) d += (begins[i] || !open ? 'M' : 'L') + x.toFixed(1) + ' ' + y.toFixed(1);
+            open = !lost;
+          }
+          path.setAttribute('d', d);
+        }
+      },
+    };
+  };
+  /** True where the drawing has another size than it had. */
+  const resized = () => {
+    const bounds = view.getBoundingClientRect();
+    if (bounds.width === width && bounds.height === height) return false;
+    [width, height] = [Math.max(1, bounds.width), Math.max(1, bounds.height)];
+    overlay.setAttribute('viewBox', '0 0 ' + width + ' ' + height);
+    return true;
+  };
+
+  // ---------------------------------------------------------------- the first frame
+  // Of few places, before the rest of the numbers is read: the graphics process is still making its shaders ready, and a
+  // canvas that it draws to would keep every frame waiting.
+  root.classList.add('live');
+  canvas.hidden = true;
+  if (!calm.matches) state.grown = 0; // The error grows to its magnified size, once.
+  resized();
+  fit();
+  let preview = sketched(1500);
+  preview.draw(turn());
+  const frame = () => new Promise(done => requestAnimationFrame(done));
+  await frame();
+  await frame(); // That one has been shown.
+  root.dataset.drawn = Math.round(performance.now());
+
+  // ---------------------------------------------------------------- the rest of the numbers
+  const causes = data.causes.map((cause, index) => ({ ...cause, index, on: true, by: vectors(Float32Array, data.displaced_um) }));
+  const blocks = new Map();
+  data.lines.reduce((sum, step, k) => (blocks.set(sum + step, data.blocks[k]), sum + step), 0);
+  const largestAfter = largest(after);
+  for (const cause of causes) cause.largest = largest(cause.by);
+  causes.sort((a, b) => b.largest - a.largest);
+  // How far the path is along at each place (only where something leads there).
+  const along = new Float64Array(n);
+  for (let i = 1; i < n; i++) {
+    const step = begins[i] ? 0 : norm(at[3 * i] - at[3 * i - 3], at[3 * i + 1] - at[3 * i - 2], at[3 * i + 2] - at[3 * i - 1]);
+    along[i] = along[i - 1] + step;
+  }
 
   // ---------------------------------------------------------------- drawing
   const colour = name => getComputedStyle(root).getPropertyValue('--' + name).trim();
@@ -335,34 +393,8 @@
     };
   })();
 
-  /** The same as a drawing of fewer places, where there is no WebGL. */
-  const sketch = gl ? null : (() => {
-    const MOST = 4000, step = Math.max(1, Math.ceil(n / MOST)), few = [];
-    for (let i = 0, k = 0; i < n; i++, k++) {
-      if (begins[i] || i === n - 1 || begins[i + 1]) k = 0;
-      if (k % step === 0) few.push(i);
-    }
-    const paths = ['real', 'corrected', 'commanded'].map(name => {
-      const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
-      path.setAttribute('class', 'way ' + name);
-      overlay.prepend(path);
-      return [name, path];
-    });
-    return { changed() {}, draw(axes) {
-      for (const [name, path] of paths) {
-        const shift = name === 'real' ? real : name === 'corrected' ? after : null;
-        let d = '', open = false;
-        if (state.shown[name]) for (const i of few) {
-          if (state.cut && i > state.here) break;
-          const lost = name === 'corrected' && unknown[i];
-          const [x, y] = project(axes, i, shift, magnified());
-          if (!lost) d += (begins[i] || !open ? 'M' : 'L') + x.toFixed(1) + ' ' + y.toFixed(1);
-          open = !lost;
-        }
-        path.setAttribute('d', d);
-      }
-    } };
-  })();
+  // Without WebGL it stays.
+  const sketch = gl ? null : sketched(4000);
 
   const put = (id, attributes) => { for (const name in attributes) $(id).setAttribute(name, attributes[name]); };
   /** Names along the box, the place that is looked at, and what makes its displacement, as a chain. */
@@ -381,8 +413,8 @@
     });
     const i = state.here, by = magnified();
     const foot = project(axes, i), tip = project(axes, i, real, by);
-    put('foot', { cx: foot[0], cy: foot[1] });
-    put('tip', { cx: tip[0], cy: tip[1] });
+    put('foot', { cx: foot[0], cy: foot[1], visibility: 'visible' });
+    put('tip', { cx: tip[0], cy: tip[1], visibility: 'visible' });
     const left = project(axes, i, after, by);
     put('left', { cx: left[0], cy: left[1], visibility: state.shown.corrected && !unknown[i] ? 'visible' : 'hidden' });
     let from = [foot[0], foot[1]];
@@ -395,7 +427,8 @@
     put('whole', { d: 'M' + foot[0].toFixed(1) + ' ' + foot[1].toFixed(1) + 'L' + tip[0].toFixed(1) + ' ' + tip[1].toFixed(1) });
   };
 
-  /** Says how many ms the frame took that is being drawn. `data-drawn`, of the first since the script began, is for tests. */
+  /** Says how many ms the frame took that is being drawn. `data-drawn`, when the first was shown, and `data-whole`, when the
+   * first with all places was, in ms since the page was asked for, are for tests. */
   const finished = say => {
     const begun = performance.now(), note = () => say(performance.now() - begun);
     if (!gl) return note();
@@ -420,9 +453,14 @@
       if (slow && still) finished(took => { slow = took > QUICK_MS; });
       (painter || sketch).draw(axes, quick);
       mark(axes);
-      if (root.dataset.drawn === undefined) {
-        root.dataset.drawn = '';
-        finished(() => { root.dataset.drawn = Math.round(performance.now() - started); });
+      if (preview) {
+        const first = preview;
+        preview = null;
+        canvas.hidden = false;
+        finished(() => {
+          first.remove();
+          root.dataset.whole = Math.round(performance.now());
+        });
       }
       clearTimeout(resting);
       if (quick) resting = setTimeout(() => { still = true; ask(); }, REST_MS);
@@ -466,7 +504,7 @@
   };
 
   // ---------------------------------------------------------------- what is said
-  const name = cause => say('cause_' + cause.kind, { symbol: cause.symbol });
+  const name = cause => say('cause_' + cause.kind, { symbol: cause[language] ?? cause.symbol });
   const triple = (v, i, show) => [0, 1, 2].map(a => show(v[3 * i + a]));
   let spoken = 0;
   const look = (i, quiet) => {
@@ -690,18 +728,7 @@
   calm.addEventListener('change', () => { if (calm.matches) { swing(false); play(false); } });
 
   // ---------------------------------------------------------------- begin
-  root.classList.add('live');
-  const measure = () => {
-    const first = width === 1, bounds = view.getBoundingClientRect();
-    if (bounds.width === width && bounds.height === height) return;
-    [width, height] = [Math.max(1, bounds.width), Math.max(1, bounds.height)];
-    overlay.setAttribute('viewBox', '0 0 ' + width + ' ' + height);
-    if (first) fit();
-    draw();
-  };
   translate();
-  measure();
-  new ResizeObserver(measure).observe(view);
-  if (!calm.matches) state.grown = 0; // The error grows to its magnified size, once.
   draw();
+  new ResizeObserver(() => resized() && draw()).observe(view);
 })();

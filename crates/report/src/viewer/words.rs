@@ -17,7 +17,7 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     (
         "head_check",
         "As posted the tool leaves its path by up to {before} µm, as corrected by up to {after} µm; allowed are {limit} µm",
-        "По исходной программе инструмент уходит от пути до {before} мкм, по исправленной — до {after} мкм; допустимо {limit} мкм",
+        "По исходной программе инструмент отходит от траектории до {before} мкм, по исправленной — до {after} мкм; допустимо {limit} мкм",
     ),
     (
         "head_map",
@@ -45,7 +45,7 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     (
         "view",
         "The path in space. Arrow keys turn it, with Shift they move it, plus and minus zoom; comma and full stop go from block to block.",
-        "Путь в пространстве. Стрелки поворачивают, с Shift — сдвигают, плюс и минус — масштаб; запятая и точка — предыдущий и следующий кадр.",
+        "Траектория в пространстве. Стрелки поворачивают её, с Shift — сдвигают, плюс и минус — масштаб; запятая и точка — предыдущий и следующий кадр.",
     ),
     ("commanded_check", "programmed", "по программе"),
     ("real_check", "real, as posted", "на самом деле, исходная"),
@@ -83,7 +83,7 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     (
         "off_check",
         "This motion leaves its path by up to {before} µm as posted, {after} µm as corrected.",
-        "Это движение уходит от пути до {before} мкм по исходной программе, до {after} мкм по исправленной.",
+        "Это движение отходит от траектории до {before} мкм по исходной программе, до {after} мкм по исправленной.",
     ),
     ("off_map", "", ""),
     ("off_diagnosis", "", ""),
@@ -100,7 +100,7 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     (
         "causes_how",
         "Switched off, a cause no longer displaces the real path. Numbers are of the place that is looked at, µm; a minus, and an empty bar, acts against the whole.",
-        "Выключенная причина больше не смещает действительный путь. Числа — для выбранного места, мкм; минус и пустая полоса — действует против целого.",
+        "Выключенная причина больше не смещает действительную траекторию. Числа — для выбранного места, мкм; минус и пустая полоса — действует против целого.",
     ),
     ("all", "All", "Все"),
     ("none", "None", "Ни одной"),

@@ -14,7 +14,7 @@ pub(super) fn of(comparison: &Comparison, numbers: &Numbers) -> Vec<Text> {
     if comparison.more_mismatches > 0 {
         findings.push(both!(
             "and {} more of the path",
-            "и ещё отклонения пути: {}",
+            "и ещё отклонения от траектории: {}",
             comparison.more_mismatches
         ));
     }
@@ -28,7 +28,7 @@ fn sentences(mismatch: &Mismatch, numbers: &Numbers, said: &mut Vec<[Text; 2]>) 
         What::TooFar(mm) => {
             both!(
                 "line {made} of the corrected program is {:.3} um off the path of line {wanted}",
-                "строка {made} исправленной программы отходит от пути строки {wanted} на {:.3} мкм",
+                "строка {made} исправленной программы отходит от траектории строки {wanted} на {:.3} мкм",
                 mm * 1e3
             )
         }

@@ -69,7 +69,7 @@ pub(crate) fn table(results: &Results, language: Language) -> String {
     if let (Some(before), Some(after)) = (before.reduce(f64::max), after.reduce(f64::max)) {
         say(&both!(
             "paths off by at most {before:.1} um before, {after:.2} um after\n",
-            "отклонение пути не больше {before:.1} мкм до, {after:.2} мкм после\n"
+            "отклонение от траектории не больше {before:.1} мкм до, {after:.2} мкм после\n"
         ));
     }
     say(&causes::causes(&REFUSED, records));

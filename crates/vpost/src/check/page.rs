@@ -3,16 +3,18 @@
 use diagnostic::{Language, Text, say};
 use maud::{Markup, html};
 use path_comparison::{Comparison, Trace, Way};
+use report::chart::Amounts;
 use report::chart::solid::{Solid, Stretch, path};
 use report::page::{Page, Section, figure, table};
 use report::text::{MICROMETRES, Numbers, shown};
 
 /// What the page is made of.
 pub(super) struct Facts<'a> {
-    /// Names of the programs, and the text of the one as posted.
+    /// Names of the programs, and their texts.
     pub input: &'a str,
     pub output: &'a str,
     pub text: &'a str,
+    pub output_text: &'a str,
     pub machine: &'a str,
     pub profile: &'a str,
     pub profile_hash: &'a str,
@@ -162,7 +164,9 @@ fn paths(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Mark
     let both = (comparison.before.largest_mm * 1e3).max(left);
     let drawing = |title: &str, value: fn(&Trace) -> f64, largest: f64| {
         let all = stretches(&comparison.traces, value, largest);
-        path(language, title, solid, &all, largest, MICROMETRES.in_language(language))
+        let start = comparison.traces.first().map(|first| first.way.at(0.0).into());
+        let amounts = Amounts { largest, within: None, unit: MICROMETRES.in_language(language) };
+        path(language, title, solid, &all, start, &amounts)
     };
     let posted = say!(language, "Tool path as posted", "Траектория по исходной программе");
     let posted_caption = say!(
@@ -258,12 +262,13 @@ fn stretches_apart(traces: &[Trace], value: fn(&Trace) -> f64, largest: f64, apa
 }
 
 fn worst(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Markup {
-    let lines: Vec<&str> = facts.text.lines().collect();
-    let list = |of: fn(&(f64, f64)) -> f64| {
+    let list = |text: &str, line: fn(&Trace) -> Option<u64>, of: fn(&(f64, f64)) -> f64| {
+        let lines: Vec<&str> = text.lines().collect();
         // A line may be several motions: the worst of them counts.
         let mut by_line: std::collections::BTreeMap<u64, (f64, f64)> = std::collections::BTreeMap::new();
         for trace in &comparison.traces {
-            let found = by_line.entry(trace.line).or_default();
+            let Some(line) = line(trace) else { continue };
+            let found = by_line.entry(line).or_default();
             *found = (found.0.max(trace.before_mm), found.1.max(trace.after_mm));
         }
         let mut all: Vec<(u64, (f64, f64))> = by_line.into_iter().collect();
@@ -283,12 +288,14 @@ fn worst(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Mark
         };
         table(language, &header, &[0, 1, 2], &rows)
     };
+    let of = |name: &str| say!(language, "Lines of {}.", "Строки файла {}.", shown(file_name(name)));
     html! {
         h3 { (say!(language, "As posted", "Исходная программа")) }
-        (list(|found| found.0))
+        p.muted { (of(facts.input)) }
+        (list(facts.text, |trace| Some(trace.line), |found| found.0))
         h3 { (say!(language, "As corrected", "Исправленная программа")) }
-        (list(|found| found.1))
-        p.muted { (say!(language, "Lines of {}.", "Строки файла {}.", shown(facts.input))) }
+        p.muted { (of(facts.output)) }
+        (list(facts.output_text, |trace| trace.after_line, |found| found.1))
     }
 }
 

@@ -115,8 +115,8 @@ pub(super) fn section(all: &[Dominant], language: Language) -> Markup {
         p {
             (say!(
                 language,
-                "Symbols of ISO 230-1. At up to five places along each axis of the map; more, and what each deviation may be, says ",
-                "Обозначения по ISO 230-1. До пяти мест вдоль каждой оси карты; больше, в том числе допуск на каждое отклонение, говорит "
+                "Symbols of ISO 230-1, at up to five places along each axis of the map, in order of what is left without it. More, and what each deviation may be, says ",
+                "Обозначения по ISO 230-1, до пяти мест вдоль каждой оси карты; первым стоит то, без которого остаётся меньше всего. Подробнее, с допуском на каждое отклонение, говорит "
             ))
             code { "vpost budget" }
             "."

@@ -5,10 +5,10 @@ use error_map::Plane;
 use machine_model::Vector;
 use maud::{Markup, html};
 use report::chart::solid::{Displacement, Solid, Spot, displacements, spots};
-use report::chart::{Curves, Histogram, Slice, curves, histogram, slices};
+use report::chart::{Amounts, Arrow, Curves, Histogram, Slice, View, curves, histogram, slices, views};
 use report::page::{Page, Section, figure, table};
 use report::scale::nice;
-use report::text::{MICROMETRES, Numbers, shown};
+use report::text::{MICROMETRES, Numbers, opening, shown};
 
 use super::deformation;
 use super::dominant::{self, Dominant};
@@ -109,7 +109,7 @@ pub(super) fn html(study: &Study, facts: &Facts, json: &str, language: Language)
         });
     }
     if let Some(found) = &study.second_order {
-        let body = html! { @for line in super::text::second_order_lines(found, language) { p { (language.of_terminal(&line)) } } };
+        let body = html! { @for line in super::text::second_order_lines(found, language) { p { (opening(&language.of_terminal(&line))) "." } } };
         sections.push(Section {
             id: "second-order",
             title: Text::pair("Second order of rotations", "Второй порядок поворотов"),
@@ -255,6 +255,15 @@ fn deformations(study: &Study, language: Language) -> Option<Markup> {
     })
 }
 
+/// Colours by the tolerance: what is within it, and how far the rest goes.
+fn amounts<'a>(study: &Study, within: &'a str, language: Language) -> Amounts<'a> {
+    Amounts {
+        largest: study.parts[0].figures.magnitude_mm.high * 1e3,
+        within: Some((study.within_mm * 1e3, within)),
+        unit: MICROMETRES.in_language(language),
+    }
+}
+
 /// Every so many nodes of an axis, ends included.
 fn thinned(count: usize, most: usize) -> Vec<usize> {
     let kept = count.min(most);
@@ -280,7 +289,8 @@ fn solid(study: &Study) -> Solid {
 fn volume(study: &Study, language: Language) -> Markup {
     let shift = median(study).shift_mm;
     let nodes = spread(study, SPOTS);
-    let largest = study.parts[0].figures.magnitude_mm.high * 1e3;
+    let within = within_said(study, language);
+    let amounts = amounts(study, &within, language);
     let drawing = |title: &str, shift: &Vector| {
         let all: Vec<Spot> = nodes
             .iter()
@@ -289,7 +299,7 @@ fn volume(study: &Study, language: Language) -> Markup {
                 value: (study.map.errors_mm()[*index] - shift).norm() * 1e3,
             })
             .collect();
-        spots(language, title, solid(study), &all, largest, MICROMETRES.in_language(language))
+        spots(language, title, solid(study), &all, &amounts)
     };
     let as_it_is =
         say!(language, "Error over the volume, as it is", "Погрешность в рабочем объёме, как есть");
@@ -301,8 +311,8 @@ fn volume(study: &Study, language: Language) -> Markup {
     let (drawn, all) = (language.count(nodes.len()), language.count(study.map.grid().len()));
     let caption = say!(
         language,
-        "As it is: {drawn} of {all} nodes, coloured by the length of the error.",
-        "Как есть: узлов {drawn} из {all}, цвет — длина вектора погрешности."
+        "As it is: {drawn} of {all} nodes, coloured by the length of the error; green and hollow: {within}.",
+        "Как есть: узлов {drawn} из {all}, цвет — длина вектора погрешности; зелёные пустые: {within}."
     );
     let caption_moved = say!(
         language,
@@ -336,22 +346,56 @@ fn vectors(study: &Study, language: Language) -> Markup {
     let title = say!(language, "Error vectors", "Векторы погрешности");
     let drawing = displacements(language, &title, solid(study), &all, magnification);
     let times = language.number(magnification);
-    figure(
+    let caption = say!(
         language,
-        &drawing,
-        &say!(
-            language,
-            "From where the tool is told to be (dots) to where it is, {times} times as long as in truth; before and after the zero point is moved by the geometric median.",
-            "От заданного места инструмента (точки) к действительному, увеличение {times}\u{d7}; до и после сдвига нулевой точки на геометрическую медиану."
-        ),
-        None,
-    )
+        "From where the tool is told to be (dots) to where it is, {times} times as long as in truth; before and after the zero point is moved by the geometric median.",
+        "От заданного места инструмента (точки) к действительному, увеличение {times}\u{d7}; до и после сдвига нулевой точки на геометрическую медиану."
+    );
+    let along = say!(
+        language,
+        "Error vectors from above, from the front and from the side",
+        "Векторы погрешности сверху, спереди и сбоку"
+    );
+    let along_caption = say!(
+        language,
+        "The same from above, from the front and from the side: nodes in the middle of the third axis.",
+        "То же сверху, спереди и сбоку: узлы в середине третьей оси."
+    );
+    let three = views(language, &along, &views_of(study, &shift, magnification), magnification);
+    html! {
+        (figure(language, &drawing, &caption, None))
+        (figure(language, &three, &along_caption, None))
+    }
+}
+
+/// From above, from the front, from the side.
+fn views_of(study: &Study, shift: &Vector, magnification: f64) -> Vec<View> {
+    let grid = study.map.grid();
+    let ([nx, ny, _], ranges) = (grid.counts(), solid(study).ranges);
+    let view = |[right, up, normal]: [usize; 3]| {
+        let mut arrows = Vec::new();
+        for row in thinned(grid.counts()[up], ARROWS) {
+            for column in thinned(grid.counts()[right], ARROWS) {
+                let mut at = [0; 3];
+                (at[right], at[up], at[normal]) = (column, row, grid.counts()[normal] / 2);
+                let index = at[0] + nx * (at[1] + ny * at[2]);
+                let (place, error) = (grid.place_mm(index), study.map.errors_mm()[index]);
+                let seen = |v: Vector| (v[right], v[up]);
+                arrows.push(Arrow {
+                    at: seen(place),
+                    before: seen(error * magnification),
+                    after: seen((error - shift) * magnification),
+                });
+            }
+        }
+        View { axes: [AXES[right], AXES[up]], ranges: [ranges[right], ranges[up]], arrows }
+    };
+    [[0, 1, 2], [0, 2, 1], [1, 2, 0]].map(view).to_vec()
 }
 
 fn slices_of(study: &Study, language: Language) -> Markup {
     let grid = study.map.grid();
     let [nx, ny, _] = grid.counts();
-    let largest = study.parts[0].figures.magnitude_mm.high * 1e3;
     let mut all = Vec::new();
     for plane in Plane::ALL {
         let normal = plane.normal();
@@ -388,14 +432,15 @@ fn slices_of(study: &Study, language: Language) -> Markup {
         }
     }
     let title = say!(language, "Slices through the volume", "Сечения рабочего объёма");
-    let drawing = slices(language, &title, &all, largest, MICROMETRES.in_language(language));
+    let within = within_said(study, language);
+    let drawing = slices(language, &title, &all, &amounts(study, &within, language));
     figure(
         language,
         &drawing,
         &say!(
             language,
-            "Length of the error as it is, one scale for all slices. A cell is a node; of large grids some are left out in the drawing. All nodes are in the file of --csv.",
-            "Длина вектора погрешности, как есть; шкала для всех сечений одна. Клетка — узел; у крупных сеток часть узлов на рисунке пропущена. Все узлы есть в файле --csv."
+            "Length of the error as it is, one scale for all slices; green: {within}. A cell is a node; of large grids some are left out in the drawing. All nodes are in the file of --csv.",
+            "Длина вектора погрешности, как есть; шкала для всех сечений одна, зелёным — {within}. Клетка — узел; у крупных сеток часть узлов на рисунке пропущена. Все узлы есть в файле --csv."
         ),
         None,
     )
@@ -424,7 +469,10 @@ fn sizes(study: &Study, language: Language) -> Markup {
         &say!(language, "Nodes by the size of their error", "Узлы по величине погрешности"),
         &drawn,
         Some((study.within_mm * 1e3, &within)),
-        &say!(language, "length of the error, \u{b5}m", "длина вектора погрешности, мкм"),
+        [
+            &say!(language, "length of the error, \u{b5}m", "длина вектора погрешности, мкм"),
+            &say!(language, "nodes", "узлов"),
+        ],
         MICROMETRES.in_language(language),
     );
     let header = match language {
@@ -656,7 +704,8 @@ fn provenance(study: &Study, facts: &Facts, language: Language) -> Markup {
 }
 
 fn range_said(low: &str, high: &str, language: Language) -> String {
-    say!(language, "{low} to {high}", "от {low} до {high}")
+    // Two lines where there is no room for one.
+    say!(language, "{low} to\u{a0}{high}", "от\u{a0}{low} до\u{a0}{high}")
 }
 
 fn um(mm: f64, language: Language) -> String {

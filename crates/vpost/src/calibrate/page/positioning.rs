@@ -335,7 +335,10 @@ fn diagram(read: &Read, language: Language) -> Markup {
         label: say!(language, "target position of {}, mm", "положение цели {}, мм", read.axis),
         at: read.runs.targets.clone(),
         bands: both.into_iter().filter(|(_, all, _)| !all.is_empty()).map(side).collect(),
-        span: read.evaluation.as_ref().map(|e| format!("A {}", um(e.accuracy.value, language))),
+        span: read.evaluation.as_ref().map(|e| {
+            let [a, _] = language.measured(e.accuracy.value * 1e3, e.accuracy.expanded * 1e3);
+            format!("A {a}")
+        }),
     };
     let caption = if read.evaluation.is_some() {
         say!(

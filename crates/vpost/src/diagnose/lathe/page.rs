@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibration::turning::{CauseRow, FoundCause};
+use calibration::turning::{Cause, CauseRow, FoundCause};
 use diagnostic::{Language, Text, both, say};
 use machine_profile::Profile;
 use maud::{Markup, html};
@@ -13,7 +13,7 @@ use report::text::{Numbers, number, number_of_digits, opening, shown, typed};
 use super::{Said, meaning, sentence, words};
 use crate::file;
 use crate::message::Failure;
-use crate::origin::{Origin, command_row};
+use crate::origin::Origin;
 
 /// What the page is made from.
 pub(super) struct Facts<'a> {
@@ -106,7 +106,7 @@ impl<'a> Drawn<'a> {
             None => meaning(found.verdict),
         };
         html! {
-            p.muted { (self.say(&both!("Parts of {}: {}", "Детали станка {}: {}", shown(&facts.profile.name), shown(&file::name(facts.measurements))))) }
+            p.muted { (self.say(&both!("Parts of {}: {}", "Детали станка {}: {}", shown(&facts.profile.name), shown(&short_name(facts.measurements))))) }
             p { span.verdict { (words(found.verdict).in_language(self.language)) } }
             h1 { (opening(&self.say(&what))) }
             @if !found.causes.is_empty() { p { (opening(&self.say(&meaning(found.verdict)))) "." } }
@@ -200,7 +200,7 @@ impl<'a> Drawn<'a> {
         let rows: Vec<Vec<String>> = found.causes.iter().flat_map(|own| self.numbers(own)).collect();
         let header = [
             both!("cause", "причина"),
-            both!("name", "имя"),
+            both!("number", "параметр"),
             both!("value", "значение"),
             both!("\u{b1} 95 %", "\u{b1} 95 %"),
             both!("RMS before, \u{b5}m", "до, мкм"),
@@ -214,16 +214,34 @@ impl<'a> Drawn<'a> {
                 (table_of(self.language, &header, &[2, 3, 4, 5, 6], &rows))
             }
             @for own in &found.causes {
-                h3 { (own.cause.id()) }
+                @let name = self.called(own.cause.id());
+                h3 { @if name == own.cause.id() { (name) } @else { (opening(&name)) " " code.muted { (own.cause.id()) } } }
                 p { (opening(&self.say(&sentence(own)))) "." }
                 @if !own.rivals.is_empty() {
-                    p { (self.say(&both!("It cannot be told from {}.", "Не отличить от: {}.", own.rivals.join(", ")))) }
+                    p { (self.say(&both!("It cannot be told from {}.", "Не отличить от: {}.", own.rivals.iter().map(|rival| self.called(rival)).collect::<Vec<_>>().join(", ")))) }
                 }
                 p { (typed(&self.say(&self.said.remedy(own)))) }
             }
-            @let asked: Vec<&str> = found.asked.iter().map(|cause| cause.id()).collect();
+            @let asked: Vec<String> = found.asked.iter().map(|cause| self.called(cause.id())).collect();
             p.muted { (self.say(&both!("These rows could show: {}.", "Эти строки могли показать: {}.", asked.join(", ")))) }
         }
+    }
+
+    /// A cause by its name, in English its id.
+    fn called(&self, id: &str) -> String {
+        let known = Cause::ALL.into_iter().find(|cause| cause.id() == id);
+        let Some(cause) = known.filter(|_| self.language == Language::Russian) else { return id.to_owned() };
+        let name = match cause {
+            Cause::Taper => "наклон оси детали",
+            Cause::Bending => "прогиб детали",
+            Cause::Runout => "биение шпинделя",
+            Cause::Growth => "рост передней бабки",
+            Cause::Wear => "износ инструмента",
+            Cause::Straightness => "прямолинейность EXZ",
+            Cause::Scale => "масштаб X",
+            Cause::Jaws => "кулачки патрона",
+        };
+        name.to_owned()
     }
 
     fn numbers(&self, own: &FoundCause) -> Vec<Vec<String>> {
@@ -231,8 +249,8 @@ impl<'a> Drawn<'a> {
             // The table turns figures into those of its language.
             let [value, spread] = Language::English.measured(n.value, n.u95);
             vec![
-                own.cause.id().to_owned(),
-                n.name.to_owned(),
+                self.called(own.cause.id()),
+                gap_diagnosis::number_name(n.name).in_language(self.language).to_owned(),
                 value,
                 spread,
                 number_of_digits(own.rms_mm[0] * 1e3, 2),
@@ -253,6 +271,11 @@ impl<'a> Drawn<'a> {
         };
         html! { p { (self.say(&text)) } }
     }
+}
+
+/// A name without its folders, which stand at the end of the page.
+fn short_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| file::name(path), |name| file::name(Path::new(name)))
 }
 
 /// The mean of each place, in order.
@@ -286,7 +309,6 @@ fn provenance(facts: &Facts<'_>, language: Language) -> Result<Markup, Failure> 
             (Origin::of(facts.profile).rows(language))
             dt { (say!(language, "made by", "создано")) }
             dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.diagnosis/1" }
-            (command_row(language))
         }
     })
 }

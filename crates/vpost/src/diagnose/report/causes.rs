@@ -1,22 +1,23 @@
 //! Verdict, causes, places: what the answer says, drawn.
 
 use diagnostic::{Language, Text, say};
-use gap_diagnosis::{Cause, Diagnosis, Verdict};
+use gap_diagnosis::{Cause, Diagnosis, Verdict, number_name};
 use maud::{Markup, html};
 use report::chart::{Bar, Matrix, Range, matrix, ranges, waterfall as waterfall_chart};
 use report::page::{figure, table};
-use report::text::{MICROMETRES, Numbers, shown};
+use report::text::{MICROMETRES, Numbers, opening, shown};
 
+use super::names::{named, prose};
 use jobs::diagnose::change::Change;
 
 /// RMS of the gap as the causes are added.
 pub(super) fn waterfall(d: &Diagnosis, language: Language) -> Markup {
     let first =
         Bar { label: say!(language, "model as it is", "модель как есть"), value: d.gap.rms_um };
-    let added = d
-        .causes
-        .iter()
-        .map(|c| Bar { label: say!(language, "with {}", "с {}", c.effect), value: c.rms_after_um });
+    let added = d.causes.iter().map(|c| Bar {
+        label: say!(language, "with {}", "+ {}", named(&c.effect, language)),
+        value: c.rms_after_um,
+    });
     let bars: Vec<Bar> = std::iter::once(first).chain(added).collect();
     // A row's gap is the length over its components, each of which carries the noise of a reading.
     let rows = d.gap.rows.max(1) as f64;
@@ -51,7 +52,12 @@ pub(super) fn causes(d: &Diagnosis, changes: &[Vec<Change>], language: Language)
     let shares: Vec<Range> = d
         .causes
         .iter()
-        .map(|c| Range { label: c.effect.clone(), low: c.share_unique, high: c.share_alone, faint: false })
+        .map(|c| Range {
+            label: named(&c.effect, language),
+            low: c.share_unique,
+            high: c.share_alone,
+            faint: false,
+        })
         .collect();
     html! {
         (figure(
@@ -79,11 +85,12 @@ pub(super) fn causes(d: &Diagnosis, changes: &[Vec<Change>], language: Language)
 
 fn one(c: &Cause, changes: &[Change], language: Language) -> Markup {
     html! {
-        h3 { (shown(&c.effect)) }
+        @let name = named(&c.effect, language);
+        h3 { @if name == c.effect { (shown(&name)) } @else { (opening(&name)) " " code.muted { (shown(&c.effect)) } } }
         p { (shown(&language.prose(&c.words))) "." }
         dl {
             @for p in &c.parameters {
-                dt { (shown(&p.name)) }
+                dt { (shown(number_name(&p.name).in_language(language))) }
                 dd {
                     @match p.u95 {
                         Some(u) => { @let [value, spread] = language.measured(p.value, u); (value) " \u{b1} " (spread) " (95 %)" },
@@ -93,7 +100,10 @@ fn one(c: &Cause, changes: &[Change], language: Language) -> Markup {
             }
             dt { (say!(language, "chance that it is none", "вероятность, что её нет")) } dd { (probability(c.p, language)) }
             @if !c.cannot_be_told_from.is_empty() {
-                dt { (say!(language, "cannot be told from", "не отличить от")) } dd { (shown(&c.cannot_be_told_from.join(", "))) }
+                dt { (say!(language, "cannot be told from", "не отличить от")) } dd {
+                    @let rivals: Vec<String> = c.cannot_be_told_from.iter().map(|rival| named(rival, language)).collect();
+                    (shown(&rivals.join(", ")))
+                }
             }
             @if !changes.is_empty() {
                 dt { (say!(language, "change", "изменить")) }
@@ -120,7 +130,7 @@ fn list(texts: &[Text], language: Language) -> String {
 fn absorber(d: &Diagnosis, language: Language) -> Markup {
     html! {
         @if let Some(absorber) = &d.leftover.absorber { p.muted {
-            (say!(language, "Not named: ", "Не названо: ")) (shown(&language.prose(absorber))) "."
+            (say!(language, "Not named: ", "Не названо: ")) (shown(&prose(absorber, language))) "."
         } }
         @if !d.leftover.correlates_with.is_empty() {
             p {
@@ -227,8 +237,8 @@ pub(super) fn confounding(d: &Diagnosis, language: Language) -> Markup {
         })
         .collect();
     let m = Matrix {
-        rows: d.causes.iter().map(|c| c.effect.clone()).collect(),
-        columns: columns.into_iter().map(|(name, _)| name).collect(),
+        rows: d.causes.iter().map(|c| named(&c.effect, language)).collect(),
+        columns: columns.into_iter().map(|(name, _)| named(&name, language)).collect(),
         values,
         limit: 0.98,
     };
@@ -243,7 +253,7 @@ pub(super) fn confounding(d: &Diagnosis, language: Language) -> Markup {
                     say!(language, "far", "далеко")
                 };
                 let correlation = language.figures(format!("{:.3}", n.correlation));
-                vec![c.effect.clone(), n.effect.clone(), correlation, behind]
+                vec![named(&c.effect, language), named(&n.effect, language), correlation, behind]
             })
         })
         .collect();
@@ -272,17 +282,18 @@ pub(super) fn confounding(d: &Diagnosis, language: Language) -> Markup {
 pub(super) fn next(d: &Diagnosis, language: Language) -> Markup {
     html! {
         @if let Some(next) = &d.next_measurement {
-            p { (shown(&language.prose(&next.text))) }
+            p { (shown(&prose(&next.text, language))) }
             @if next.expected_sigma > 0.0 { p.muted {
                 @let ([one, other], sigma) = (&next.separates, language.number(next.expected_sigma));
+                @let [one, other] = [one, other].map(|id| prose(id, language));
                 (shown(&say!(
                     language,
                     "{one} and {other} would then lie {sigma} standard deviations apart.",
-                    "Тогда {one:#} и {other:#} разойдутся на {sigma} стандартных отклонений."
+                    "Тогда {one} и {other} разойдутся на {sigma} стандартных отклонений."
                 )))
             } }
         } @else if d.verdict == Verdict::Underpowered {
-            ul { @for note in &d.notes { li { (shown(&language.prose(note))) } } }
+            ul { @for note in &d.notes { li { (shown(&prose(note, language))) } } }
             p {
                 (say!(
                     language,

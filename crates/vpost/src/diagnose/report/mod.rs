@@ -3,6 +3,7 @@
 mod alignment;
 mod causes;
 mod facts;
+mod names;
 mod page;
 mod pictures;
 mod provenance;

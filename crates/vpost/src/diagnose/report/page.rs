@@ -7,6 +7,7 @@ use report::page::{Page, Section};
 use report::text::{Numbers, shown};
 
 use super::facts::Facts;
+use super::names::prose;
 use super::rows::Rows;
 use super::{causes, pictures, provenance, unseen};
 use jobs::diagnose::change::Change;
@@ -132,7 +133,7 @@ fn head(d: &Diagnosis, facts: &Facts, language: Language) -> Markup {
     html! {
         p.muted { (say!(language, "Simulation against reality: ", "Модель и действительность: ")) (shown(&facts.machine)) ", " (shown(&facts.measurements.name)) }
         p { span.verdict { (d.verdict.words().in_language(language)) } }
-        h1 { (shown(&language.prose(&d.sentence))) }
+        h1 { (shown(&prose(&d.sentence, language))) }
         @if let Some(words) = in_words(d, language) { p { (shown(&words)) } }
         p { (meaning(d.verdict).in_language(language)) }
         @if g.rms_um > 0.0 {

@@ -3,7 +3,7 @@
 use diagnostic::{Language, Text, say};
 use gap_diagnosis::{Diagnosis, Measurements, Row as Measured};
 use maud::{Markup, html};
-use report::chart::{Arrow, Panel, Points, Slice, View, cumulative, panels, slices, views};
+use report::chart::{Amounts, Arrow, Panel, Points, Slice, View, cumulative, panels, slices, views};
 use report::page::{figure, table};
 use report::scale::nice;
 use report::text::{MICROMETRES, Numbers};
@@ -243,13 +243,14 @@ pub(super) fn heat(
         "RMS of the gap over slices through the machine",
         "СКЗ расхождения в сечениях рабочего объёма"
     );
+    let amounts = Amounts { largest, within: None, unit: MICROMETRES.in_language(language) };
     let header = match language {
         Language::English => ["slice", "worst cell before, \u{b5}m", "worst cell after, \u{b5}m"],
         Language::Russian => ["сечение", "худшая клетка до, мкм", "худшая клетка после, мкм"],
     };
     Some(figure(
         language,
-        &slices(language, &title, &shown, largest, MICROMETRES.in_language(language)),
+        &slices(language, &title, &shown, &amounts),
         &say!(
             language,
             "RMS of the gap in each cell, one scale for all slices. Cells without rows were not measured; nothing is filled in between.",

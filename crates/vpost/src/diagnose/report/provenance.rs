@@ -1,7 +1,7 @@
 //! What the page was made from, and how.
 
 use diagnostic::{Language, say};
-use gap_diagnosis::Diagnosis;
+use gap_diagnosis::{Diagnosis, number_name};
 use maud::{Markup, html};
 use report::page::table;
 use report::text::{Numbers, shown};
@@ -9,6 +9,7 @@ use report::text::{Numbers, shown};
 use jobs::diagnose::File;
 
 use super::facts::Facts;
+use super::names::{named, prose};
 
 /// Most comment lines shown, and most runs.
 const MOST: usize = 60;
@@ -27,7 +28,11 @@ pub(super) fn body(d: &Diagnosis, facts: &Facts, language: Language) -> Markup {
         .map(|s| {
             let unseen = || say!(language, "not visible on these rows", "на этих строках не виден");
             let smallest = s.smallest.map_or_else(unseen, |smallest| language.number(smallest));
-            vec![s.effect.clone(), s.parameter.clone(), smallest]
+            vec![
+                named(&s.effect, language),
+                number_name(&s.parameter).in_language(language).to_owned(),
+                smallest,
+            ]
         })
         .collect();
     let run_header = match language {
@@ -58,7 +63,7 @@ pub(super) fn body(d: &Diagnosis, facts: &Facts, language: Language) -> Markup {
         }
         @if !d.notes.is_empty() {
             h3 { (say!(language, "Notes", "Примечания")) }
-            ul { @for note in &d.notes { li { (shown(&language.prose(note))) } } }
+            ul { @for note in &d.notes { li { (shown(&prose(note, language))) } } }
         }
         @if !d.residuals.is_empty() {
             h3 {

@@ -5,6 +5,7 @@ use report::viewer::scene::{CAUSES, Cause, Displacement, Place, Scene};
 use report::viewer::{Figures, Kind, Viewer};
 
 use super::alignment::Alignment;
+use super::names::named;
 use super::page::Report;
 use super::rows::Rows;
 use crate::message::{Failure, Messages};
@@ -23,7 +24,15 @@ impl Report<'_> {
         let (d, facts) = (self.diagnosis, self.facts);
         let rows = Rows::new(d, self.data);
         let mut scene = Scene {
-            causes: d.causes.iter().map(|c| Cause { kind: "effect", symbol: c.effect.clone() }).collect(),
+            causes: d
+                .causes
+                .iter()
+                .map(|c| Cause {
+                    kind: "effect",
+                    symbol: c.effect.clone(),
+                    russian: Some(named(&c.effect, Language::Russian)),
+                })
+                .collect(),
             ..Scene::default()
         };
         let um = |v: machine_model::Vector| -> Displacement { [v.x as f32, v.y as f32, v.z as f32] };
