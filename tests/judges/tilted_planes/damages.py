@@ -2,6 +2,8 @@
 
 import re
 
+import numpy as np
+
 import generate
 
 
@@ -12,6 +14,16 @@ def shifted(line, letter, by, decimals=4):
 def numbers(line, letters):
     found = (re.search(r"(?<![A-Z])%s(-?[\d.]+)" % letter, line) for letter in letters)
     return [float(x.group(1)) if x else 0.0 for x in found]
+
+
+def laid(lines, k, line, letters, start):
+    """The direction that a line's vector has, or of three points that of X and the plane's normal."""
+    if not start:
+        vector = np.array(numbers(line, letters))
+        return vector / np.linalg.norm(vector)
+    one, two, three = (np.array(numbers(line if j == k else lines[j], letters)) for j in range(start[0], start[0] + 3))
+    x, z = (two - one) / np.linalg.norm(two - one), np.cross(two - one, three - one)
+    return np.concatenate([x, z / np.linalg.norm(z)])
 
 
 def number_of(line):
@@ -70,11 +82,13 @@ def all_of(rng, m, text_in, text_out):
         if plane:
             k = rng.choice(plane)
             size = by / (25.4 if inch else 1) or 1e-3 * max(abs(float(x)) for x in re.findall(r"[IJK](-?[\d.]+)", lines[k]))
-            # A vector, or an edge from the first point, that only becomes longer turns nothing.
             start = [j for j in range(k) if re.search(r"G68\.2 P2 Q1", lines[j])][-1:] if kind == "P2" else []
-            edge = [n - o for n, o in zip(numbers(lines[k], letters), numbers(lines[start[0]], letters) if start else (0, 0, 0))]
-            turning = [c for j, c in enumerate(letters) if any(edge[i] for i in range(3) if i != j)]
-            add("%s turned a little" % kind, k, shifted(lines[k], rng.choice(turning), size, 6))
+            ways = {c: shifted(lines[k], c, size, 6) for c in letters}
+            was = laid(lines, k, lines[k], letters, start)
+            # What only becomes longer, or moves in the plane, turns nothing.
+            turning = [c for c in letters if np.abs(laid(lines, k, ways[c], letters, start) - was).max() > 1e-9]
+            if turning:
+                add("%s turned a little" % kind, k, ways[rng.choice(turning)])
     turned = [k for k, x in enumerate(lines) if re.search(r"G68\.2 (P0 )?X.*I.*J.*K", x)]
     if turned:
         k = rng.choice(turned)
