@@ -541,18 +541,6 @@ pub(crate) fn not_certain(
                 "скажите, какой берёт стойка: `turn = \"shortest\"` или `turn = \"principal\"` в разделе `[kinematics]` профиля"
             ),
         ),
-        NoAngles::HalfTurn(axis) => (
-            both!(
-                "two angles of {}, a whole turn apart, serve alike: the control's rounding decides",
-                "два угла {} через целый оборот равноправны: решает округление стойки",
-                name(axis)
-            ),
-            both!(
-                "leave only one of them within `travel_deg`, or with `turn = \"shortest\"` bring {} nearer to one by a rapid before {before}",
-                "оставьте в `travel_deg` только один из них или при `turn = \"shortest\"` подведите {} ближе к одному быстрым ходом до {before}",
-                name(axis)
-            ),
-        ),
         NoAngles::Unknown(axis) => (
             both!("where {} stands before is not known", "где до этого стоит {}, неизвестно", name(axis)),
             both!(

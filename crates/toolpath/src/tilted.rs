@@ -180,8 +180,6 @@ pub enum NoAngles {
     Free(usize),
     /// Whole turns of this axis are not said.
     Turns(usize),
-    /// Half a turn of this axis, this way or that: what the control's last digits decide.
-    HalfTurn(usize),
     /// Where this axis stands nobody knows, and the rule asks for it.
     Unknown(usize),
     /// The tool stands along this axis, which would have to turn before the other tilts the tool: by so many degrees.
@@ -273,19 +271,14 @@ impl RotaryLink {
         let principal = if angle_deg <= -180.0 + SLACK_DEG { angle_deg + 360.0 } else { angle_deg };
         match rule.turns {
             _ if !self.has_other_turns(principal) => Ok(Some(principal).filter(|deg| fits(*deg))),
-            Some(WholeTurns::Principal) if principal > 180.0 - NEARER_DEG && fits(principal - 360.0) => {
-                Err(NoAngles::HalfTurn(self.axis))
-            }
-            Some(WholeTurns::Principal) if principal < NEARER_DEG - 180.0 && fits(principal + 360.0) => {
-                Err(NoAngles::HalfTurn(self.axis))
-            }
             Some(WholeTurns::Principal) => Ok(Some(principal).filter(|deg| fits(*deg))),
             Some(WholeTurns::Shortest) => {
                 let stands_deg = stands_deg.ok_or(NoAngles::Unknown(self.axis))?;
                 let turns = (stands_deg - principal) / 360.0;
                 let nearest = principal + 360.0 * turns.round();
                 if (turns - turns.floor() - 0.5).abs() < SLACK_DEG {
-                    return Err(NoAngles::HalfTurn(self.axis));
+                    // Half a turn this way or that.
+                    return Err(NoAngles::Turns(self.axis));
                 }
                 // Beyond travel the next one inwards.
                 let beyond = if nearest < low - SLACK_DEG { 360.0 } else { -360.0 };
@@ -647,25 +640,7 @@ mod tests {
         let (taken, tied) = if one.is_ok() { (one, other) } else { (other, one) };
         let taken = taken.expect("certain");
         assert!(taken[2].abs() < 1e-9 && (taken[0].abs() - 30.0).abs() < 1e-9, "{taken:?}");
-        assert!(matches!(tied, Err(NoAngles::HalfTurn(2))), "{tied:?}");
-    }
-
-    #[test]
-    fn half_a_turn_is_not_guessed() {
-        // Tilted by C at half a turn: whether that is 180 or -180 the control's last digits decide.
-        let rule = TiltRule { reference: Some(0), turns: Some(WholeTurns::Principal), branch: None };
-        let ask = |travel_deg: [f64; 2], c: f64| {
-            let mut chain = RotaryChain(vec![link(2, UP, true, 0.0), link(0, X, true, 110.0)]);
-            chain.0[0].travel_deg = travel_deg;
-            let tilted = chain.tool_direction([30.0, 0.0, c]);
-            chain.angles_by_value(tilted, true, &rule, [None; 3])
-        };
-        for c in [180.0, -180.0, 179.9995, -179.9995] {
-            assert_eq!(ask([-400.0, 400.0], c), Err(NoAngles::HalfTurn(2)), "{c}");
-        }
-        assert!(ask([-400.0, 400.0], 179.9).is_ok_and(|angles| (angles[2] - 179.9).abs() < 1e-9));
-        // Within travel there is only one.
-        assert!(ask([-10.0, 370.0], -180.0).is_ok_and(|angles| (angles[2] - 180.0).abs() < 1e-9));
+        assert!(matches!(tied, Err(NoAngles::Turns(2))), "{tied:?}");
     }
 
     #[test]
