@@ -142,7 +142,8 @@ class Machine:
                 return []
             alpha = math.degrees(math.atan2(a @ np.cross(flat_v, flat_n), flat_v @ flat_n))
             pair = {one: alpha * sign[one], two: beta * sign[two]}
-            out.append({k: (x + 180.0) % 360.0 - 180.0 for k, x in pair.items()})
+            # Above -180 and up to 180 but for rounding, as the profile's `principal`.
+            out.append({k: 180.0 - (180.0 - x + 1e-9) % 360.0 + 1e-9 for k, x in pair.items()})
         return out
 
     def swivelled(self, normal, way, stands):
