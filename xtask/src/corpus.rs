@@ -210,12 +210,10 @@ fn sample(vpost: &Path, options: &Options, path: &Path) -> anyhow::Result<Sample
                 check => Fate::Corrected { check, referee: judged(referee)? },
             }
         }
-        Some(1) => {
-            match refusal(&said).and_then(|line| line.strip_prefix("error[")?.split_once("]: ")) {
-                Some((code, message)) => Fate::Refused(code.to_owned(), message.to_owned()),
-                None => Fate::Broken(said),
-            }
-        }
+        Some(1) => match refusal(&said).and_then(|line| line.strip_prefix("error[")?.split_once("]: ")) {
+            Some((code, message)) => Fate::Refused(code.to_owned(), message.to_owned()),
+            None => Fate::Broken(said),
+        },
         _ => Fate::Broken(said),
     };
     Ok(Sample { name, ways, flow, fate })

@@ -198,6 +198,8 @@ impl Feeding {
     pub(crate) fn off(&self, place: &Place, limit_mm: f64, limit_rad: f64) -> (f64, f64) {
         /// So many places are looked at on either side of the nearest.
         const LOOKS: i32 = 24;
+        /// Shares of the limits that differ by less are rounding.
+        const ALIKE: f64 = 1e-6;
         let (mut best, mut least_rad) = ((f64::INFINITY, 0.0, f64::INFINITY), f64::INFINITY);
         for stretch in &self.stretches {
             let foot = stretch.foot(place);
@@ -215,7 +217,8 @@ impl Feeding {
                     least_rad = least_rad.min(leans_rad);
                 }
                 let share = (off_mm / limit_mm).max(leans_rad / limit_rad);
-                if share < best.0 {
+                // Of places that are as good the nearest.
+                if share < best.0 - ALIKE || (share < best.0 + ALIKE && off_mm < best.1) {
                     best = (share, off_mm, leans_rad);
                 }
             }

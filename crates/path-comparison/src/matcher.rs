@@ -8,7 +8,7 @@ use crate::difference::{self, Found};
 use crate::items::{Counted, Feeding, Item, Items, Process, Role, ends_alike};
 use crate::stretch::{Place, Stretch};
 use crate::way::Way;
-use crate::{Comparison, Mismatch, Step, Trace, Traces, What};
+use crate::{Comparison, Mismatch, Pointing, Step, Trace, Traces, What};
 
 /// So many differences are kept; a program that is off in one place may be off in thousands.
 const MOST_MISMATCHES: usize = 20;
@@ -69,6 +69,15 @@ impl Reach {
         let ([from, to], [from_mm, to_mm]) = (self.minutes, self.way_mm);
         if to > from { from_mm + (minutes - from) / (to - from) * (to_mm - from_mm) } else { from_mm }
     }
+}
+
+/// Tip and direction at a place, each with its limit.
+struct Apart {
+    off_mm: f64,
+    leans_rad: f64,
+    limit_mm: f64,
+    pointing: Pointing,
+    wanted_line: u64,
 }
 
 impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
@@ -156,7 +165,9 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     fn follow(&mut self, at: &Place, begins: Begins) {
         if let Some(distance_mm) = self.alignment.begin(at, begins) {
             let line = self.commanded.feed(0).map_or(0, |feed| feed.line);
-            self.note(0, distance_mm, line);
+            if self.apart(at, 0, line).is_none() {
+                self.note(0, distance_mm, line);
+            }
         }
         self.time = if begins == Begins::Anywhere { Time::UNKNOWN } else { Time::default() };
         // The process of a piece of no length that was made last.
@@ -288,13 +299,11 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
 
     /// Tip and direction each by its own limit at the end of a stretch, where directions are compared; false where not.
     fn judge(&mut self, stretch: &Stretch, ahead: usize, line: u64) -> bool {
-        let place = stretch.at(1.0);
-        let Some(feed) = self.alignment.wanted.feed(ahead) else { return false };
-        let Some((limit_mm, pointing)) = feed.pointing else { return false };
-        let (off_mm, leans_rad) = feed.off(&place, limit_mm, pointing.leans_rad);
-        feed.note_made(off_mm, line);
-        feed.made_leans_rad = feed.made_leans_rad.max(leans_rad);
-        let wanted_line = feed.line;
+        let Some(Apart { off_mm, leans_rad, limit_mm, pointing, wanted_line }) =
+            self.apart(&stretch.at(1.0), ahead, line)
+        else {
+            return false;
+        };
         if off_mm > limit_mm {
             self.mismatch(What::TooFar(off_mm), wanted_line, line);
         }
@@ -302,6 +311,17 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             self.mismatch(What::Leans(leans_rad), wanted_line, line);
         }
         true
+    }
+
+    /// How far the tip is off at a place, and how far the direction, noted for the feed so many ahead; `None` where directions
+    /// are not compared.
+    fn apart(&mut self, place: &Place, ahead: usize, line: u64) -> Option<Apart> {
+        let feed = self.alignment.wanted.feed(ahead)?;
+        let (limit_mm, pointing) = feed.pointing?;
+        let (off_mm, leans_rad) = feed.off(place, limit_mm, pointing.leans_rad);
+        feed.note_made(off_mm, line);
+        feed.made_leans_rad = feed.made_leans_rad.max(leans_rad);
+        Some(Apart { off_mm, leans_rad, limit_mm, pointing, wanted_line: feed.line })
     }
 
     /// Under G93 a motion is known by what it takes.

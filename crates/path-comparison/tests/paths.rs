@@ -3,7 +3,7 @@
 use machine_model::{
     Chain, Description, LinearAxis, Models, Range, RigidBody, RotaryAxis, Squareness, Vector,
 };
-use path_comparison::{Act, Comparison, Step, Traces, What, compare};
+use path_comparison::{Act, Comparison, Pointing, Step, Traces, What, compare};
 use proptest::prelude::*;
 use toolpath::{Arc, Division, Feed, FeedRate, Kinematics, Motion, Plane, Position, Shape};
 
@@ -217,4 +217,30 @@ fn the_time_of_short_pieces_adds_up() {
     for (count, times) in [(1000, 0.99), (1000, 1.0), (1000, 1.01), (100, 0.99), (100, 1.01)] {
         assert!(!differs(count, times), "{count} {times}");
     }
+}
+
+/// Where directions are compared, what the tool leans at the start of a feed is none of its tip's distance.
+#[test]
+fn a_lean_at_the_start_is_no_distance_of_the_tip() {
+    let table = RigidBody::new(Description {
+        chain: Chain::parse("[w A b X Y Z t]").expect("a chain"),
+        linear: [(); 3].map(|()| LinearAxis::perfect(Range { low: -500.0, high: 500.0 })),
+        rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
+        squareness: Squareness::default(),
+    })
+    .expect("a machine");
+    // Along the axis of A: the tip stays where it is.
+    let along = |a_deg: f64| {
+        let place = |x: f64, a: f64| Position { linear_mm: [x, 0.0, 0.0], rotary_deg: [a, 0.0, 0.0] };
+        Feed { start: place(0.0, a_deg), end: place(10.0, 10.0), ..feed([0.0; 3], [0.0; 3], Shape::Line) }
+    };
+    let pointing = Some(Pointing { leans_rad: 100e-6, aside_deg: 1.0 });
+    let steps = |a_deg: f64| std::iter::once(Step { pointing, ..step(along(a_deg), 1) });
+    let retreats = toolpath::PeckRetreats { clearance_mm: 0.25, chip_mm: 0.5 };
+    let models = Models { axes: &table, tip: None };
+    let found =
+        compare(models, steps(10.0), steps(10.0 + 60e-6_f64.to_degrees()), retreats, Traces::Forgotten);
+    assert!(found.mismatches.is_empty(), "{found:?}");
+    assert!(found.after.largest_mm < 1e-9, "{found:?}");
+    assert!((found.leans_after.largest_rad - 60e-6).abs() < 1e-9, "{found:?}");
 }
