@@ -12,6 +12,11 @@ use crate::terminal;
 use crate::to_disk::{self, ToDisk};
 use diagnostic::{Text, both};
 
+/// A name without its folders, which stand at the end of a page.
+pub(crate) fn without_folders(name: &str) -> &str {
+    name.rsplit(['/', '\\']).next().unwrap_or(name)
+}
+
 /// Reads a file, or standard input for `-`.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     let result = if path.as_os_str() == "-" {

@@ -8,6 +8,8 @@ use report::chart::solid::{Solid, Stretch, path};
 use report::page::{Page, Section, figure, table};
 use report::text::{MICROMETRES, Numbers, shown};
 
+use crate::file::without_folders;
+
 /// What the page is made of.
 pub(super) struct Facts<'a> {
     /// Names of the programs, and their texts.
@@ -83,7 +85,7 @@ fn head(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Marku
     html! {
         p.muted {
             (say!(language, "Both programs through the machine model: ", "Обе программы по модели станка: "))
-            (shown(facts.machine)) ", " (shown(file_name(facts.output)))
+            (shown(facts.machine)) ", " (shown(without_folders(facts.output)))
         }
         p { span.verdict { (verdict) } }
         h1 {
@@ -113,11 +115,6 @@ fn next_step(facts: &Facts<'_>, language: Language) -> String {
             "Исправленную программу не запускайте: смотрите, что найдено, и исправьте исходную программу заново."
         )
     }
-}
-
-/// A name without its folders, which stand at the end of the page.
-pub(super) fn file_name(path: &str) -> &str {
-    path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
 fn result(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Markup {
@@ -288,7 +285,7 @@ fn worst(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Mark
         };
         table(language, &header, &[0, 1, 2], &rows)
     };
-    let of = |name: &str| say!(language, "Lines of {}.", "Строки файла {}.", shown(file_name(name)));
+    let of = |name: &str| say!(language, "Lines of {}.", "Строки файла {}.", shown(without_folders(name)));
     html! {
         h3 { (say!(language, "As posted", "Исходная программа")) }
         p.muted { (of(facts.input)) }

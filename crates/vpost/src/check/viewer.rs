@@ -112,7 +112,7 @@ pub(super) fn write(
         files: &names,
         figures: Figures {
             names: vec![
-                ("output", super::page::file_name(facts.output)),
+                ("output", crate::file::without_folders(facts.output)),
                 ("machine", facts.machine),
                 ("drawn", &counts[0]),
                 ("of", &counts[1]),

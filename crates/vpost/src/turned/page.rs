@@ -9,6 +9,7 @@ use turning::Lathe;
 
 use super::judged::{Form, Outline, mm, ridges, um};
 use super::surface::{HIGHEST_WAVE, Stretch, Surface, Turned};
+use crate::file;
 use crate::message::{Failure, Wording};
 use crate::origin::Origin;
 use crate::settings::Settings;
@@ -101,7 +102,8 @@ pub(super) fn html(
         corrected: page.corrected(),
     };
     let json = serde_json::to_string(&numbers).expect("plain values always serialise");
-    let title = page.say(&both!("Turned \u{2013} {}", "Точение \u{2014} {}", file_name(facts.name)));
+    let title =
+        page.say(&both!("Turned \u{2013} {}", "Точение \u{2014} {}", file::without_folders(facts.name)));
     let foot = page.say(&both!(
         "vpost {} predict --lathe. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.turned/1).",
         "vpost {} predict --lathe. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON (vpost.turned/1).",
@@ -116,11 +118,6 @@ pub(super) fn html(
         foot: &foot,
     };
     Ok(made.into_html())
-}
-
-/// A name without its folders.
-fn file_name(path: &str) -> &str {
-    path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
 impl Shown<'_> {
@@ -181,7 +178,7 @@ impl Shown<'_> {
             },
         );
         html! {
-            p.muted { (shown(&self.facts.settings.profile.name)) ", " (shown(file_name(self.facts.name))) }
+            p.muted { (shown(&self.facts.settings.profile.name)) ", " (shown(file::without_folders(self.facts.name))) }
             p { span.verdict { (self.say(&verdict)) } }
             h1 { (self.say(&wrong)) }
             @if let Some((cylinder, form)) = worst { p { (self.say(&what(cylinder.stretch, form))) } }

@@ -11,6 +11,7 @@ use report::page::{Page, Section, figure, table_of};
 use report::text::{Numbers, number, number_of_digits, opening, shown, typed};
 
 use super::{Said, meaning, sentence, words};
+use crate::diagnose::report::cause_heading;
 use crate::file;
 use crate::message::Failure;
 use crate::origin::Origin;
@@ -106,7 +107,7 @@ impl<'a> Drawn<'a> {
             None => meaning(found.verdict),
         };
         html! {
-            p.muted { (self.say(&both!("Parts of {}: {}", "Детали станка {}: {}", shown(&facts.profile.name), shown(&short_name(facts.measurements))))) }
+            p.muted { (self.say(&both!("Parts of {}: {}", "Детали станка {}: {}", shown(&facts.profile.name), shown(file::without_folders(&file::name(facts.measurements)))))) }
             p { span.verdict { (words(found.verdict).in_language(self.language)) } }
             h1 { (opening(&self.say(&what))) }
             @if !found.causes.is_empty() { p { (opening(&self.say(&meaning(found.verdict)))) "." } }
@@ -214,8 +215,7 @@ impl<'a> Drawn<'a> {
                 (table_of(self.language, &header, &[2, 3, 4, 5, 6], &rows))
             }
             @for own in &found.causes {
-                @let name = self.called(own.cause.id());
-                h3 { @if name == own.cause.id() { (name) } @else { (opening(&name)) " " code.muted { (own.cause.id()) } } }
+                (cause_heading(&self.called(own.cause.id()), own.cause.id()))
                 p { (opening(&self.say(&sentence(own)))) "." }
                 @if !own.rivals.is_empty() {
                     p { (self.say(&both!("It cannot be told from {}.", "Не отличить от: {}.", own.rivals.iter().map(|rival| self.called(rival)).collect::<Vec<_>>().join(", ")))) }
@@ -271,11 +271,6 @@ impl<'a> Drawn<'a> {
         };
         html! { p { (self.say(&text)) } }
     }
-}
-
-/// A name without its folders, which stand at the end of the page.
-fn short_name(path: &Path) -> String {
-    path.file_name().map_or_else(|| file::name(path), |name| file::name(Path::new(name)))
 }
 
 /// The mean of each place, in order.

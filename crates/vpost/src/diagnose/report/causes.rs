@@ -5,9 +5,9 @@ use gap_diagnosis::{Cause, Diagnosis, Verdict, number_name};
 use maud::{Markup, html};
 use report::chart::{Bar, Matrix, Range, matrix, ranges, waterfall as waterfall_chart};
 use report::page::{figure, table};
-use report::text::{MICROMETRES, Numbers, opening, shown};
+use report::text::{MICROMETRES, Numbers, shown};
 
-use super::names::{named, prose};
+use super::names::{cause_heading, named, prose};
 use jobs::diagnose::change::Change;
 
 /// RMS of the gap as the causes are added.
@@ -85,8 +85,7 @@ pub(super) fn causes(d: &Diagnosis, changes: &[Vec<Change>], language: Language)
 
 fn one(c: &Cause, changes: &[Change], language: Language) -> Markup {
     html! {
-        @let name = named(&c.effect, language);
-        h3 { @if name == c.effect { (shown(&name)) } @else { (opening(&name)) " " code.muted { (shown(&c.effect)) } } }
+        (cause_heading(&named(&c.effect, language), &c.effect))
         p { (shown(&language.prose(&c.words))) "." }
         dl {
             @for p in &c.parameters {

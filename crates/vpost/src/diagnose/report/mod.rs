@@ -12,4 +12,5 @@ mod unseen;
 mod viewer;
 
 pub(super) use facts::Facts;
+pub(super) use names::cause_heading;
 pub(super) use page::Report;

@@ -3,12 +3,20 @@
 use diagnostic::{Language, Text};
 use gap_diagnosis::effect_name;
 use machine_model::effects::EffectKind;
-use report::text::Numbers;
+use maud::{Markup, html};
+use report::text::{Numbers, opening, shown};
 
 /// The name of an effect; of what the library does not know, its id.
 pub(super) fn named(id: &str, language: Language) -> String {
     id.parse::<EffectKind>()
         .map_or_else(|_| id.to_owned(), |kind| effect_name(&kind).in_language(language).to_owned())
+}
+
+/// The heading of a cause: its name, and the id that is typed where that is another.
+pub(in crate::diagnose) fn cause_heading(name: &str, id: &str) -> Markup {
+    html! {
+        h3 { @if name == id { (shown(id)) } @else { (opening(name)) " " code.muted { (shown(id)) } } }
+    }
 }
 
 /// [`Numbers::prose`] in which effects stand by their names, as quotations: those are not declined.
