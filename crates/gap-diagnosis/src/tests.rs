@@ -322,6 +322,40 @@ fn a_slope_that_no_frame_takes_is_the_curves() {
     }
 }
 
+/// A curve of the second and third order over more than is read has a slope and a constant there. Where a table turns both
+/// show, each is little, and neither alone is better than a curve of high order with damage at its end.
+#[test]
+fn a_curve_has_its_slope_and_its_constant_at_once() {
+    for (sizes_um, sigma_um) in [([-6.4, -5.9], 0.7), ([-15.2, -45.5], 0.7), ([-25.0, -20.0], 1.5)] {
+        let mut data = measured(Plan { sigma_um, run_sigma_um: 0.0, tools_mm: &[-150.0], ..GOOD }, nothing);
+        data.geometry =
+            EffectGeometry::from_chain(&machine_model::Chain::parse("[w C A b X Y Z t]").expect("a chain"));
+        for (k, row) in data.rows.iter_mut().enumerate() {
+            let turn = |period: f64| units::math::sin(std::f64::consts::TAU * k as f64 / period);
+            row.command.rotary_rad = Vector::new(0.8 * turn(7.3), 0.0, 2.9 * turn(11.7));
+        }
+        let shape = Shape { from_mm: -50.0, to_mm: 450.0, ..Shape::default() };
+        let (geometry, kind) = (data.geometry.clone(), EffectKind::Positioning(0));
+        let data = doubts::changed(data, |row| {
+            let term = |index: usize| Term::Effect { kind, index, shape }.displacement_um(row, &geometry);
+            term(0) * sizes_um[0] + term(1) * sizes_um[1]
+        });
+        let answer = diagnose(&data, None, &Options::default());
+        let mut found = names(&answer);
+        found.sort_unstable();
+        assert_eq!(found, ["positioning.EXX", "rotary.EX0C", "scale.X"], "{sizes_um:?} {:?}", answer.verdict);
+        // The slope of the third order over 400 of 500 mm.
+        let share: f64 = 2.0 * 205.0 / 500.0;
+        let slope_um_per_m = sizes_um[1] * 1.5 * (share * share - 1.0) / 0.25;
+        let scale = answer.causes.iter().find(|cause| cause.effect == "scale.X").expect("its slope");
+        let [scale] = &scale.parameters[..] else { panic!("{scale:?}") };
+        assert!(
+            (scale.value - slope_um_per_m).abs() < 3.0 + 0.05 * slope_um_per_m,
+            "{slope_um_per_m} {scale:?}"
+        );
+    }
+}
+
 /// Weighted Bonferroni: the level is shared by the effects, and each effect's by its forms.
 #[test]
 fn every_question_costs_its_share_of_the_level() {

@@ -125,6 +125,35 @@ impl Library {
         fewer.map(|(variant, _)| Part { variant, ..part }).collect()
     }
 
+    /// The parts that a curve's constant and slope count as on rows where rotary axes turn and show them; on others they are
+    /// the measuring frame's.
+    pub(crate) fn owners(&self, curve: Part) -> Vec<Part> {
+        if !self.candidates.iter().any(|candidate| matches!(candidate.kind, EffectKind::Rotary { .. })) {
+            return Vec::new();
+        }
+        let owns = |kind: EffectKind| match (self.kind(curve), kind) {
+            (EffectKind::Positioning(along), EffectKind::Scale(axis)) => along == axis,
+            (EffectKind::Straightness { direction, axis }, EffectKind::Squareness(first, second)) => {
+                [direction.min(axis), direction.max(axis)] == [first, second]
+            }
+            (
+                EffectKind::Positioning(direction) | EffectKind::Straightness { direction, .. },
+                EffectKind::Rotary { component, .. },
+            ) => direction == component,
+            _ => false,
+        };
+        let named = |(candidate, own): (usize, &Candidate)| {
+            let variant = own.variants.iter().position(|form| !form.only_rival)?;
+            owns(own.kind).then_some(Part { candidate, variant })
+        };
+        self.candidates.iter().enumerate().filter_map(named).collect()
+    }
+
+    /// True where a part completes one of some curves: it is their constant or their slope.
+    pub(crate) fn completes(&self, part: Part, curves: &[Part]) -> bool {
+        curves.iter().any(|curve| self.owners(*curve).iter().any(|owner| owner.candidate == part.candidate))
+    }
+
     /// Columns of a model: the set-up's, then those of its parts.
     #[must_use]
     pub(crate) fn model_columns(&self, parts: &[Part]) -> Vec<usize> {

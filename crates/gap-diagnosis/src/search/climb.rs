@@ -152,9 +152,10 @@ impl State<'_, '_> {
                 better.extend(seconds.into_iter().map(|(other, fit)| (fit, whole(other))));
             }
         }
+        better.extend(self.completed());
         better.sort_by(|(a, _), (b, _)| a.score.total_cmp(&b.score));
         let passes = |(fit, with): &(Fit, Vec<Part>)| {
-            let mut new = [with.len() - 2, with.len() - 1].into_iter();
+            let mut new = (0..with.len()).filter(|place| !parts.contains(&with[*place]));
             new.all(|place| self.objection(&without(with, place), with[place], fit).is_none())
         };
         let Some((fit, with)) = better.into_iter().take(MOST_TRIED).find(passes) else { return false };
@@ -162,6 +163,47 @@ impl State<'_, '_> {
         (self.parts, self.fit) = (with, fit);
         self.propose();
         true
+    }
+
+    /// A curve, in a plainer form or its own, with its constant and its slope at once, for itself and for one more cause.
+    ///
+    /// Where neither is in the model a curve of high order, or damage beside it, stands for both, and neither alone is
+    /// better than that.
+    fn completed(&mut self) -> Vec<(Fit, Vec<Part>)> {
+        let parts = self.parts.clone();
+        let limit = self.fit.score - self.space.allowance();
+        let mut better = Vec::new();
+        for place in 0..parts.len() {
+            let forms: Vec<Part> =
+                self.library.plainer(parts[place]).into_iter().chain([parts[place]]).collect();
+            for rest in (0..parts.len()).map(|other| {
+                let kept = (0..parts.len()).filter(|k| *k != place && *k != other);
+                kept.map(|k| parts[k]).collect::<Vec<Part>>()
+            }) {
+                for form in &forms {
+                    let mut owners = self.library.owners(*form);
+                    owners.retain(|owner| rest.iter().all(|part| part.candidate != owner.candidate));
+                    if owners.is_empty() || rest.len() + 1 + owners.len() > MOST_CAUSES {
+                        continue;
+                    }
+                    let mut with: Vec<Part> = rest.iter().copied().chain([*form]).chain(owners).collect();
+                    self.complete(&with);
+                    let mut fit = self.space.fit(&self.library, &with);
+                    // Of both only what is needed.
+                    for place in (rest.len() + 1..with.len()).rev() {
+                        let fewer = without(&with, place);
+                        let plainer = self.space.fit(&self.library, &fewer);
+                        if plainer.score <= fit.score {
+                            (with, fit) = (fewer, plainer);
+                        }
+                    }
+                    if fit.score < limit {
+                        better.push((fit, with));
+                    }
+                }
+            }
+        }
+        better
     }
 
     /// Pairs of causes that share what they explain, or that explain only together.

@@ -83,7 +83,9 @@ impl State<'_, '_> {
                 "столько остаётся и от формы другой кривой",
             ]));
         }
+        // A curve without its constant or its slope has wrong numbers, however little either is.
         if gain * self.spread(part) / reducible < LEAST_SHARE
+            && !self.library.completes(part, rest)
             && !self.was_taken_over(&with, gain, before, fit.level)
         {
             return refuse(Reason::Little([
@@ -321,7 +323,9 @@ impl State<'_, '_> {
                     let left = self.space.left(&self.library, &rest, level).0;
                     let with: Vec<Part> = rest.iter().copied().chain([self.parts[place]]).collect();
                     let share = (left - full) * self.spread(self.parts[place]) / reducible;
-                    let stays = share < LEAST_SHARE && self.was_taken_over(&with, left - full, left, level);
+                    let stays = share < LEAST_SHARE
+                        && (self.library.completes(self.parts[place], &rest)
+                            || self.was_taken_over(&with, left - full, left, level));
                     (!stays).then_some((share, rest))
                 })
                 .min_by(|a, b| a.0.total_cmp(&b.0));

@@ -8,7 +8,7 @@ fn normal(random: &mut ChaCha8Rng) -> f64 {
 }
 
 /// The readings of some rows changed, component by component.
-fn changed(mut data: Measurements, mut change: impl FnMut(&Row) -> Vector) -> Measurements {
+pub(super) fn changed(mut data: Measurements, mut change: impl FnMut(&Row) -> Vector) -> Measurements {
     for row in &mut data.rows {
         let more = change(row);
         if let Reading::Displacement(components) = &mut row.reading {
