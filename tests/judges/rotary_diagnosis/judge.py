@@ -192,7 +192,7 @@ def one(arguments):
             if parameter.get("u95"):
                 verdict["off"] = abs(parameter["value"] - weights[0]) / parameter["u95"]
     judged(verdict)
-    if verdict["outcome"] in ("right", "in the set"):
+    if verdict["outcome"] in ("right", "in the set") and not verdict["more"]:
         shutil.rmtree(folder)
     return verdict
 
