@@ -42,6 +42,7 @@ pub use curve::Curve;
 pub use error::CorrectionError;
 pub use grid::{Block, Goal, Stated};
 pub use options::{Options, Orientation, Outside};
+pub use pointing::HELD_RAD;
 pub use short_line::{Run, ShortLines, ShortRun};
 
 /// One block of output, in whole output steps.

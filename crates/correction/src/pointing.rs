@@ -18,7 +18,7 @@ pub(crate) const GUARD_RAD: f64 = 1e-8;
 const ROOM_MM: f64 = 0.5;
 const ROOM: f64 = 1.02;
 /// Near a singularity a motion is split into pieces that turn by no more, rad.
-const HELD_RAD: f64 = 0.02;
+pub const HELD_RAD: f64 = 0.02;
 /// What is known of the direction along a way.
 pub(crate) enum Leans {
     /// It is off by no more, rad.

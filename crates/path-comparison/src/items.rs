@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::rc::Rc;
 
-use machine_model::{Command, Models, PathModel, Play, Vector, turned_by_mm};
+use machine_model::{Command, Models, PathModel, Play, Vector, singular_sin, turned_by_mm};
 use smallvec::SmallVec;
 use toolpath::{
     Bezier, CycleKind, Feed, FeedRate, Hole, HoleMove, Kinematics, MOST_PECKS, Motion, Partial, PeckRetreats,
@@ -108,6 +108,20 @@ impl Left {
     }
 }
 
+/// How far a place is off a motion's path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Off {
+    /// The tip, mm.
+    pub(crate) tip_mm: f64,
+    /// The tool's direction, rad.
+    pub(crate) leans_rad: f64,
+    /// How far that may be there, rad.
+    pub(crate) leans_at_most_rad: f64,
+    /// The farthest rotary axis from its angle, rad, at the best of the places where tip and direction hold; infinite where
+    /// there is none.
+    pub(crate) aside_rad: f64,
+}
+
 /// A feed motion.
 pub(crate) struct Feeding {
     pub(crate) stretches: SmallVec<[Stretch; 2]>,
@@ -135,6 +149,8 @@ pub(crate) struct Feeding {
     pub(crate) course: Option<Box<Course>>,
     /// How far the tip and the direction may be off, where directions are compared.
     pub(crate) pointing: Option<(f64, Pointing)>,
+    /// Of each stretch: how far the direction may be off there, rad.
+    pub(crate) leans_at_most_rad: SmallVec<[f64; 2]>,
     /// Largest angle of the tool from the ideal direction at its own angles, rad.
     pub(crate) leans_rad: f64,
     /// The largest of what was made of it, rad.
@@ -193,18 +209,20 @@ impl Feeding {
         Some((self.end() - self.stretches[last].at(span.high)).norm())
     }
 
-    /// How far a place is beside the tip's path, mm, and the tool from its direction, rad, where both hold best: being late by
-    /// less than the tip may be off is no deviation of a direction either.
-    pub(crate) fn off(&self, place: &Place, limit_mm: f64, limit_rad: f64) -> (f64, f64) {
+    /// How far a place is off where tip and direction hold best: being late by less than the tip may be off is no deviation
+    /// of a direction either, nor of the axes.
+    pub(crate) fn off(&self, place: &Place, limit_mm: f64) -> Off {
         /// So many places are looked at on either side of the nearest.
         const LOOKS: i32 = 24;
         /// Shares of the limits that differ by less are rounding.
         const ALIKE: f64 = 1e-6;
-        let (mut best, mut least_rad) = ((f64::INFINITY, 0.0, f64::INFINITY), f64::INFINITY);
-        for stretch in &self.stretches {
+        // Share of the limits, distance, share of the direction's, direction and its limit.
+        let mut best = [f64::INFINITY; 5];
+        let (mut least, mut aside_rad) = ([f64::INFINITY; 3], f64::INFINITY);
+        for (stretch, at_most_rad) in self.stretches.iter().zip(&self.leans_at_most_rad) {
             let foot = stretch.foot(place);
             let away_mm = (place - stretch.at(foot)).fixed_rows::<6>(0).norm();
-            if away_mm > 4.0 * self.limit_mm && best.0.is_finite() {
+            if away_mm > 4.0 * self.limit_mm && best[0].is_finite() {
                 continue;
             }
             let reach = 2.0 * self.limit_mm / stretch.length_mm().max(self.limit_mm);
@@ -213,17 +231,25 @@ impl Feeding {
                 let off = place - stretch.at(s);
                 let (off_mm, leans_rad) =
                     (off.fixed_rows::<3>(0).norm(), off.fixed_rows::<3>(3).norm() / LEVER_MM);
+                let leans = leans_rad / at_most_rad;
                 if off_mm <= limit_mm {
-                    least_rad = least_rad.min(leans_rad);
+                    if leans < least[0] {
+                        least = [leans, leans_rad, *at_most_rad];
+                    }
+                    if leans <= 1.0 {
+                        aside_rad = aside_rad.min(off.fixed_rows::<3>(6).amax() / TURN_LEVER_MM);
+                    }
                 }
-                let share = (off_mm / limit_mm).max(leans_rad / limit_rad);
+                let share = (off_mm / limit_mm).max(leans);
                 // Of places that are as good the nearest.
-                if share < best.0 - ALIKE || (share < best.0 + ALIKE && off_mm < best.1) {
-                    best = (share, off_mm, leans_rad);
+                if share < best[0] - ALIKE || (share < best[0] + ALIKE && off_mm < best[1]) {
+                    best = [share, off_mm, leans, leans_rad, *at_most_rad];
                 }
             }
         }
-        (best.1, least_rad.min(best.2))
+        let [_, tip_mm, leans, at_best @ ..] = best;
+        let [leans_rad, leans_at_most_rad] = if least[0] <= leans { [least[1], least[2]] } else { at_best };
+        Off { tip_mm, leans_rad, leans_at_most_rad, aside_rad }
     }
 
     /// Distance of a place, mm, and how far along the motion the nearest lies, 0 to 1.
@@ -445,6 +471,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             made: Vec::new(),
             course: None,
             pointing: None,
+            leans_at_most_rad: SmallVec::new(),
             leans_rad: 0.0,
             made_leans_rad: 0.0,
         }));
@@ -661,13 +688,25 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
                 stretches
             }
         };
+        let leans_at_most_rad = self.pointing.map_or_else(SmallVec::new, |pointing| {
+            let places = stretches.len();
+            let near = |k: usize| {
+                let s = k as f64 / places as f64;
+                let sin = singular_sin(self.model, &common.command(way.at(s), way.rotary_rad(s)));
+                sin.is_some_and(|sin| sin < pointing.near_sin)
+            };
+            let at_most = |k: usize| {
+                if near(k) || near(k + 1) { pointing.leans_near_rad } else { pointing.leans_rad }
+            };
+            (0..places).map(at_most).collect()
+        });
         // Of a long motion its length will do.
         let start = stretches[0].at(0.0);
         let far = || stretches.iter().map(|stretch| (stretch.at(1.0) - start).norm()).fold(0.0, f64::max);
         let reach_mm = if length_mm < 1.0 { far() } else { length_mm };
         self.limit_mm = self.limit_mm.max(common.limit_mm);
         // Tip and direction are found together, and judged apart.
-        let leans_mm = self.pointing.map_or(0.0, |pointing| LEVER_MM * pointing.leans_rad);
+        let leans_mm = self.pointing.map_or(0.0, |pointing| LEVER_MM * pointing.leans_near_rad);
         let limit_mm = (common.limit_mm * common.limit_mm + leans_mm * leans_mm).sqrt();
         self.at = Partial {
             linear_mm: Into::<[f64; 3]>::into(way.at(1.0)).map(Some),
@@ -695,6 +734,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             made: Vec::new(),
             course,
             pointing: self.pointing.map(|pointing| (common.limit_mm, pointing)),
+            leans_at_most_rad,
             leans_rad,
             made_leans_rad: 0.0,
         })));

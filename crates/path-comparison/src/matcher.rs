@@ -5,7 +5,7 @@ use toolpath::PeckRetreats;
 
 use crate::alignment::{Alignment, Begins, Processes, Reached};
 use crate::difference::{self, Found};
-use crate::items::{Counted, Feeding, Item, Items, Process, Role, ends_alike};
+use crate::items::{Counted, Feeding, Item, Items, Off, Process, Role, ends_alike};
 use crate::stretch::{Place, Stretch};
 use crate::way::Way;
 use crate::{Comparison, Mismatch, Pointing, Step, Trace, Traces, What};
@@ -71,10 +71,9 @@ impl Reach {
     }
 }
 
-/// Tip and direction at a place, each with its limit.
+/// Tip, direction and rotary axes at a place, each with its limit.
 struct Apart {
-    off_mm: f64,
-    leans_rad: f64,
+    off: Off,
     limit_mm: f64,
     pointing: Pointing,
     wanted_line: u64,
@@ -299,16 +298,20 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
 
     /// Tip and direction each by its own limit at the end of a stretch, where directions are compared; false where not.
     fn judge(&mut self, stretch: &Stretch, ahead: usize, line: u64) -> bool {
-        let Some(Apart { off_mm, leans_rad, limit_mm, pointing, wanted_line }) =
-            self.apart(&stretch.at(1.0), ahead, line)
+        let Some(Apart { off, limit_mm, pointing, wanted_line }) = self.apart(&stretch.at(1.0), ahead, line)
         else {
             return false;
         };
-        if off_mm > limit_mm {
-            self.mismatch(What::TooFar(off_mm), wanted_line, line);
+        let holds = [off.tip_mm <= limit_mm, off.leans_rad <= off.leans_at_most_rad];
+        if !holds[0] {
+            self.mismatch(What::TooFar(off.tip_mm), wanted_line, line);
         }
-        if leans_rad > pointing.leans_rad {
-            self.mismatch(What::Leans(leans_rad), wanted_line, line);
+        if !holds[1] {
+            self.mismatch(What::Leans(off.leans_rad), wanted_line, line);
+        }
+        // Along a rotary axis the tool points the same way at every angle of it.
+        if holds == [true; 2] && off.aside_rad > pointing.aside_deg.to_radians() {
+            self.mismatch(What::Turned, wanted_line, line);
         }
         true
     }
@@ -318,10 +321,10 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     fn apart(&mut self, place: &Place, ahead: usize, line: u64) -> Option<Apart> {
         let feed = self.alignment.wanted.feed(ahead)?;
         let (limit_mm, pointing) = feed.pointing?;
-        let (off_mm, leans_rad) = feed.off(place, limit_mm, pointing.leans_rad);
-        feed.note_made(off_mm, line);
-        feed.made_leans_rad = feed.made_leans_rad.max(leans_rad);
-        Some(Apart { off_mm, leans_rad, limit_mm, pointing, wanted_line: feed.line })
+        let off = feed.off(place, limit_mm);
+        feed.note_made(off.tip_mm, line);
+        feed.made_leans_rad = feed.made_leans_rad.max(off.leans_rad);
+        Some(Apart { off, limit_mm, pointing, wanted_line: feed.line })
     }
 
     /// Under G93 a motion is known by what it takes.

@@ -24,6 +24,10 @@ pub struct Step {
 pub struct Pointing {
     /// The tool's real direction from the programmed one, rad.
     pub leans_rad: f64,
+    /// The same near a singularity, rad.
+    pub leans_near_rad: f64,
+    /// How near that is, `|n · (a × b)|` of equation (118).
+    pub near_sin: f64,
     /// A rotary axis from its programmed angle, degrees.
     pub aside_deg: f64,
 }

@@ -234,7 +234,8 @@ fn a_lean_at_the_start_is_no_distance_of_the_tip() {
         let place = |x: f64, a: f64| Position { linear_mm: [x, 0.0, 0.0], rotary_deg: [a, 0.0, 0.0] };
         Feed { start: place(0.0, a_deg), end: place(10.0, 10.0), ..feed([0.0; 3], [0.0; 3], Shape::Line) }
     };
-    let pointing = Some(Pointing { leans_rad: 100e-6, aside_deg: 1.0 });
+    let pointing =
+        Some(Pointing { leans_rad: 100e-6, leans_near_rad: 100e-6, near_sin: 0.0, aside_deg: 1.0 });
     let steps = |a_deg: f64| std::iter::once(Step { pointing, ..step(along(a_deg), 1) });
     let retreats = toolpath::PeckRetreats { clearance_mm: 0.25, chip_mm: 0.5 };
     let models = Models { axes: &table, tip: None };
@@ -243,4 +244,35 @@ fn a_lean_at_the_start_is_no_distance_of_the_tip() {
     assert!(found.mismatches.is_empty(), "{found:?}");
     assert!(found.after.largest_mm < 1e-9, "{found:?}");
     assert!((found.leans_after.largest_rad - 60e-6).abs() < 1e-9, "{found:?}");
+}
+
+/// A tool along the axis of the table points the same way at each of its angles; the axis may not stand anywhere for that.
+#[test]
+fn an_axis_along_the_tool_stands_at_its_angle() {
+    let table = RigidBody::new(Description {
+        chain: Chain::parse("[w C b X Y Z t]").expect("a chain"),
+        linear: [(); 3].map(|()| LinearAxis::perfect(Range { low: -500.0, high: 500.0 })),
+        rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
+        squareness: Squareness::default(),
+    })
+    .expect("a machine");
+    let pointing =
+        Some(Pointing { leans_rad: 100e-6, leans_near_rad: 100e-6, near_sin: 0.0, aside_deg: 0.5 });
+    let plunge = |end_deg: f64| {
+        let place = |z: f64, c: f64| Position { linear_mm: [0.0, 0.0, z], rotary_deg: [0.0, 0.0, c] };
+        let feed = Feed {
+            start: place(0.0, 10.0),
+            end: place(10.0, end_deg),
+            ..feed([0.0; 3], [0.0; 3], Shape::Line)
+        };
+        std::iter::once(Step { pointing, ..step(feed, 1) })
+    };
+    let retreats = toolpath::PeckRetreats { clearance_mm: 0.25, chip_mm: 0.5 };
+    for (made_deg, stands) in [(30.0, true), (30.4, true), (30.6, false), (31.0, false), (29.0, false)] {
+        let models = Models { axes: &table, tip: None };
+        let found = compare(models, plunge(30.0), plunge(made_deg), retreats, Traces::Forgotten);
+        assert_eq!(found.mismatches.is_empty(), stands, "{made_deg} {found:?}");
+        assert!(found.mismatches.iter().all(|mismatch| mismatch.what == What::Turned), "{found:?}");
+        assert!(found.after.largest_mm < 1e-7, "{found:?}");
+    }
 }

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use correction::Orientation;
+use correction::{HELD_RAD, Orientation};
 use diagnostic::Diagnostic;
-use machine_model::{Command, SolveError, Vector, singular_sin};
+use machine_model::{Command, SolveError, Vector};
 use nc_expand::Expanded;
 use nc_program::process::{BlockSays, Deed, Process, Said, said};
 use nc_program::{Context, Interpreter};
@@ -247,15 +247,13 @@ impl<'a, 'n> Program<'a, 'n> {
         /// Last bits, and what a direction changes by between the places that are looked at.
         const ROOM: f64 = 1.05;
         let Orientation::Full(limits) = self.job.options.orientation else { return None };
-        let mut leans_rad = self.job.options.orientation_rad + 1e-9;
+        let leans_rad = self.job.options.orientation_rad + 1e-9;
         let model = self.job.models.of(context.kinematics).unwrap_or(self.job.models.axes);
+        let mut most_rad = 0.0_f64;
         if let Motion::Feed(feed) = motion {
-            // So far from it the last of what an axis is turned aside by is taken back.
-            let lags = limits.least_sin + limits.most_turn_rad / limits.most_share;
             let mix = |a: [f64; 3], b: [f64; 3], s: f64| Vector::from(a) * (1.0 - s) + Vector::from(b) * s;
             let turns = feed.start.rotary_deg != feed.end.rotary_deg;
             let places = if turns { 16 } else { 2 };
-            let (mut least_sin, mut most_rad) = (f64::INFINITY, 0.0_f64);
             for k in 0..=places {
                 let s = f64::from(k) / f64::from(places);
                 let at = Command {
@@ -265,14 +263,16 @@ impl<'a, 'n> Program<'a, 'n> {
                     direction: [0; 3],
                     rotary_play: Default::default(),
                 };
-                least_sin = least_sin.min(singular_sin(model, &at).unwrap_or(f64::INFINITY));
                 most_rad = most_rad.max(model.tilt_rad(&at));
             }
-            if least_sin < lags {
-                leans_rad += ROOM * most_rad;
-            }
         }
-        Some(Pointing { leans_rad, aside_deg: limits.most_turn_rad.to_degrees() * ROOM })
+        Some(Pointing {
+            leans_rad,
+            leans_near_rad: leans_rad + ROOM * most_rad,
+            // So far from it the last of what an axis is turned aside by is taken back, in the last piece that is held.
+            near_sin: limits.least_sin + limits.most_turn_rad / limits.most_share + HELD_RAD,
+            aside_deg: limits.most_turn_rad.to_degrees() * ROOM,
+        })
     }
 
     /// The number of the process in force.
