@@ -42,6 +42,8 @@ pub(super) struct Open {
     pub(super) not_told_apart: Vec<Vec<String>>,
     pub(super) unseen: Vec<String>,
     pub(super) counted_as: Vec<(String, Vec<String>)>,
+    /// Balls at other places would tell some of it.
+    pub(super) other_rows_tell: bool,
 }
 
 /// Location error by its name, coefficient by its function.
@@ -58,20 +60,20 @@ impl Open {
     pub(super) fn new(sweep: &Sweep, name: &dyn Fn(usize) -> Option<Term>, hidden: &[Term]) -> Self {
         let mut sets: Vec<Vec<String>> = Vec::new();
         let (mut unseen, mut counted_as) = (Vec::new(), Vec::new());
+        let mut other_rows_tell = false;
         for (column, owners) in &sweep.owned {
             let Some(term) = name(*column) else { continue };
-            if hidden.contains(&term) {
-                // Of a function its owners have the part; a location error has no other place.
-                if matches!(term, Term::Location(_)) {
-                    unseen.push(term);
-                }
-                continue;
-            }
             let owners: Vec<Term> = owners.iter().filter_map(|owner| name(*owner)).collect();
             let is_part = |term: &Term| matches!(term, Term::Coefficient { .. });
+            let is_hidden = hidden.contains(&term);
+            // Of a function its owners have the part, everywhere.
+            if is_hidden && is_part(&term) {
+                continue;
+            }
+            other_rows_tell |= !is_hidden;
             let rivals: Vec<&Term> = owners.iter().filter(|owner| is_part(owner) == is_part(&term)).collect();
             // A reversal is no part of the machine that is written: what it is mistaken for is not in doubt.
-            let is_doubt = !rivals.is_empty() && !matches!(term, Term::Reversal(_));
+            let is_doubt = !rivals.is_empty() && !is_hidden && !matches!(term, Term::Reversal(_));
             if is_doubt {
                 let mut set: Vec<String> = rivals.into_iter().chain([&term]).map(symbol).collect();
                 set.sort();
@@ -86,7 +88,7 @@ impl Open {
         let mut unseen: Vec<String> = unseen.iter().map(symbol).collect();
         unseen.sort();
         unseen.dedup();
-        Self { not_told_apart: joined(sets), unseen, counted_as }
+        Self { not_told_apart: joined(sets), unseen, counted_as, other_rows_tell }
     }
 
     /// True for what has one value only that the rows allow.

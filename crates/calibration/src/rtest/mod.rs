@@ -101,6 +101,8 @@ pub struct RotaryTables {
     pub unseen: Vec<String>,
     /// Parts of error functions that count as location errors, since these rows do not tell them from those: part and owners.
     pub counted_as: Vec<(String, Vec<String>)>,
+    /// Balls at other places would tell some of what is not told apart, not seen or counted as another.
+    pub other_rows_tell: bool,
     /// Error functions of the changed machine at nodes fine enough for the profile's interpolation.
     pub tables: Vec<WrittenTable>,
     /// The changed machine.
@@ -250,6 +252,7 @@ pub fn calibrate(
         not_told_apart: open.not_told_apart,
         unseen: open.unseen,
         counted_as: open.counted_as,
+        other_rows_tell: open.other_rows_tell,
         tables,
         description: written,
         offsets_mm,

@@ -111,7 +111,7 @@ pub(super) fn text(found: &RotaryTables, held: Option<&HeldOut>, rows: &Rows) ->
             "отнесено к {owners}, по этим строкам не отличить: {part}\n"
         ));
     }
-    if !(found.not_told_apart.is_empty() && found.unseen.is_empty() && found.counted_as.is_empty()) {
+    if found.other_rows_tell {
         out.push(&Text::pair(
             "  a ball at three places not in one line, at two heights, tells them apart\n",
             "  их различит шар в трёх точках не на одной прямой, на двух высотах\n",
