@@ -25,8 +25,8 @@ KINDS = {
     "tables": "location errors and functions of the angle",
     "based": "the same, a base profile that knows part of both, linear axes with known tables",
     "sphere": "as tables, probe and sphere",
-    "star": "as tables, tool vectors of a star of styli, not in one line: what a head needs",
-    "one-ball": "one mounting of the ball: what it cannot show is named",
+    "star": "as tables, tool vectors of a star of styli, not in one line, for tables too; heads are always read so",
+    "one-ball": "one mounting of the ball: what it cannot show is named; of a head refused",
     "perfect": "rotary axes without errors: nothing found",
 }
 NOISE = 1.0
@@ -145,7 +145,9 @@ class Case:
         at = [120 * run + rng.uniform(0, 60), (rng.uniform(60, 110), rng.uniform(120, 190), rng.uniform(20, 200))[run % 3], (40.0, 160.0, 90.0)[run % 3] + rng.uniform(-20, 20)]
         x = np.array([at[1] * np.cos(np.radians(at[0])), at[1] * np.sin(np.radians(at[0])), at[2]])
         centre = np.array(self.truth.spec["rotary"][self.names[0]]["centre"]) if self.truth.table else np.zeros(3)
-        aside = 60 * np.array([np.cos(2 * run + 1), np.sin(2 * run + 1)]).round(3) if self.kind == "star" else np.zeros(2)
+        # What a head does beside the line of its tools is shown by styli beside it.
+        star = self.kind == "star" or self.truth.head
+        aside = 60 * np.array([np.cos(2 * run + 1), np.sin(2 * run + 1)]).round(3) if star else np.zeros(2)
         return np.round(centre + x, 3), np.array([*aside, -float(np.round((110.0, 210.0, 160.0)[run % 3] + rng.uniform(-20, 20), 3))])
 
     def measure(self):
