@@ -194,6 +194,10 @@ def compare(spec, wanted, taken, directed=False):
         first = int(np.argmax(away <= limit)) if (away <= limit).any() else 0
         if first and np.linalg.norm(np.diff(b.tip[: first + 1], axis=0), axis=1).sum() > 2.0:
             first = 0
+        # Where it has come near enough it is still on its way: the path begins where it ends, nearer than where it is.
+        end = int(np.searchsorted(b.number, b.number[first], side="right"))
+        if end < len(b.tip) and away[end] < away[first] <= limit and np.linalg.norm(b.tip[end] - b.tip[0]) <= 2.0:
+            first = end
         # So may a turn that points the tool where it shall, its tip at rest.
         while directed and first < len(b.tip) and aside(b, first, a, limit):
             first = int(np.flatnonzero(b.number == b.number[first])[-1]) + 1

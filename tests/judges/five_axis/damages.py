@@ -87,8 +87,11 @@ def judge(vpost, spec, result, folder, check, seed, orientation=None):
             # Is it one? A dropped word may say what holds already, 20 um may lie along the path, a line may be a short one.
             try:
                 taken, _ = reader.read(text, spec)
-                found = compare.compare(spec, wanted, taken)
-                real = found["um"] > found["limit_um"] + 0.1 or found["turned"] > (compare.ASIDE if orientation == "full" else compare.TURNED) or bool(compare.times(wanted, taken, found))
+                directed = orientation == "full"
+                found = compare.compare(spec, wanted, taken, directed)
+                real = found["um"] > found["limit_um"] + 0.1 or found["turned"] > (compare.ASIDE if directed else compare.TURNED) or bool(compare.times(wanted, taken, found))
+                allowed = spec.get("orientation_urad", 20.0) + 1.0
+                real |= directed and max(found["far_tilt_urad"], found["worse_tilt_urad"]) > allowed
             except (compare.Structure, reader.Unreadable):
                 real = True
             out[name] = "missed" if real else "harmless"
