@@ -108,6 +108,31 @@ pub struct RigidBody {
     everywhere: Arc<Mutex<VecDeque<(Vector, Everywhere)>>>,
 }
 
+/// What the rotary axes do where they stand: the same for every place of the linear axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Standing {
+    /// From the frame of the linear axes to the workpiece's, ideal table.
+    turn: Matrix3<f64>,
+    shift_mm: Vector,
+    /// `A` of equation (9), where the table has errors.
+    error: Option<(Matrix3<f64>, Vector)>,
+    /// Tool vector in the directions of the linear axes as an ideal head turns it, and by what the real one is off, mm.
+    tool_mm: Vector,
+    tool_error_mm: Vector,
+}
+
+impl Standing {
+    /// Where the linear axes of an ideal machine have to stand so that its tip is there, both mm.
+    pub(crate) fn reach(&self, tip_mm: &Vector) -> Vector {
+        self.turn.tr_mul(&(tip_mm - self.shift_mm)) - self.tool_mm
+    }
+
+    /// Tip of an ideal machine, mm, workpiece frame: the inverse of [`Self::reach`].
+    pub(crate) fn nominal_position(&self, linear_mm: &Vector) -> Vector {
+        self.turn * (linear_mm + self.tool_mm) + self.shift_mm
+    }
+}
+
 /// Of so many tools the bounds are kept.
 const TOOLS_KEPT: usize = 16;
 
@@ -196,10 +221,43 @@ impl RigidBody {
     /// the nominal position.
     #[must_use]
     pub fn predict(&self, command: &Command) -> Prediction {
-        let (turn, shift) = self.table_transform(command, Machine::Ideal);
-        let inner = command.linear_mm + self.nominal_tool(command);
-        let error_mm = turn * self.error(command);
-        Prediction { position_mm: turn * inner + shift + error_mm, error_mm }
+        let standing = self.standing(command);
+        let error_mm = self.error_as_seen(&standing, &command.linear_mm, &command.direction);
+        let nominal = standing.nominal_position(&command.linear_mm);
+        Prediction { position_mm: nominal + error_mm, error_mm }
+    }
+
+    /// What the rotary axes do as they stand in this command.
+    pub(crate) fn standing(&self, command: &Command) -> Standing {
+        let ideal = self.table_transform(command, Machine::Ideal);
+        let (tool_mm, tool_error_mm) = self.tool_for_bounds(command);
+        let error = self.table_has_errors.then(|| {
+            let (real, real_shift) = self.table_transform(command, Machine::Real);
+            let back = ideal.0.transpose();
+            (back * real, back * (real_shift - ideal.1))
+        });
+        Standing { turn: ideal.0, shift_mm: ideal.1, error, tool_mm, tool_error_mm }
+    }
+
+    /// Real minus nominal position, mm, workpiece frame.
+    pub(crate) fn error_as_seen(
+        &self,
+        standing: &Standing,
+        linear_mm: &Vector,
+        directions: &[i8; 3],
+    ) -> Vector {
+        standing.turn * self.error_at(standing, linear_mm, directions)
+    }
+
+    /// The same in the directions of the linear axes: equations (8) and (9).
+    pub(crate) fn error_at(&self, standing: &Standing, linear_mm: &Vector, directions: &[i8; 3]) -> Vector {
+        let q = self.volume.nearest(linear_mm);
+        let all = |v| Triple::all(0.0, v);
+        let carried = (all(&standing.tool_mm), all(&standing.tool_error_mm));
+        let linear = self.chain_error(&[q.x, q.y, q.z], directions, carried.0, carried.1).into();
+        let Some((turn, shift)) = &standing.error else { return linear };
+        let nominal = q + standing.tool_mm;
+        turn * (nominal + linear) + shift - nominal
     }
 
     /// Tool vector in the directions of the linear axes, mm, as an ideal head turns it.
@@ -245,31 +303,6 @@ impl RigidBody {
     #[must_use]
     pub fn real_table_turn(&self, command: &Command) -> Matrix3<f64> {
         self.table_transform(command, Machine::Real).0
-    }
-
-    /// Real minus nominal position, mm, in the directions of the linear axes: equations (8) and (9).
-    #[inline]
-    pub(crate) fn error(&self, command: &Command) -> Vector {
-        let q = self.volume.nearest(&command.linear_mm);
-        let linear = self.linear_error(&q, command);
-        if !self.table_has_errors {
-            return linear;
-        }
-        let (turn, shift) = self.table_error(command);
-        self.with_table(&turn, &shift, &(q + self.nominal_tool(command)), &linear)
-    }
-
-    /// Error of the three linear axes and the head, in the directions of the linear axes: equation (8).
-    #[inline]
-    fn linear_error(&self, q: &Vector, command: &Command) -> Vector {
-        let mut nominal = command.tool_mm;
-        let mut error = Vector::zeros();
-        if !self.description.chain.head().is_empty() {
-            nominal = self.head(command, Machine::Ideal);
-            error = self.head(command, Machine::Real) - nominal;
-        }
-        let all = |v| Triple::all(0.0, v);
-        self.chain_error(&[q.x, q.y, q.z], &command.direction, all(&nominal), all(&error)).into()
     }
 
     /// Error of the linear axes, on top of that of what they carry: the recursion of equation (8).
@@ -330,25 +363,22 @@ impl RigidBody {
         (error, [gradient[x], gradient[y], gradient[z]])
     }
 
-    /// `A` of equation (9): what is left of the table's rotation when its ideal part is taken away.
-    fn table_error(&self, command: &Command) -> (Matrix3<f64>, Vector) {
-        let (real, real_shift) = self.table_transform(command, Machine::Real);
-        let (ideal, ideal_shift) = self.table_transform(command, Machine::Ideal);
-        let back = ideal.transpose();
-        (back * real, back * (real_shift - ideal_shift))
+    /// What the rotary axes of an ideal machine do as they stand in this command.
+    pub(crate) fn ideally_standing(&self, command: &Command) -> Standing {
+        let (turn, shift_mm) = self.table_transform(command, Machine::Ideal);
+        let tool_mm = self.nominal_tool(command);
+        Standing { turn, shift_mm, error: None, tool_mm, tool_error_mm: Vector::zeros() }
     }
 
     /// Tip of an ideal machine, mm, workpiece frame.
     pub(crate) fn nominal_position(&self, linear_mm: &Vector, state: &Command) -> Vector {
-        let (turn, shift) = self.table_transform(state, Machine::Ideal);
-        turn * (linear_mm + self.nominal_tool(state)) + shift
+        self.ideally_standing(state).nominal_position(linear_mm)
     }
 
     /// Where the linear axes of an ideal machine have to stand so that its tip is there, both mm: the inverse of
     /// [`Self::nominal_position`].
     pub(crate) fn reach(&self, tip_mm: &Vector, state: &Command) -> Vector {
-        let (turn, shift) = self.table_transform(state, Machine::Ideal);
-        turn.tr_mul(&(tip_mm - shift)) - self.nominal_tool(state)
+        self.ideally_standing(state).reach(tip_mm)
     }
 
     /// The tool's direction as the workpiece sees it, unit vectors: of an ideal machine, and of this one. It is that of the
@@ -420,14 +450,9 @@ impl RigidBody {
         Ok(())
     }
 
-    /// Equation (9): the error with the table's own, in the directions of the linear axes.
-    fn with_table(&self, turn: &Matrix3<f64>, shift: &Vector, nominal: &Vector, linear: &Vector) -> Vector {
-        turn * (nominal + linear) + shift - nominal
-    }
-
     /// Largest stretching of `D - I`, `D` the table's rotation error: how far it bends straight motion's speed.
     pub(crate) fn table_gain(&self, command: &Command) -> f64 {
-        if self.table_has_errors { (self.table_error(command).0 - Matrix3::identity()).norm() } else { 0.0 }
+        self.standing(command).error.map_or(0.0, |(turn, _)| (turn - Matrix3::identity()).norm())
     }
 
     /// Tool vector as the bounds need it, ideal and its error by the head.

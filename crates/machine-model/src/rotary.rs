@@ -30,6 +30,8 @@ pub(crate) struct Swivel {
     axis: Axis,
     /// Of motion in the negative direction, of neither, in the positive; or one for all.
     by_direction: Vec<AxisTables>,
+    /// How its line leans.
+    lean: Matrix3<f64>,
 }
 
 impl Swivel {
@@ -42,7 +44,7 @@ impl Swivel {
             (Some(all), None) => vec![all.clone()],
             (None, _) => Vec::new(),
         };
-        Self { data: data.clone(), axis, by_direction }
+        Self { data: data.clone(), axis, by_direction, lean: small(&data.tilt_rad) }
     }
 
     /// The tables for what moved in a direction last.
@@ -93,10 +95,9 @@ impl Swivel {
             turn = small(&Vector::new(a, b, c)) * turn;
             centre += Vector::new(x, y, z);
         }
-        let lean = small(&data.tilt_rad);
         turn = match data.tilt {
-            Tilt::Body => lean * turn,
-            Tilt::Axis => lean * turn * lean.transpose(),
+            Tilt::Body => self.lean * turn,
+            Tilt::Axis => self.lean * turn * self.lean.transpose(),
         };
         centre += data.shift_mm;
         (turn, centre - turn * data.centre_mm)

@@ -7,6 +7,7 @@ use toolpath::TiltedPlane;
 
 use crate::chord_bound::lies_inside;
 use crate::length::Length;
+use crate::rigid_body::Standing;
 use crate::rotary::ideally_turned;
 use crate::solve::{inside, solve};
 use crate::turning_bound::error_in_turn;
@@ -56,6 +57,12 @@ struct Core {
     control: RigidBody,
     /// Distances between the centres that it believes in and those that there are, all together, mm.
     apart_mm: f64,
+}
+
+/// What the rotary axes do where they stand, of the machine and of the one that the control believes in.
+struct Stands {
+    machine: Standing,
+    control: Standing,
 }
 
 /// Where a tip may be: whether the axes get there is asked of them.
@@ -139,6 +146,26 @@ impl TipControl {
         let control = RigidBody::new(control).ok()?;
         let core = Core { machine: machine.clone(), control, apart_mm };
         Some(Self { core: Arc::new(core), planes: Planes::default() })
+    }
+
+    fn stands(&self, command: &Command) -> Stands {
+        let machine = self.core.machine.standing(command);
+        // With the same centres they are the same but for errors, of which none is asked of the control.
+        let control =
+            if self.core.apart_mm == 0.0 { machine } else { self.core.control.ideally_standing(command) };
+        Stands { machine, control }
+    }
+
+    /// Real tip less the tip that was asked for, mm, in the frame of the workpiece.
+    fn error_at(&self, stands: &Stands, linear_mm: &Vector, state: &Command) -> Vector {
+        let asked = linear_mm + state.tool_mm;
+        let axes = stands.control.reach(&asked);
+        let own = self.core.machine.error_as_seen(&stands.machine, &axes, &state.direction);
+        if self.core.apart_mm == 0.0 {
+            // No more than that: what is zero stays zero to the last bit.
+            return own;
+        }
+        own + stands.machine.nominal_position(&axes) - linear_mm - state.tool_mm
     }
 
     /// What the control tells the axes for a tip command.
@@ -253,12 +280,10 @@ impl Engine for TipControl {
 
     fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
         self.core.machine.rotary_inside(target)?;
-        let solution = solve(&target.linear_mm, &ANYWHERE, |tip| {
-            self.error_mm(&Command { linear_mm: *tip, ..*target })
-        })?;
+        let stands = self.stands(target);
+        let solution = solve(&target.linear_mm, &ANYWHERE, |tip| self.error_at(&stands, tip, target))?;
         for tip in [target.linear_mm, solution.linear_mm] {
-            let axes = self.axis_command(&Command { linear_mm: tip, ..*target });
-            inside(&axes.linear_mm, &self.core.machine.volume)?;
+            inside(&stands.control.reach(&(tip + target.tool_mm)), &self.core.machine.volume)?;
         }
         Ok(solution)
     }
@@ -271,13 +296,7 @@ impl Engine for TipControl {
 impl PathModel for TipControl {
     /// Real tip less the tip that was asked for, mm, in the frame of the workpiece.
     fn error_mm(&self, command: &Command) -> Vector {
-        let axes = self.axis_command(command);
-        let own = self.core.machine.predict(&axes).error_mm;
-        if self.core.apart_mm == 0.0 {
-            // No more than that: what is zero stays zero to the last bit.
-            return own;
-        }
-        own + self.core.machine.nominal_position(&axes.linear_mm, &axes) - command.linear_mm - command.tool_mm
+        self.error_at(&self.stands(command), &command.linear_mm, command)
     }
 
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {
@@ -376,6 +395,14 @@ impl PlaneControl {
     fn axis_command(&self, place: &Command) -> Command {
         self.tip.axis_command(&self.tip_command(place))
     }
+
+    /// Real tip less the tip that was asked for, mm, in the directions of the plane.
+    fn error_at(&self, stands: &Stands, place: &Command) -> Vector {
+        let tip = self.tip_command(place);
+        let error = self.tip.error_at(stands, &tip.linear_mm, &tip);
+        // What is zero stays zero to the last bit.
+        if error == Vector::zeros() { error } else { self.turn.tr_mul(&error) }
+    }
 }
 
 impl Engine for PlaneControl {
@@ -390,12 +417,12 @@ impl Engine for PlaneControl {
     fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
         let machine = &self.tip.core.machine;
         machine.rotary_inside(target)?;
-        let solution = solve(&target.linear_mm, &ANYWHERE, |place| {
-            self.error_mm(&Command { linear_mm: *place, ..*target })
-        })?;
+        let stands = self.tip.stands(target);
+        let at = |place: &Vector| Command { linear_mm: *place, ..*target };
+        let solution = solve(&target.linear_mm, &ANYWHERE, |place| self.error_at(&stands, &at(place)))?;
         for place in [target.linear_mm, solution.linear_mm] {
-            let axes = self.axis_command(&Command { linear_mm: place, ..*target });
-            inside(&axes.linear_mm, &machine.volume)?;
+            let tip = self.tip_command(&at(&place));
+            inside(&stands.control.reach(&(tip.linear_mm + tip.tool_mm)), &machine.volume)?;
         }
         Ok(solution)
     }
@@ -406,11 +433,8 @@ impl Engine for PlaneControl {
 }
 
 impl PathModel for PlaneControl {
-    /// Real tip less the tip that was asked for, mm, in the directions of the plane.
     fn error_mm(&self, command: &Command) -> Vector {
-        let error = self.tip.error_mm(&self.tip_command(command));
-        // What is zero stays zero to the last bit.
-        if error == Vector::zeros() { error } else { self.turn.tr_mul(&error) }
+        self.error_at(&self.tip.stands(command), command)
     }
 
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {

@@ -21,14 +21,8 @@ impl Engine for RigidBody {
 
     fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
         self.rotary_inside(target)?;
-        if self.table_has_errors {
-            let (turn, shift) = self.table_error(target);
-            let tool = self.nominal_tool(target);
-            return solve(&target.linear_mm, &self.volume, |q| {
-                self.with_table(&turn, &shift, &(q + tool), &self.linear_error(q, target))
-            });
-        }
-        solve(&target.linear_mm, &self.volume, |q| self.linear_error(q, target))
+        let standing = self.standing(target);
+        solve(&target.linear_mm, &self.volume, |q| self.error_at(&standing, q, &target.direction))
     }
 
     fn path_model(&self) -> Option<&dyn PathModel> {
@@ -38,7 +32,7 @@ impl Engine for RigidBody {
 
 impl PathModel for RigidBody {
     fn error_mm(&self, command: &Command) -> Vector {
-        self.error(command)
+        self.error_at(&self.standing(command), &command.linear_mm, &command.direction)
     }
 
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {
