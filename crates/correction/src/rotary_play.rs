@@ -264,8 +264,12 @@ impl<'m> Corrector<'m> {
         }
         let unsure_rad = self.play.rotary_unsure_rad(self.model, at);
         let error = |rotary_play: RotaryPlay| self.model.error_mm(&Command { rotary_play, ..*at });
+        let turns = self.model.rotary_axes();
         let off = |axis: usize| {
             let mut other = at.rotary_play;
+            if !turns[axis] || (other.direction[axis] != 0 && unsure_rad[axis] == 0.0) {
+                return 0.0;
+            }
             if other.direction[axis] != 0 {
                 other.lag_rad[axis] += unsure_rad[axis];
                 return (error(other) - error(at.rotary_play)).norm();

@@ -279,14 +279,17 @@ impl RigidBody {
 
     /// From the frame of the linear axes to the workpiece's: the inverse of what the table's axes do.
     fn table_transform(&self, command: &Command, machine: Machine) -> (Matrix3<f64>, Vector) {
-        self.description.chain.table().iter().rev().fold(
-            (Matrix3::identity(), Vector::zeros()),
-            |(turn, shift), axis| {
-                let (own, offset) = self.swivels[axis.direction()].moved(command, machine);
-                let back = own.transpose();
-                (back * turn, back * (shift - offset))
-            },
-        )
+        let moved = |axis: &Axis| {
+            let (turn, shift) = self.swivels[axis.direction()].moved(command, machine);
+            (turn.transpose(), shift)
+        };
+        let mut axes = self.description.chain.table().iter().rev();
+        let Some(nearest) = axes.next() else { return (Matrix3::identity(), Vector::zeros()) };
+        let (back, offset) = moved(nearest);
+        axes.fold((back, back * -offset), |(turn, shift), axis| {
+            let (back, offset) = moved(axis);
+            (back * turn, back * (shift - offset))
+        })
     }
 
     /// From the directions of the linear axes to the workpiece's, ideal table: the identity without a table.
