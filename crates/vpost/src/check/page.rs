@@ -65,12 +65,8 @@ pub(super) fn html(comparison: &Comparison, facts: &Facts<'_>, json: &str, langu
         head: head(comparison, facts, language),
         sections,
         json,
-        foot: &say!(
-            language,
-            "vpost {} check. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.check/1).",
-            "vpost {} check. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON (vpost.check/1).",
-            env!("CARGO_PKG_VERSION")
-        ),
+        command: "check",
+        schema: "vpost.check/1",
     }
     .into_html()
 }

@@ -132,12 +132,8 @@ pub(super) fn html(study: &Study, facts: &Facts, json: &str, language: Language)
         head: head(study, facts, language),
         sections,
         json,
-        foot: &say!(
-            language,
-            "vpost {} map. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.map/1).",
-            "vpost {} map. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON (vpost.map/1).",
-            env!("CARGO_PKG_VERSION")
-        ),
+        command: "map",
+        schema: "vpost.map/1",
     }
     .into_html()
 }

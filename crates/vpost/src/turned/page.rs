@@ -104,18 +104,14 @@ pub(super) fn html(
     let json = serde_json::to_string(&numbers).expect("plain values always serialise");
     let title =
         page.say(&both!("Turned \u{2013} {}", "Точение \u{2014} {}", file::without_folders(facts.name)));
-    let foot = page.say(&both!(
-        "vpost {} predict --lathe. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.turned/1).",
-        "vpost {} predict --lathe. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON (vpost.turned/1).",
-        env!("CARGO_PKG_VERSION")
-    ));
     let made = Page {
         language,
         title: &title,
         head: page.head(),
         sections: page.sections(),
         json: &json,
-        foot: &foot,
+        command: "predict --lathe",
+        schema: "vpost.turned/1",
     };
     Ok(made.into_html())
 }

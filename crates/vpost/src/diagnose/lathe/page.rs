@@ -66,12 +66,8 @@ pub(super) fn html(
         head: drawn.head(facts),
         sections,
         json,
-        foot: &say!(
-            language,
-            "vpost {} diagnose. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.diagnosis/1).",
-            "vpost {} diagnose. Этой странице не нужна сеть, скриптов в ней нет, для тех же файлов она та же. Её числа лежат в ней как JSON (vpost.diagnosis/1).",
-            env!("CARGO_PKG_VERSION")
-        ),
+        command: "diagnose",
+        schema: "vpost.diagnosis/1",
     };
     Ok(page.into_html())
 }
