@@ -343,7 +343,7 @@ impl Shown<'_> {
             both!("nose r, mm", "радиус r, мм"),
             both!("exact, \u{b5}m", "точно, мкм"),
             both!("f\u{b2}/8r, \u{b5}m", "f\u{b2}/8r, мкм"),
-            both!("exact against it", "точно против неё"),
+            both!("difference", "разница"),
         ];
         html! {
             (table_of(self.language, &header, &[0, 1, 2, 3, 4, 5], &rows))
@@ -397,7 +397,7 @@ impl Shown<'_> {
                 dt { (say!(self.language, "places along Z", "места вдоль Z")) }
                 dd { (self.turned.places.len()) ", " (self.language.figures(mm(self.surface.step_mm))) " " (say!(self.language, "mm apart", "мм друг от друга")) }
                 (Origin::of(&settings.profile).rows(self.language))
-                dt { (say!(self.language, "made by", "сделано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.turned/1" }
+                dt { (say!(self.language, "made by", "создано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.turned/1" }
             }
             p.muted { (self.say(&both!(
                 "The tip counts as a point; the surface is what the lathe's model turns, not what was measured.",
@@ -422,8 +422,8 @@ fn what(stretch: &Stretch, form: Form) -> Text {
     let (from, to) = (mm(stretch.from_z_mm), mm(stretch.to_z_mm));
     let most = form.says();
     both!(
-        "Most of it on the cylinder \u{d8} {diameter}, Z {from} to {to}: {most}.",
-        "Больше всего на цилиндре \u{d8} {diameter}, Z от {from} до {to}: {most:#}."
+        "The worst cylinder is \u{d8} {diameter}, Z {from} to {to}: {most}.",
+        "Худший цилиндр \u{d8} {diameter}, Z от {from} до {to}: {most:#}."
     )
 }
 
