@@ -392,19 +392,3 @@ fn a_million_blocks_are_less_than_three_megabytes_and_drawn() {
     assert!(drawn < 1000.0, "drawn {drawn:.0} ms after loading");
     browser.end();
 }
-
-/// What a reader sees, in `docs/img`: `VPOST_UPDATE_DOCS=1` writes the picture anew.
-#[test]
-fn a_picture_of_a_viewer() {
-    let Some(mut browser) = Browser::start() else { return };
-    let report = plate();
-    browser.look(View { height: 880, is_calm: true, ..View::DESK });
-    browser.open(&report.page);
-    browser.evaluate(DRAWN);
-    let picture = browser.picture(false);
-    assert!(picture.starts_with(b"\x89PNG") && picture.len() > 60_000, "{} bytes", picture.len());
-    if std::env::var_os("VPOST_UPDATE_DOCS").is_some() {
-        std::fs::write(root().join("docs/img/viewer_light.png"), picture).expect("docs/img");
-    }
-    browser.end();
-}
