@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::common::{messages, root, run};
-use crate::devtools::{Browser, View, sheets_and_headings};
+use crate::devtools::{Browser, sheets_and_headings};
 
 /// A report in a folder of its own.
 pub(crate) struct Report {
@@ -171,29 +171,6 @@ fn a_report_is_small_whole_and_the_same_each_time() {
     }
 }
 
-/// What a reader sees, in `docs/img`: `VPOST_UPDATE_DOCS=1` writes the pictures anew.
-#[test]
-fn pictures_of_a_report() {
-    let Some(mut browser) = Browser::start() else { return };
-    pictures(&mut browser, &stan(), "diagnosis");
-}
-
-/// Light, dark and print.
-pub(crate) fn pictures(browser: &mut Browser, report: &Report, what: &str) {
-    let view = View { width: 900, height: 1100, ..View::DESK };
-    let dark = View { is_dark: true, ..view };
-    let print = View { is_paper: true, ..view };
-    for (name, view) in [("light", view), ("dark", dark), ("print", print)] {
-        browser.look(view);
-        browser.open(&report.page);
-        let picture = browser.picture(false);
-        assert!(picture.starts_with(b"\x89PNG") && picture.len() > 20_000, "{name}: {} bytes", picture.len());
-        if std::env::var_os("VPOST_UPDATE_DOCS").is_some() {
-            std::fs::write(root().join(format!("docs/img/{what}_{name}.png")), picture).expect("docs/img");
-        }
-    }
-}
-
 /// A map of the STAN S500 with everything in it.
 fn map() -> Report {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -271,12 +248,6 @@ fn nothing_in_a_profile_or_an_option_can_act_in_a_map() {
     nothing_acted(Browser::start(), &Report { folder, page });
 }
 
-#[test]
-fn pictures_of_a_map() {
-    let Some(mut browser) = Browser::start() else { return };
-    pictures(&mut browser, &map(), "map");
-}
-
 /// A sample, corrected and checked.
 fn check(sample: &Path, dialect: &str) -> Report {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -326,7 +297,6 @@ fn a_check_shows_the_path_and_the_worst_blocks() {
     }
     // Before and after on one scale, and what is left on its own.
     assert_eq!(browser.document().matches("<svg ").count(), 3);
-    pictures(&mut browser, &report, "check");
     browser.end();
 }
 

@@ -1,6 +1,6 @@
 //! Pages of `vpost calibrate` in a browser.
 
-use crate::browser::{Report, pictures, sheets_of};
+use crate::browser::{Report, sheets_of};
 use crate::common::{messages, run};
 use crate::devtools::{Browser, View};
 
@@ -49,11 +49,4 @@ pub(crate) fn opens_prints_and_fits(
     assert_eq!(browser.evaluate("document.documentElement.scrollWidth"), View::PHONE.width);
     let found = sheets_of(browser);
     assert!(sheets.contains(&found), "{found} sheets");
-}
-
-#[test]
-fn pictures_of_calibrations() {
-    let Some(mut browser) = Browser::start() else { return };
-    pictures(&mut browser, &positioning(), "positioning");
-    pictures(&mut browser, &circles(), "ballbar");
 }

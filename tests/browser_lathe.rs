@@ -1,6 +1,6 @@
 //! Pages of lathes: what `predict --lathe` and `calibrate turning` show, in both languages, and in a browser.
 
-use crate::browser::{Report, data_of, nothing_acted, pictures, text};
+use crate::browser::{Report, data_of, nothing_acted, text};
 use crate::browser_calibrate::opens_prints_and_fits;
 use crate::calibrate_turning::{BAR, diagnosed};
 use crate::common::{messages, run};
@@ -226,12 +226,4 @@ fn nothing_in_a_turning_program_can_act() {
     assert_eq!(page.matches("<script").count(), 1, "the data block is the only one");
     assert!(page.contains("&lt;script&gt;"), "{page}");
     nothing_acted(Browser::start(), &report);
-}
-
-#[test]
-fn pictures_of_lathes() {
-    let Some(mut browser) = Browser::start() else { return };
-    pictures(&mut browser, &turned(SHAFT, &[]), "turned");
-    pictures(&mut browser, &pieces(&[]), "turning");
-    pictures(&mut browser, &diagnosis(-30.0, &[]), "turned-diagnosis");
 }

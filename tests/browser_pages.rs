@@ -9,8 +9,9 @@ use std::sync::OnceLock;
 
 use crate::browser::{sheets_of, text};
 use crate::browser_lathe::{LATHE, SHAFT, written_diagnosis, written_pieces};
-use crate::common::{messages, root, run};
+use crate::common::{messages, root, vpost};
 use crate::devtools::{Browser, View};
+use crate::folders::copy;
 
 const AXE: &str = "axe-core@4.14.1";
 const STAN: &str = "machine-profiles/stan_s500.toml";
@@ -69,25 +70,53 @@ fn made_in() -> PathBuf {
     all.join(format!("pages-{}", std::process::id()))
 }
 
-const KINDS: [&str; 9] =
-    ["map", "check", "viewer", "diagnosis", "positioning", "ballbar", "turned", "pieces", "leaning"];
+const KINDS: [&str; 11] = [
+    "map",
+    "map-viewer",
+    "check",
+    "check-viewer",
+    "diagnosis",
+    "diagnosis-viewer",
+    "positioning",
+    "ballbar",
+    "turned",
+    "pieces",
+    "leaning",
+];
 
 /// Every kind of page in one language.
-fn pages(folder: &Path, language: &str) -> Vec<PathBuf> {
-    let path = |name: &str| folder.join(format!("{name}_{language}.html"));
-    let plain = |path: &Path| path.to_str().expect("a plain path").to_owned();
+fn pages(folder: &Path, language: &str) {
+    // In the folder itself: a page shows paths as they were typed, and is the same on every computer then.
+    let name_of = |path: String| path.rsplit('/').next().unwrap_or_default().to_owned();
     let make = |arguments: &[&str]| {
-        let ran = run(&[&["--lang", language, "-q"], arguments].concat());
+        let mut command = vpost();
+        command.current_dir(folder).args(["--lang", language, "-q"]).args(arguments);
+        let ran = command.output().expect("the command starts");
         assert!(ran.status.success(), "{arguments:?}: {}", messages(&ran));
     };
-    let corrected = plain(&folder.join(format!("plate_{language}.nc")));
-    let shaft = plain(&folder.join("shaft.nc"));
-    std::fs::write(&shaft, SHAFT).expect("writable");
-    let [lathe, parts, third] = written_pieces(folder);
-    let made = KINDS.map(path);
-    let [map, check, viewer, diagnosis, positioning, ballbar, turned, pieces, leaning] =
-        made.each_ref().map(|page| plain(page));
-    make(&["map", "-m", STAN, "--grid", "9x9x9", "--clamp", "120,80,40", "--second-order", "--html", &map]);
+    for given in ["samples", "machine-profiles"] {
+        copy(&root().join(given), &folder.join(given));
+    }
+    let corrected = format!("plate_{language}.nc");
+    let shaft = "shaft.nc";
+    std::fs::write(folder.join(shaft), SHAFT).expect("writable");
+    let [lathe, parts, third] = written_pieces(folder).map(name_of);
+    let made = KINDS.map(|kind| format!("{kind}_{language}.html"));
+    let [
+        map,
+        map_viewer,
+        check,
+        check_viewer,
+        diagnosis,
+        diagnosis_viewer,
+        positioning,
+        ballbar,
+        turned,
+        pieces,
+        leaning,
+    ] = made.each_ref().map(String::as_str);
+    let asked = ["--grid", "9x9x9", "--clamp", "120,80,40", "--second-order"];
+    make(&[&["map", "-m", STAN][..], &asked, &["--html", map, "--viewer", map_viewer]].concat());
     let plate = "samples/plate_linuxcnc.nc";
     make(&[plate, "-m", STAN, "--dialect", "linuxcnc", "-o", &corrected]);
     make(&[
@@ -99,20 +128,20 @@ fn pages(folder: &Path, language: &str) -> Vec<PathBuf> {
         "--dialect",
         "linuxcnc",
         "--html",
-        &check,
+        check,
         "--viewer",
-        &viewer,
+        check_viewer,
     ]);
     let tables = "samples/diagnosis/stan_s500_tables.toml";
-    make(&["diagnose", "samples/diagnosis/stan_s500_315.csv", "-m", tables, "--html", &diagnosis]);
+    let gaps = "samples/diagnosis/stan_s500_315.csv";
+    make(&["diagnose", gaps, "-m", tables, "--html", diagnosis, "--viewer", diagnosis_viewer]);
     let runs = "samples/calibration/iso230_2_muts_2022.csv";
-    make(&["calibrate", "interferometer", runs, "--date", "2022-10-20", "--html", &positioning]);
-    make(&["calibrate", "ballbar", "samples/calibration/ballbar_circles.csv", "--html", &ballbar]);
-    make(&["predict", "--lathe", &shaft, "-m", LATHE, "--section", "190", "--html", &turned]);
-    make(&["calibrate", "turning", &parts, "-m", &lathe, "--holdout", &third, "--html", &pieces]);
-    let [held, leant] = written_diagnosis(folder, -30.0);
-    make(&["diagnose", &leant, "-m", &held, "--html", &leaning]);
-    made.to_vec()
+    make(&["calibrate", "interferometer", runs, "--date", "2022-10-20", "--html", positioning]);
+    make(&["calibrate", "ballbar", "samples/calibration/ballbar_circles.csv", "--html", ballbar]);
+    make(&["predict", "--lathe", shaft, "-m", LATHE, "--section", "190", "--html", turned]);
+    make(&["calibrate", "turning", &parts, "-m", &lathe, "--holdout", &third, "--html", pieces]);
+    let [held, leant] = written_diagnosis(folder, -30.0).map(name_of);
+    make(&["diagnose", &leant, "-m", &held, "--html", leaning]);
 }
 
 /// What axe-core finds on the open page, a rule and an element in a line.
@@ -174,9 +203,13 @@ const COLOURS: [&str; 2] = ["color-contrast", "link-in-text-block"];
 
 /// Waits until the page in space is drawn as it is at rest.
 fn settle(browser: &mut Browser, page: &Path) {
-    if page.file_name().is_some_and(|name| name.to_string_lossy().starts_with("viewer")) {
+    if is_viewer(page) {
         browser.evaluate(DRAWN);
     }
+}
+
+fn is_viewer(page: &Path) -> bool {
+    page.file_name().is_some_and(|name| name.to_string_lossy().contains("viewer"))
 }
 
 /// Promised when a viewer is drawn as it is at rest, the reader wanting no motion.
@@ -186,7 +219,7 @@ pub(crate) const DRAWN: &str = "new Promise(done => {
 })";
 
 #[test]
-fn no_page_is_clipped_on_a_telephone_or_on_paper() {
+fn no_page_is_clipped_on_a_desk_a_telephone_or_paper() {
     let Some(mut browser) = Browser::start() else { return };
     // Its width, and how many drawings and tables reach out of what holds them.
     const WIDTHS: &str = "(() => {
@@ -194,7 +227,7 @@ fn no_page_is_clipped_on_a_telephone_or_on_paper() {
         return [document.documentElement.scrollWidth, held.filter(e => e.scrollWidth > e.clientWidth + 1).length];
     })()";
     for page in all_pages() {
-        for view in [View::PHONE, View::PAPER] {
+        for view in [View::DESK, View::PHONE, View::PAPER] {
             browser.look(View { is_calm: true, ..view });
             browser.open(&page);
             let found = browser.evaluate(WIDTHS);
@@ -212,7 +245,7 @@ fn no_page_is_clipped_on_a_telephone_or_on_paper() {
             page.display()
         );
         // No heading alone at the foot of a sheet; a viewer is one sheet.
-        if !page.file_name().is_some_and(|name| name.to_string_lossy().starts_with("viewer")) {
+        if !is_viewer(&page) {
             sheets_of(&mut browser);
         }
     }
@@ -227,11 +260,18 @@ fn each_page_says_where_its_numbers_come_from() {
     for page in all_pages().filter(|page| page.to_string_lossy().ends_with("_en.html")) {
         let name = page.file_name().expect("a name").to_string_lossy().into_owned();
         let all = text(&page);
-        if name.starts_with("viewer") {
-            assert!(all.contains(CALIBRATED), "{name}");
+        if is_viewer(&page) {
+            assert!(
+                all.contains("<code>vpost ") || all.contains(">vpost --lang en"),
+                "{name}: which command"
+            );
+            assert!(all.contains(CALIBRATED) || name.starts_with("diagnosis"), "{name}");
             continue;
         }
         let end = all.split("id=\"provenance\"").nth(1).unwrap_or_else(|| panic!("{name}: no provenance"));
+        // A calibration makes a profile and may have none to begin with.
+        let is_of_profile = !(name.starts_with("positioning") || name.starts_with("ballbar"));
+        assert!(!is_of_profile || end.contains("profile and its tables</dt>"), "{name}: which profile");
         for said in ["BLAKE3", "instrument", "date", "temperature", "command</dt>", "<code>vpost "] {
             assert!(end.contains(said), "{name}: {said}");
         }
@@ -255,35 +295,74 @@ fn each_page_says_where_its_numbers_come_from() {
     }
 }
 
-/// What a reader sees: 1400 px light and dark, 390 px, paper; whole pages in `target/pictures`. `VPOST_UPDATE_DOCS=1` writes
-/// a few of them, those that the other tests do not make, into `docs/img`.
+/// How each page is looked at. Paper is white for every reader, so it has no dark form.
+const LOOKS: [(&str, View); 5] = [
+    ("1400", View::DESK),
+    ("1400_dark", View::DARK),
+    ("390", View::PHONE),
+    ("390_dark", View::DARK_PHONE),
+    ("print", View::PAPER),
+];
+
+/// What a reader sees: a desk and a telephone in light and in dark, and paper, which is white whatever the reader's theme:
+/// printed from a dark screen it has the same bytes. Whole pages are in `target/pictures`, for whoever looks at them;
+/// `VPOST_UPDATE_DOCS=1` writes the first screen of each into `docs/img`.
 #[test]
 fn pictures_of_every_page() {
     let Some(mut browser) = Browser::start() else { return };
-    let pictures = root().join("target/pictures");
-    let phone = View { height: 1600, ..View::PHONE };
+    let folder = root().join("target/pictures");
+    let are_kept = std::env::var_os("VPOST_UPDATE_DOCS").is_some();
     for page in all_pages() {
         let name = page.file_stem().expect("a name").to_string_lossy().into_owned();
-        for (what, view) in
-            [("1400", View::DESK), ("1400_dark", View::DARK), ("390", phone), ("print", View::PAPER)]
-        {
-            browser.look(View { is_calm: true, ..view });
-            browser.open(&page);
-            settle(&mut browser, &page);
-            let seen = browser.picture(false);
+        for (what, view) in LOOKS {
+            open_as(&mut browser, &page, view);
+            let seen = browser.picture();
             assert!(
                 seen.starts_with(b"\x89PNG") && seen.len() > 12_000,
                 "{name} {what}: {} bytes",
                 seen.len()
             );
-            let is_kept =
-                what == "390" && !name.starts_with("viewer") || what == "1400" && name.ends_with("_ru");
-            if is_kept && std::env::var_os("VPOST_UPDATE_DOCS").is_some() {
-                std::fs::write(root().join(format!("docs/img/{name}_{what}.png")), seen).expect("docs/img");
+            if are_kept {
+                let small = browser.small_picture();
+                std::fs::write(root().join(docs_picture(&name, what)), small).expect("docs/img");
             }
-            let whole = browser.picture(true);
-            std::fs::write(pictures.join(format!("{name}_{what}.png")), whole).expect("writable");
+            for (k, part) in browser.whole_picture().iter().enumerate() {
+                std::fs::write(folder.join(format!("{name}_{what}_{}.png", k + 1)), part).expect("writable");
+            }
+            if view.is_paper {
+                open_as(&mut browser, &page, View { is_dark: true, ..view });
+                assert!(browser.picture() == seen, "{name}: paper is not white for a reader of the dark");
+            }
         }
     }
     browser.end();
+}
+
+/// Opens a page as a reader sees it who wants no motion.
+fn open_as(browser: &mut Browser, page: &Path, view: View) {
+    browser.look(View { is_calm: true, ..view });
+    browser.open(page);
+    settle(browser, page);
+}
+
+fn docs_picture(page: &str, what: &str) -> String {
+    format!("docs/img/{page}_{what}.png")
+}
+
+/// None is missing, and none is left of a page that is no longer made.
+#[test]
+fn the_documents_hold_a_picture_of_every_page() {
+    let mut wanted: Vec<String> = KINDS
+        .into_iter()
+        .flat_map(|kind| LANGUAGES.map(|language| format!("{kind}_{language}")))
+        .flat_map(|page| LOOKS.map(|(what, _)| docs_picture(&page, what)))
+        .collect();
+    let mut there: Vec<String> = std::fs::read_dir(root().join("docs/img"))
+        .expect("docs/img")
+        .map(|file| format!("docs/img/{}", file.expect("an entry").file_name().to_string_lossy()))
+        .filter(|name| name.ends_with(".png"))
+        .collect();
+    wanted.sort();
+    there.sort();
+    assert_eq!(wanted, there, "VPOST_UPDATE_DOCS=1 writes them; remove what is no longer made");
 }

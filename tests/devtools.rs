@@ -51,6 +51,7 @@ impl View {
         Self { width: 1400, height: 1000, is_dark: false, is_paper: false, is_calm: false };
     pub(crate) const DARK: Self = Self { is_dark: true, ..Self::DESK };
     pub(crate) const PHONE: Self = Self { width: 390, height: 844, ..Self::DESK };
+    pub(crate) const DARK_PHONE: Self = Self { is_dark: true, ..Self::PHONE };
     /// A4 less its margins.
     pub(crate) const PAPER: Self = Self { width: 680, is_paper: true, ..Self::DESK };
 }
@@ -65,6 +66,7 @@ pub(crate) struct Browser {
     /// Since the page was opened.
     events: Vec<Value>,
     page: String,
+    view: View,
     folder: tempfile::TempDir,
 }
 
@@ -121,8 +123,8 @@ impl Browser {
                 }
             }
         });
-        let (session, asked, events, page) = (None, 0, Vec::new(), String::new());
-        let mut browser = Self { process, to, answers, session, asked, events, page, folder };
+        let (session, asked, events, page, view) = (None, 0, Vec::new(), String::new(), View::DESK);
+        let mut browser = Self { process, to, answers, session, asked, events, page, view, folder };
         let target = browser.ask("Target.createTarget", &json!({ "url": "about:blank" }));
         let attached = json!({ "targetId": target["targetId"], "flatten": true });
         let session = browser.ask("Target.attachToTarget", &attached);
@@ -130,7 +132,7 @@ impl Browser {
         for part in ["Page", "Runtime", "Log", "Network"] {
             browser.ask(&format!("{part}.enable"), &json!({}));
         }
-        browser.look(View::DESK);
+        browser.look(view);
         Some(browser)
     }
 
@@ -159,6 +161,7 @@ impl Browser {
 
     /// From now on pages are looked at in this way.
     pub(crate) fn look(&mut self, view: View) {
+        self.view = view;
         let View { width, height, is_dark, is_paper, is_calm } = view;
         let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
         self.ask("Emulation.setDeviceMetricsOverride", &size);
@@ -230,20 +233,41 @@ impl Browser {
         assert!(found.iter().all(Vec::is_empty), "{page}: {found:?}");
     }
 
-    /// A picture of what is seen, or of the whole page.
-    pub(crate) fn picture(&mut self, is_whole: bool) -> Vec<u8> {
+    /// A picture of what is seen.
+    pub(crate) fn picture(&mut self) -> Vec<u8> {
+        decoded(&self.captured())
+    }
+
+    /// The same in at most 256 colours, a third of its size: for what is kept.
+    pub(crate) fn small_picture(&mut self) -> Vec<u8> {
+        let picture = self.captured();
+        let script = concat!("(", include_str!("few_colours.js"), ")");
+        let small = self.evaluate(&format!("{script}('{picture}')"));
+        decoded(small.as_str().expect("a picture"))
+    }
+
+    /// The whole page, from its top downwards in as few pictures as a browser can make.
+    pub(crate) fn whole_picture(&mut self) -> Vec<Vec<u8>> {
         /// Higher ones repeat themselves.
-        const HIGHEST: f64 = 8000.0;
-        let mut parameters = json!({ "format": "png" });
-        if is_whole {
-            let size = self.ask("Page.getLayoutMetrics", &json!({}));
-            let of = |side: &str| size["cssContentSize"][side].as_f64().expect("a size");
-            parameters["captureBeyondViewport"] = json!(true);
-            let clip = json!({ "x": 0, "y": 0, "width": of("width"), "height": of("height").min(HIGHEST), "scale": 1 });
-            parameters["clip"] = clip;
+        const HIGHEST: u32 = 8000;
+        let seen = self.view;
+        let height = self.evaluate("document.documentElement.scrollHeight");
+        let height = height.as_u64().and_then(|height| height.try_into().ok()).unwrap_or(seen.height);
+        let mut pictures = Vec::new();
+        for top in (0..height).step_by(HIGHEST as usize) {
+            // A window of that height: a picture beyond the window is taken before drawings have their new size.
+            self.look(View { height: (height - top).min(HIGHEST), ..seen });
+            self.evaluate(&format!("new Promise(done => {{ scrollTo(0, {top}); setTimeout(done, 200); }})"));
+            pictures.push(self.picture());
         }
-        let answer = self.ask("Page.captureScreenshot", &parameters);
-        decoded(answer["data"].as_str().expect("a picture"))
+        self.look(seen);
+        pictures
+    }
+
+    /// A picture as the browser writes it, base64.
+    fn captured(&mut self) -> String {
+        let answer = self.ask("Page.captureScreenshot", &json!({ "format": "png" }));
+        answer["data"].as_str().expect("a picture").to_owned()
     }
 
     /// The page on paper, as PDF, with its headings as outline.

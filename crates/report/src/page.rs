@@ -29,8 +29,10 @@ pub struct Page<'a> {
     pub sections: Vec<Section>,
     /// The results as JSON, kept in the page for programs.
     pub json: &'a str,
-    /// One line at the end: what made the page.
-    pub foot: &'a str,
+    /// The command that made the page, without its files.
+    pub command: &'a str,
+    /// What describes the JSON, with its version.
+    pub schema: &'a str,
 }
 
 /// Nothing may be loaded and nothing may run, whatever stands in the page.
@@ -72,7 +74,7 @@ impl Page<'_> {
                             }
                         }
                     }
-                    footer { (shown(self.foot)) }
+                    footer { (shown(&self.foot())) }
                     script #data type="application/json" { (json_block(self.json)) }
                 }
             }
@@ -80,6 +82,17 @@ impl Page<'_> {
         .into_string();
         text.push('\n');
         unparted(&text)
+    }
+
+    /// One line at the end: what made the page, and what it is.
+    fn foot(&self) -> String {
+        let Self { language, command, schema, .. } = self;
+        say!(
+            *language,
+            "vpost {} {command}. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON ({schema}).",
+            "vpost {} {command}. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON ({schema}).",
+            env!("CARGO_PKG_VERSION")
+        )
     }
 }
 

@@ -286,13 +286,19 @@ pub(crate) fn unparted(html: &str) -> String {
     out + rest
 }
 
-/// True where no line may end between two words: a number and its unit, a sign of a spread or a range and its number.
+/// True where no line may end between two words: a number and its unit, a sign or an axis and its number, a symbol and
+/// its equals sign.
 fn stays_with(before: &str, word: &str) -> bool {
     let unit = word.trim_end_matches(|c: char| !(c.is_alphanumeric() || matches!(c, '%' | '\u{b0}')));
     let unit = unit.split('/').next().unwrap_or_default();
     let is_range = |word: &str| matches!(word, "\u{2026}" | "\u{2192}");
+    let is_sign = |word: &str| matches!(word, "=" | "<" | ">" | "\u{2264}" | "\u{2265}" | "\u{d8}");
+    let is_axis = |word: &str| matches!(word.trim_start_matches('('), "X" | "Y" | "Z");
+    let is_amount = || word.contains(|c: char| c.is_ascii_digit());
     before.ends_with(|c: char| c.is_ascii_digit()) && (UNITS.contains(&unit) || is_range(word))
-        || (before.ends_with('\u{b1}') || is_range(before)) && word.contains(|c: char| c.is_ascii_digit())
+        || (before.ends_with('\u{b1}') || is_range(before) || is_sign(before) || is_axis(before))
+            && is_amount()
+        || word == "=" && !before.is_empty()
 }
 
 /// Characters of the longest part of a text in which no line may end.
@@ -409,6 +415,10 @@ mod tests {
         assert_eq!(
             unparted("<td>X1 Z-1.5 2022-10-20</td>"),
             "<td>X1 <span class=\"w\">Z-1.5</span> 2022-10-20</td>"
+        );
+        assert_eq!(
+            unparted("<p>A = 243 \u{b5}m, Z 299 mm (X 1.5), 220, Y 120; \u{2264} 20, for X and 5; A 5</p>"),
+            "<p>A\u{a0}=\u{a0}243\u{a0}\u{b5}m, Z\u{a0}299\u{a0}mm (X\u{a0}1.5), 220, Y\u{a0}120; \u{2264}\u{a0}20, for X and 5; A 5</p>"
         );
         assert_eq!([longest("155 \u{2026} 301 of 7 mm"), longest("of 77 \u{b5}m"), longest("")], [9, 5, 0]);
     }

@@ -253,13 +253,13 @@ impl Viewer<'_> {
     fn more(&self, t: &dyn Fn(&str) -> Markup) -> Markup {
         let remainder = if self.kind == Kind::Diagnosis { "remainder_diagnosis" } else { "remainder" };
         html! {
-            details.card.small {
+            details.card.small.keys {
                 summary { (t("keys")) }
                 p.needs-script { (t("keys_how")) }
                 p #thinned { (t(if self.is_whole() { "whole" } else { "thinned" })) }
                 @if !self.scene.causes.is_empty() { p { (t(remainder)) } }
             }
-            details.card.small {
+            details #origin.card.small {
                 summary { (t("where_from")) }
                 dl {
                     @for (key, value) in self.facts {

@@ -549,8 +549,11 @@
   const summarise = () => {
     const gone = causes.filter(cause => !cause.on).map(name);
     $('seen').textContent = say(gone.length ? 'seen_without' : 'seen', { times: times(state.by), largest: um(largestReal), causes: gone.join(', ') });
-    $('real_most').textContent = say('most', { largest: um(largestReal) });
-    $('after_most').textContent = say('most', { largest: um(largestAfter) });
+    // Of a whole path the comparison knows what lies between the places that are drawn, too.
+    const known = (own, of) => data.kind === 'check' ? data.values[of] ?? own : own;
+    $('real_most').textContent = say('most', { largest: um(gone.length ? largestReal : known(largestReal, 'before')) });
+    $('after_most').textContent = say('most', { largest: um(known(largestAfter, 'after')) });
+    $('after_most').dataset.drawn = largestAfter;
     $('mag_now').textContent = times(state.by);
     $('key_most').textContent = um(scaleUm) + ' ' + word('um');
   };

@@ -149,6 +149,7 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     ("fact_engine", "model", "модель"),
     ("fact_grid", "grid", "сетка"),
     ("fact_tool", "tool vector", "вектор инструмента"),
+    ("fact_typed", "command", "команда"),
     ("fact_command", "made by", "создано"),
     (
         "foot",

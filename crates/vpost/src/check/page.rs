@@ -65,12 +65,8 @@ pub(super) fn html(comparison: &Comparison, facts: &Facts<'_>, json: &str, langu
         head: head(comparison, facts, language),
         sections,
         json,
-        foot: &say!(
-            language,
-            "vpost {} check. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.check/1).",
-            "vpost {} check. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON (vpost.check/1).",
-            env!("CARGO_PKG_VERSION")
-        ),
+        command: "check",
+        schema: "vpost.check/1",
     }
     .into_html()
 }
@@ -105,7 +101,7 @@ fn next_step(facts: &Facts<'_>, language: Language) -> String {
     if facts.passed {
         say!(
             language,
-            "Run the corrected program. It counts for this machine as its profile describes it, with the zeros and tools below.",
+            "Run the corrected program. It holds for this machine as its profile describes it, with the zeros and tools below.",
             "Запускайте исправленную программу. Она годится для этого станка, каким его описывает профиль, с нулями и инструментами ниже."
         )
     } else {
@@ -121,7 +117,7 @@ fn result(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Mar
     let [wanted, commanded] = [comparison.wanted, comparison.commanded].map(|count| language.count(count));
     let largest = |mm: f64, line: u64| {
         let um = um(mm, language);
-        say!(language, "{um} \u{b5}m, line {line}", "{um} мкм, строка {line}")
+        say!(language, "{um} \u{b5}m, line {line} as posted", "{um} мкм, строка {line} исходной")
     };
     html! {
         dl {

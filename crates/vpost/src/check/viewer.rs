@@ -133,6 +133,7 @@ pub(super) fn write(
             ("fact_profile", format!("{} (BLAKE3 {})", facts.profile, facts.profile_hash)),
             ("fact_calibrated", facts.origin.said(messages.language())),
             ("fact_engine", facts.engine.to_owned()),
+            ("fact_typed", crate::origin::command()),
             ("fact_command", format!("vpost {} check", env!("CARGO_PKG_VERSION"))),
         ],
     };

@@ -7,6 +7,7 @@ use diagnostic::{Text, both};
 use jobs::diagnose::{Books, Diagnosed, File, Measured, Model, of_one_machine};
 use machine_model::EngineId;
 
+use super::lathe::ProfileFile;
 use super::plan::{self, Form};
 use super::report::{Facts, Report};
 use super::{summary, written};
@@ -73,7 +74,8 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
             .writes("--json", arguments.json.as_deref())
             .writes("--html", arguments.html.as_deref())
             .are_apart()?;
-        return super::lathe::run(arguments, &whole.profile, parts, shared, messages);
+        let file = ProfileFile { name: file::name(machine(&shared.job)?), hash: whole.hash.to_string() };
+        return super::lathe::run(arguments, &whole.profile, parts, &file, shared, messages);
     }
     let model = Model::load(&shared.job)?;
     let Some(measurements) = &arguments.measurements else {

@@ -28,6 +28,14 @@ const EXPECTED: Text = Text::pair(
     "ожидалось: part,z_mm,diameter_mm,d_um или deviation_um с angle_deg",
 );
 
+/// The file of a profile.
+pub(super) struct ProfileFile {
+    /// As it was given.
+    pub(super) name: String,
+    /// Of it and its tables.
+    pub(super) hash: String,
+}
+
 /// Parts that were read.
 #[derive(Default)]
 struct Parts {
@@ -46,6 +54,7 @@ pub(super) fn run(
     arguments: &Diagnose,
     profile: &Profile,
     lathe: &LatheParts,
+    profile_file: &ProfileFile,
     shared: &Shared,
     messages: &Messages,
 ) -> Result<(), Failure> {
@@ -79,7 +88,8 @@ pub(super) fn run(
         file::write(path, &json)?;
     }
     if let Some(path) = &arguments.html {
-        let facts = page::Facts { measurements, holdout: arguments.holdout.as_deref(), profile };
+        let facts =
+            page::Facts { measurements, holdout: arguments.holdout.as_deref(), profile, profile_file };
         let page = page::html(&said, &facts, &String::from_utf8_lossy(&json), messages.language())?;
         file::write(path, page.as_bytes())?;
     }

@@ -8,7 +8,7 @@ use report::chart::solid::{Displacement, Solid, Spot, displacements, spots};
 use report::chart::{Amounts, Arrow, Curves, Histogram, Slice, View, curves, histogram, slices, views};
 use report::page::{Page, Section, figure, table};
 use report::scale::nice;
-use report::text::{MICROMETRES, Numbers, opening, shown};
+use report::text::{MICROMETRES, Numbers, number_of_digits, opening, shown};
 
 use super::deformation;
 use super::dominant::{self, Dominant};
@@ -123,21 +123,12 @@ pub(super) fn html(study: &Study, facts: &Facts, json: &str, language: Language)
     });
     Page {
         language,
-        title: &say!(
-            language,
-            "Error map \u{2013} {}",
-            "Карта погрешностей \u{2014} {}",
-            study.machine
-        ),
+        title: &say!(language, "Error map \u{2013} {}", "Карта погрешностей \u{2014} {}", study.machine),
         head: head(study, facts, language),
         sections,
         json,
-        foot: &say!(
-            language,
-            "vpost {} map. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.map/1).",
-            "vpost {} map. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON (vpost.map/1).",
-            env!("CARGO_PKG_VERSION")
-        ),
+        command: "map",
+        schema: "vpost.map/1",
     }
     .into_html()
 }
@@ -621,7 +612,8 @@ fn zero_points_of(study: &Study, part: &Part, language: Language) -> Markup {
                 @for (name, offset) in &study.work_offsets {
                     @let to = Vector::from(*offset) + zero.to_enter_mm(study);
                     dt { (shown(name)) }
-                    @let [x, y, z] = [to.x, to.y, to.z].map(|v| language.digits(v, study.decimals()));
+                    // A control takes a point in every language.
+                    @let [x, y, z] = [to.x, to.y, to.z].map(|v| number_of_digits(v, study.decimals()));
                     dd { "X " (x) " Y " (y) " Z " (z) }
                 }
             }
@@ -658,7 +650,7 @@ fn places(study: &Study, language: Language) -> Markup {
         ],
         Language::Russian => [
             "при наладке можно", "X, мм", "Y, мм", "Z, мм", "СКЗ до, мкм", "после", "наиб.",
-            "к X, мм", "к Y", "к Z", "поворот X, мкрад", "поворот Y", "поворот Z",
+            "к X, мм", "к Y", "к Z", "вокруг X, мкрад", "вокруг Y", "вокруг Z",
         ],
     };
     html! {

@@ -247,16 +247,22 @@ fn second_order(found: &SecondOrder, language: Language, out: &mut String) {
     }
 }
 
+/// A place with the names of its axes, mm.
+fn axes_and(place_mm: &Vector) -> String {
+    let [x, y, z] = [place_mm.x, place_mm.y, place_mm.z].map(|mm| fixed(mm, 3));
+    format!("X {x} Y {y} Z {z}")
+}
+
 /// What products of errors do, in three sentences.
 pub(super) fn second_order_lines(found: &SecondOrder, language: Language) -> [String; 3] {
     let limit = fixed(found.limit_mm * 1e3, 0);
     [
         say!(
             language,
-            "whole chain: exact product and first-order sum differ by at most {} um, at {}",
-            "вся цепь: точное произведение и сумма первого порядка расходятся до {} мкм, в {}",
+            "whole chain: exact product and first-order sum differ by at most {} um, at {} mm",
+            "вся цепь: точное произведение и сумма первого порядка расходятся до {} мкм, в {} мм",
             fixed(found.chain_difference_mm * 1e3, 6),
-            triple(&found.chain_place_mm, 3)
+            axes_and(&found.chain_place_mm)
         ),
         match &found.threshold {
             Some(threshold) => say!(
@@ -274,10 +280,10 @@ pub(super) fn second_order_lines(found: &SecondOrder, language: Language) -> [St
         },
         say!(
             language,
-            "nine rotations of the tool vector {} in any order, at {}: first order {} um, all plus {}, all minus {}, exact {} to {} ({} orders)",
-            "девять поворотов вектора инструмента {} в любом порядке, в {}: первый порядок {} мкм, все с плюсом {}, все с минусом {}, точно от {} до {} (порядков {})",
+            "nine rotations of the tool vector {} mm in any order, at {} mm: first order {} um, all plus {}, all minus {}, exact {} to {} ({} orders)",
+            "девять поворотов вектора инструмента {} мм в любом порядке, в {} мм: первый порядок {} мкм, все с плюсом {}, все с минусом {}, точно от {} до {} (порядков {})",
             triple(&found.tool_mm, 3),
-            triple(&found.place_mm, 3),
+            axes_and(&found.place_mm),
             fixed(found.first_mm * 1e3, 6),
             fixed(found.plus_mm * 1e3, 6),
             fixed(found.minus_mm * 1e3, 6),

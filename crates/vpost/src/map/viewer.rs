@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use diagnostic::both;
+use diagnostic::{both, say};
 use error_map::Nodes;
 use jobs::causes::Causes;
 use machine_model::{Models, PathModel, Vector};
 use machine_profile::Profile;
+use report::text::Numbers;
 use report::viewer::scene::{Place, Scene};
 use report::viewer::{Figures, Kind, Viewer};
 
@@ -70,14 +71,15 @@ pub(super) fn write(
     }
     scene.of = scene.places.len();
     let count = scene.of.to_string();
-    let vector = |v: &Vector| v.iter().map(|mm| format!("{mm:.3}")).collect::<Vec<_>>().join(" ");
+    let language = messages.language();
+    let vector = |v: &Vector| v.iter().map(|mm| language.digits(*mm, 3)).collect::<Vec<_>>().join(" ");
     let grid = axes.iter().zip(["X", "Y", "Z"]).map(|(nodes, axis)| {
-        let range = nodes.range_mm();
-        format!("{axis} {} \u{2026} {} mm", range.low, range.high)
+        let [low, high] = [nodes.range_mm().low, nodes.range_mm().high].map(|mm| language.digits(mm, 3));
+        say!(language, "{axis} {low} \u{2026} {high} mm", "{axis} {low} \u{2026} {high} мм")
     });
     let page = Viewer {
         kind: Kind::Map,
-        language: messages.language(),
+        language,
         scene: &scene,
         has_after: true,
         blocks: &BTreeMap::new(),
@@ -93,10 +95,11 @@ pub(super) fn write(
         facts: &[
             ("fact_machine", format!("{}, {}", study.machine, facts.chain)),
             ("fact_profile", format!("{} (BLAKE3 {})", facts.profile, facts.profile_hash)),
-            ("fact_calibrated", facts.origin.said(messages.language())),
+            ("fact_calibrated", facts.origin.said(language)),
             ("fact_engine", study.engine.name().to_owned()),
             ("fact_grid", grid.collect::<Vec<_>>().join(", ")),
-            ("fact_tool", format!("{} mm", vector(&study.tool_mm))),
+            ("fact_tool", say!(language, "{} mm", "{} мм", vector(&study.tool_mm))),
+            ("fact_typed", crate::origin::command()),
             ("fact_command", format!("vpost {} map", env!("CARGO_PKG_VERSION"))),
         ],
     };

@@ -104,18 +104,14 @@ pub(super) fn html(
     let json = serde_json::to_string(&numbers).expect("plain values always serialise");
     let title =
         page.say(&both!("Turned \u{2013} {}", "Точение \u{2014} {}", file::without_folders(facts.name)));
-    let foot = page.say(&both!(
-        "vpost {} predict --lathe. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.turned/1).",
-        "vpost {} predict --lathe. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON (vpost.turned/1).",
-        env!("CARGO_PKG_VERSION")
-    ));
     let made = Page {
         language,
         title: &title,
         head: page.head(),
         sections: page.sections(),
         json: &json,
-        foot: &foot,
+        command: "predict --lathe",
+        schema: "vpost.turned/1",
     };
     Ok(made.into_html())
 }
@@ -347,7 +343,7 @@ impl Shown<'_> {
             both!("nose r, mm", "радиус r, мм"),
             both!("exact, \u{b5}m", "точно, мкм"),
             both!("f\u{b2}/8r, \u{b5}m", "f\u{b2}/8r, мкм"),
-            both!("exact against it", "точно против неё"),
+            both!("difference", "разница"),
         ];
         html! {
             (table_of(self.language, &header, &[0, 1, 2, 3, 4, 5], &rows))
@@ -401,7 +397,7 @@ impl Shown<'_> {
                 dt { (say!(self.language, "places along Z", "места вдоль Z")) }
                 dd { (self.turned.places.len()) ", " (self.language.figures(mm(self.surface.step_mm))) " " (say!(self.language, "mm apart", "мм друг от друга")) }
                 (Origin::of(&settings.profile).rows(self.language))
-                dt { (say!(self.language, "made by", "сделано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.turned/1" }
+                dt { (say!(self.language, "made by", "создано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.turned/1" }
             }
             p.muted { (self.say(&both!(
                 "The tip counts as a point; the surface is what the lathe's model turns, not what was measured.",
@@ -426,8 +422,8 @@ fn what(stretch: &Stretch, form: Form) -> Text {
     let (from, to) = (mm(stretch.from_z_mm), mm(stretch.to_z_mm));
     let most = form.says();
     both!(
-        "Most of it on the cylinder \u{d8} {diameter}, Z {from} to {to}: {most}.",
-        "Больше всего на цилиндре \u{d8} {diameter}, Z от {from} до {to}: {most:#}."
+        "The worst cylinder is \u{d8} {diameter}, Z {from} to {to}: {most}.",
+        "Худший цилиндр \u{d8} {diameter}, Z от {from} до {to}: {most:#}."
     )
 }
 

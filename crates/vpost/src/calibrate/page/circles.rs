@@ -129,7 +129,7 @@ impl<'t> Verdict<'t> {
                 "Прежде чем судить по величине причин, снимите полные окружности: часть окружности ложится на свою собственную.",
             ),
             Self::Unexplained => Text::pair(
-                "Read circles both ways round with the direction of every reading, and look at straightness, pitch of the screws and servo: a bar that sees none of squareness, scale and play sees one of those, or its own noise.",
+                "Read circles both ways round with the direction of every reading, and look at straightness, pitch of the screws and servo: a bar that sees none of squareness, scale and backlash sees one of those, or its own noise.",
                 "Снимите окружности в обе стороны с направлением каждого отсчёта и проверьте прямолинейность, шаг винтов и приводы: если измеритель не видит ни перпендикулярности, ни масштаба, ни люфта, он видит одно из этого или собственный шум.",
             ),
             Self::Named(p) => match p.cause {
@@ -157,11 +157,11 @@ const CURVES_MM: f64 = 5e-5;
 fn held(test: &CircularTest) -> Text {
     if test.curves_mm > CURVES_MM {
         Text::pair(
-            "squareness, play and the base's own curves",
+            "squareness, backlash and the base's own curves",
             "отклонение от перпендикулярности, люфт и собственные кривые исходного профиля",
         )
     } else {
-        Text::pair("squareness and play", "отклонение от перпендикулярности и люфт")
+        Text::pair("squareness and backlash", "отклонение от перпендикулярности и люфт")
     }
 }
 
@@ -401,13 +401,13 @@ fn figures(test: &CircularTest, language: Language) -> Markup {
         let own = test.traces.iter().filter(|t| t.sense == sense).map(|t| t.circularity_mm);
         if let Some(largest) = own.reduce(f64::max) {
             let words =
-                say!(language, "circular deviation, {}", "отклонение от круглости, {:#}", sense_name(sense));
+                say!(language, "circular deviation, {}", "круговое отклонение, {:#}", sense_name(sense));
             rows.push(row("G", um(largest, language), words));
         }
     }
     if let Some(both) = test.bidirectional_mm {
         let words =
-            say!(language, "circular deviation, both directions", "отклонение от круглости, в обе стороны");
+            say!(language, "circular deviation, both directions", "круговое отклонение, в обе стороны");
         rows.push(row("G(b)", um(both, language), words));
     }
     if let Some(h) = test.hysteresis {

@@ -105,13 +105,8 @@ fn html(found: &dyn Found, facts: &Facts, json: &str, language: Language) -> Str
         head: found.head(facts, language),
         sections,
         json,
-        foot: &say!(
-            language,
-            "vpost {} calibrate. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON ({}).",
-            "vpost {} calibrate. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON ({}).",
-            env!("CARGO_PKG_VERSION"),
-            facts::SCHEMA
-        ),
+        command: "calibrate",
+        schema: facts::SCHEMA,
     }
     .into_html()
 }

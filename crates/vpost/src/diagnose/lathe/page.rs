@@ -10,7 +10,7 @@ use report::chart::{Fitted, Points, fitted};
 use report::page::{Page, Section, figure, table_of};
 use report::text::{Numbers, number, number_of_digits, opening, shown, typed};
 
-use super::{Said, meaning, sentence, words};
+use super::{ProfileFile, Said, meaning, sentence, words};
 use crate::diagnose::report::cause_heading;
 use crate::file;
 use crate::message::Failure;
@@ -21,6 +21,8 @@ pub(super) struct Facts<'a> {
     pub(super) measurements: &'a Path,
     pub(super) holdout: Option<&'a Path>,
     pub(super) profile: &'a Profile,
+    /// Its name as it was given, and the hash of it and its tables.
+    pub(super) profile_file: &'a ProfileFile,
 }
 
 /// Rows as they are drawn.
@@ -66,12 +68,8 @@ pub(super) fn html(
         head: drawn.head(facts),
         sections,
         json,
-        foot: &say!(
-            language,
-            "vpost {} diagnose. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.diagnosis/1).",
-            "vpost {} diagnose. Этой странице не нужна сеть, скриптов в ней нет, для тех же файлов она та же. Её числа лежат в ней как JSON (vpost.diagnosis/1).",
-            env!("CARGO_PKG_VERSION")
-        ),
+        command: "diagnose",
+        schema: "vpost.diagnosis/1",
     };
     Ok(page.into_html())
 }
@@ -118,6 +116,13 @@ impl<'a> Drawn<'a> {
                 number_of_digits(found.noise_mm * 1e3, 2),
                 self.said.rows.len()
             ))) }
+            @if let Some(last) = found.causes.last() {
+                p { (self.say(&both!(
+                    "With what is found corrected {} \u{b5}m of it is left.",
+                    "С исправлением найденного от неё остаётся {} мкм.",
+                    number_of_digits(last.rms_mm[1] * 1e3, 2)
+                ))) }
+            }
             @if let Some(own) = found.causes.first() { p { (typed(&self.say(&self.said.remedy(own)))) } }
             @match found.unseen {
                 Some(unseen) => p { (self.say(&both!(
@@ -297,6 +302,8 @@ fn provenance(facts: &Facts<'_>, language: Language) -> Result<Markup, Failure> 
     Ok(html! {
         dl {
             dt { (say!(language, "machine", "станок")) } dd { (shown(&facts.profile.name)) }
+            dt { (say!(language, "profile and its tables", "профиль и его таблицы")) }
+            dd { (shown(&facts.profile_file.name)) " " span.muted { "BLAKE3 " (facts.profile_file.hash) } }
             dt { (say!(language, "measurements", "измерения")) } dd { (named(facts.measurements)?) }
             @if let Some(holdout) = holdout {
                 dt { (say!(language, "unseen parts", "контрольные детали")) } dd { (holdout) }

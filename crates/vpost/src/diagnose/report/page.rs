@@ -115,12 +115,8 @@ impl Report<'_> {
             head: head(d, self.facts, language),
             sections: sections.into_iter().flatten().filter(kept).collect(),
             json: self.json,
-            foot: &say!(
-                language,
-                "vpost {} diagnose. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.diagnosis/1).",
-                "vpost {} diagnose. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON (vpost.diagnosis/1).",
-                env!("CARGO_PKG_VERSION")
-            ),
+            command: "diagnose",
+            schema: "vpost.diagnosis/1",
         }
         .into_html()
     }

@@ -210,9 +210,9 @@ pub(super) fn heat(
             let edge = |j: usize| language.digits(low + (high - low) * j as f64 / cuts as f64, 0);
             let place = if cuts > 1 {
                 let (axis, from, to) = (NAMES[through], edge(k), edge(k + 1));
-                say!(language, "{axis} {from} to {to}", "{axis} от {from} до {to}")
+                say!(language, "{axis} {from} to {to} mm", "{axis} {from}\u{2026}{to} мм")
             } else {
-                format!("{} {}", NAMES[through], language.digits(low, 0))
+                say!(language, "{} {} mm", "{} {} мм", NAMES[through], language.digits(low, 0))
             };
             let slice = |when: &str, value: &dyn Fn(&(f64, f64, f64)) -> f64| Slice {
                 title: format!("{place}{when}"),

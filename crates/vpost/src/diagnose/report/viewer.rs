@@ -118,6 +118,7 @@ impl Report<'_> {
                 ("fact_calibrated", facts.origin.said(messages.language())),
                 ("fact_profile", format!("{} (BLAKE3 {})", facts.profile.name, facts.profile.hash)),
                 ("fact_engine", facts.engine.clone()),
+                ("fact_typed", crate::origin::command()),
                 ("fact_command", format!("vpost {} diagnose", env!("CARGO_PKG_VERSION"))),
             ],
         };
