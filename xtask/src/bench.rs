@@ -65,6 +65,14 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
     let increments = spelt("increments-small.nc", Spelling::Increments)?;
     let one_axis = spelt("one-axis-small.nc", Spelling::OneAxis)?;
     let with_effect = with_effect(&options.profile, folder)?;
+    let wall = |kind: &str| {
+        let sample = std::fs::read_to_string(format!("samples/five_axis/s_piece_fanuc_{kind}.nc"))?;
+        made(folder, &format!("wall-{kind}.nc"), options.small, move |bytes, out| {
+            programs::again(&sample, bytes, out)
+        })
+    };
+    let [led, turned] = [wall("tcp")?, wall("axes")?];
+    let five_axes = Path::new("samples/profiles/five_axis_table_table.toml");
     let output = folder.join("out.nc");
     let correct_on = |profile: &Path, input: &Path, threads: usize| {
         let mut command = Command::new(&vpost);
@@ -86,9 +94,11 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
         ("dense under G91, 1 thread", &increments, correct(&increments, 1)),
         ("one axis a line, 1 thread", &one_axis, correct(&one_axis, 1)),
         ("dense, a machine with an effect, 1 thread", &small, correct_on(&with_effect, &small, 1)),
+        ("S-shaped wall, tip led, 1 thread", &led, correct_on(five_axes, &led, 1)),
+        ("S-shaped wall, axes, 1 thread", &turned, correct_on(five_axes, &turned, 1)),
     ];
     let least = in_turn(options.repeat.max(1), |_| {
-        let mut runs = [Run::default(); 10];
+        let mut runs = [Run::default(); 12];
         for (run, (_, _, command)) in runs.iter_mut().zip(&mut kinds) {
             *run = run_anew(command, &output)?;
         }
@@ -97,7 +107,7 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
     let tokenizer = tokenizer(&small, options.repeat)?;
     let mut rows = Vec::new();
     // MB per second on the clock, and of processor time.
-    let mut speeds = [[0.0; 2]; 10];
+    let mut speeds = [[0.0; 2]; 12];
     for ((speeds, least), (what, path, _)) in speeds.iter_mut().zip(least).zip(&kinds) {
         let megabytes = path.metadata()?.len() as f64 / 1e6;
         *speeds = [least.wall_s, least.cpu_s].map(|s| megabytes / s);
@@ -124,10 +134,12 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
         mixed_one[0] / one[0] * 100.0,
         mixed_one[1] / one[1] * 100.0
     );
-    let [commented, increments, one_axis, effect] = others.map(|speed| speed[1] / one[1] * 100.0);
+    let [commented, increments, one_axis, effect, led, turned] =
+        others.map(|speed| speed[1] / one[1] * 100.0);
     text += &format!(
         "Per second of processor time, of dense: with comments {commented:.0} %, under G91 {increments:.0} %, one axis a line \
-         {one_axis:.0} %, with an effect {effect:.0} %.\n"
+         {one_axis:.0} %, with an effect {effect:.0} %, five axes with the tip led {led:.0} %, as axis words {turned:.0} \
+         %.\n"
     );
     Ok(text)
 }

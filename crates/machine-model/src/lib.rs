@@ -27,6 +27,7 @@ mod rotary;
 pub mod rotation;
 mod russian;
 mod solve;
+mod standing;
 mod table;
 mod tip_control;
 mod traverse;

@@ -3,11 +3,13 @@
 mod engine;
 
 use std::array::from_fn;
+use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use nalgebra::Matrix3;
+use thread_local::ThreadLocal;
 
 use crate::axis_tables::SixBounds;
 use crate::everywhere::CLASSES;
@@ -16,6 +18,7 @@ use crate::link::{Link, by_direction};
 use crate::real::Triple;
 use crate::rotary::{Machine, Swivel};
 use crate::rotation::{small, turned};
+use crate::standing::{Remembered, Standing};
 use crate::{Axis, Command, Description, Everywhere, Range, RotaryAxis, SolveError, Vector, Volume};
 
 /// Why a description is no machine.
@@ -106,31 +109,8 @@ pub struct RigidBody {
     worst_bounds: OnceLock<WorstBounds>,
     /// By tool vector, the last ones asked for: every program of a job asks for the same again, with its first tool.
     everywhere: Arc<Mutex<VecDeque<(Vector, Everywhere)>>>,
-}
-
-/// What the rotary axes do where they stand: the same for every place of the linear axes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Standing {
-    /// From the frame of the linear axes to the workpiece's, ideal table.
-    turn: Matrix3<f64>,
-    shift_mm: Vector,
-    /// `A` of equation (9), where the table has errors.
-    error: Option<(Matrix3<f64>, Vector)>,
-    /// Tool vector in the directions of the linear axes as an ideal head turns it, and by what the real one is off, mm.
-    tool_mm: Vector,
-    tool_error_mm: Vector,
-}
-
-impl Standing {
-    /// Where the linear axes of an ideal machine have to stand so that its tip is there, both mm.
-    pub(crate) fn reach(&self, tip_mm: &Vector) -> Vector {
-        self.turn.tr_mul(&(tip_mm - self.shift_mm)) - self.tool_mm
-    }
-
-    /// Tip of an ideal machine, mm, workpiece frame: the inverse of [`Self::reach`].
-    pub(crate) fn nominal_position(&self, linear_mm: &Vector) -> Vector {
-        self.turn * (linear_mm + self.tool_mm) + self.shift_mm
-    }
+    /// Where the rotary axes stood last, by thread.
+    remembered: Arc<ThreadLocal<RefCell<Remembered>>>,
 }
 
 /// Of so many tools the bounds are kept.
@@ -192,6 +172,7 @@ impl RigidBody {
             has_rotary_play,
             worst_bounds: OnceLock::new(),
             everywhere: Arc::default(),
+            remembered: Arc::default(),
         })
     }
 
@@ -221,22 +202,41 @@ impl RigidBody {
     /// the nominal position.
     #[must_use]
     pub fn predict(&self, command: &Command) -> Prediction {
-        let standing = self.standing(command);
-        let error_mm = self.error_as_seen(&standing, &command.linear_mm, &command.direction);
-        let nominal = standing.nominal_position(&command.linear_mm);
-        Prediction { position_mm: nominal + error_mm, error_mm }
+        self.standing(command, |standing| {
+            let error_mm = self.error_as_seen(standing, &command.linear_mm, &command.direction);
+            Prediction { position_mm: standing.nominal_position(&command.linear_mm) + error_mm, error_mm }
+        })
     }
 
-    /// What the rotary axes do as they stand in this command.
-    pub(crate) fn standing(&self, command: &Command) -> Standing {
-        let ideal = self.table_transform(command, Machine::Ideal);
-        let (tool_mm, tool_error_mm) = self.tool_for_bounds(command);
-        let error = self.table_has_errors.then(|| {
+    /// Uses what the rotary axes do as they stand in this command.
+    pub(crate) fn standing<R>(&self, command: &Command, use_it: impl FnOnce(&Standing) -> R) -> R {
+        let work_out = || self.worked_out(command);
+        // Without rotary axes it is less than looking for it.
+        if !self.description.chain.has_rotary() {
+            return use_it(&work_out());
+        }
+        Remembered::with(self.remembered.get_or_default(), command, work_out, use_it)
+    }
+
+    fn worked_out(&self, command: &Command) -> Standing {
+        let (turn, shift_mm) = self.table_transform(command, Machine::Ideal);
+        let (real_turn, error) = if self.table_has_errors {
             let (real, real_shift) = self.table_transform(command, Machine::Real);
-            let back = ideal.0.transpose();
-            (back * real, back * (real_shift - ideal.1))
-        });
-        Standing { turn: ideal.0, shift_mm: ideal.1, error, tool_mm, tool_error_mm }
+            let back = turn.transpose();
+            (real, Some((back * real, back * (real_shift - shift_mm))))
+        } else {
+            (turn, None)
+        };
+        let (mut ideal_mm, mut real_mm) = (command.tool_mm, command.tool_mm);
+        let mut spindle = [Vector::z(); 2];
+        for axis in self.description.chain.head().iter().rev() {
+            let [ideal, real] = [Machine::Ideal, Machine::Real]
+                .map(|machine| self.swivels[axis.direction()].moved(command, machine));
+            (ideal_mm, real_mm) = (ideal.0 * ideal_mm + ideal.1, real.0 * real_mm + real.1);
+            spindle = [ideal.0 * spindle[0], real.0 * spindle[1]];
+        }
+        let tool_error_mm = real_mm - ideal_mm;
+        Standing { turn, shift_mm, real_turn, error, tool_mm: ideal_mm, tool_error_mm, spindle }
     }
 
     /// Real minus nominal position, mm, workpiece frame.
@@ -266,15 +266,7 @@ impl RigidBody {
         if self.description.chain.head().is_empty() {
             return command.tool_mm;
         }
-        self.head(command, Machine::Ideal)
-    }
-
-    /// Tool vector turned by the rotary axes that carry the tool.
-    fn head(&self, command: &Command, machine: Machine) -> Vector {
-        self.description.chain.head().iter().rev().fold(command.tool_mm, |tool, axis| {
-            let (turn, shift) = self.swivels[axis.direction()].moved(command, machine);
-            turn * tool + shift
-        })
+        self.standing(command, |standing| standing.tool_mm)
     }
 
     /// From the frame of the linear axes to the workpiece's: the inverse of what the table's axes do.
@@ -298,14 +290,14 @@ impl RigidBody {
         if self.description.chain.table().is_empty() {
             return Matrix3::identity();
         }
-        self.table_transform(command, Machine::Ideal).0
+        self.standing(command, |standing| standing.turn)
     }
 
     /// From the directions of the linear axes to the workpiece's, as the real table turns them: the rotation of
     /// `M_1⁻¹ …` in equation (9). The identity without a table.
     #[must_use]
     pub fn real_table_turn(&self, command: &Command) -> Matrix3<f64> {
-        self.table_transform(command, Machine::Real).0
+        self.standing(command, |standing| standing.real_turn)
     }
 
     /// Error of the linear axes, on top of that of what they carry: the recursion of equation (8).
@@ -366,22 +358,15 @@ impl RigidBody {
         (error, [gradient[x], gradient[y], gradient[z]])
     }
 
-    /// What the rotary axes of an ideal machine do as they stand in this command.
-    pub(crate) fn ideally_standing(&self, command: &Command) -> Standing {
-        let (turn, shift_mm) = self.table_transform(command, Machine::Ideal);
-        let tool_mm = self.nominal_tool(command);
-        Standing { turn, shift_mm, error: None, tool_mm, tool_error_mm: Vector::zeros() }
-    }
-
     /// Tip of an ideal machine, mm, workpiece frame.
     pub(crate) fn nominal_position(&self, linear_mm: &Vector, state: &Command) -> Vector {
-        self.ideally_standing(state).nominal_position(linear_mm)
+        self.standing(state, |standing| standing.nominal_position(linear_mm))
     }
 
     /// Where the linear axes of an ideal machine have to stand so that its tip is there, both mm: the inverse of
     /// [`Self::nominal_position`].
     pub(crate) fn reach(&self, tip_mm: &Vector, state: &Command) -> Vector {
-        self.ideally_standing(state).reach(tip_mm)
+        self.standing(state, |standing| standing.reach(tip_mm))
     }
 
     /// The tool's direction as the workpiece sees it, unit vectors: of an ideal machine, and of this one. It is that of the
@@ -391,32 +376,22 @@ impl RigidBody {
     #[must_use]
     pub fn directions(&self, command: &Command) -> [Vector; 2] {
         let q = self.volume.nearest(&command.linear_mm);
-        let carried = self.head_direction(command, Machine::Real);
-        let linear = self.links.iter().rev().fold(carried, |tool, link| {
-            match link.tables(command.direction[link.axis]) {
-                Some(tables) => {
-                    let [.., a, b, c] = tables.at(q[link.axis]);
-                    small(&Vector::new(a, b, c)) * tool
-                }
-                None => tool,
+        let through = |tool: Vector, link: &Link| match link.tables(command.direction[link.axis]) {
+            Some(tables) => {
+                let [.., a, b, c] = tables.at(q[link.axis]);
+                small(&Vector::new(a, b, c)) * tool
             }
-        });
-        [self.ideal_direction(command), self.table_transform(command, Machine::Real).0 * linear]
+            None => tool,
+        };
+        self.standing(command, |standing| {
+            let linear = self.links.iter().rev().fold(standing.spindle[1], through);
+            [standing.turn * standing.spindle[0], standing.real_turn * linear]
+        })
     }
 
     /// The first of [`RigidBody::directions`].
     pub(crate) fn ideal_direction(&self, command: &Command) -> Vector {
-        self.table_transform(command, Machine::Ideal).0 * self.head_direction(command, Machine::Ideal)
-    }
-
-    /// Z of the spindle, turned by the rotary axes that carry it.
-    fn head_direction(&self, command: &Command, machine: Machine) -> Vector {
-        self.description
-            .chain
-            .head()
-            .iter()
-            .rev()
-            .fold(Vector::z(), |tool, axis| self.swivels[axis.direction()].moved(command, machine).0 * tool)
+        self.standing(command, |standing| standing.turn * standing.spindle[0])
     }
 
     /// That every rotary axis stands inside its travel and its tables.
@@ -455,15 +430,15 @@ impl RigidBody {
 
     /// Largest stretching of `D - I`, `D` the table's rotation error: how far it bends straight motion's speed.
     pub(crate) fn table_gain(&self, command: &Command) -> f64 {
-        self.standing(command).error.map_or(0.0, |(turn, _)| (turn - Matrix3::identity()).norm())
+        let gain = |(turn, _): (Matrix3<f64>, Vector)| (turn - Matrix3::identity()).norm();
+        self.standing(command, |standing| standing.error.map_or(0.0, gain))
     }
 
     /// Tool vector as the bounds need it, ideal and its error by the head.
     pub(crate) fn tool_for_bounds(&self, command: &Command) -> (Vector, Vector) {
-        let nominal = self.nominal_tool(command);
         if self.description.chain.head().is_empty() {
-            return (nominal, Vector::zeros());
+            return (command.tool_mm, Vector::zeros());
         }
-        (nominal, self.head(command, Machine::Real) - nominal)
+        self.standing(command, |standing| (standing.tool_mm, standing.tool_error_mm))
     }
 }

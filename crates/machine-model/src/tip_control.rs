@@ -7,9 +7,9 @@ use toolpath::TiltedPlane;
 
 use crate::chord_bound::lies_inside;
 use crate::length::Length;
-use crate::rigid_body::Standing;
 use crate::rotary::ideally_turned;
 use crate::solve::{inside, solve};
+use crate::standing::Standing;
 use crate::turning_bound::error_in_turn;
 use crate::{
     Axis, Command, Description, Engine, EngineId, LinearAxis, Move, PathModel, Range, RigidBody, RotaryAxis,
@@ -60,9 +60,10 @@ struct Core {
 }
 
 /// What the rotary axes do where they stand, of the machine and of the one that the control believes in.
-struct Stands {
-    machine: Standing,
-    control: Standing,
+#[derive(Clone, Copy)]
+struct Stands<'a> {
+    machine: &'a Standing,
+    control: &'a Standing,
 }
 
 /// Where a tip may be: whether the axes get there is asked of them.
@@ -148,19 +149,31 @@ impl TipControl {
         Some(Self { core: Arc::new(core), planes: Planes::default() })
     }
 
-    fn stands(&self, command: &Command) -> Stands {
-        let machine = self.core.machine.standing(command);
-        // With the same centres they are the same but for errors, of which none is asked of the control.
-        let control =
-            if self.core.apart_mm == 0.0 { machine } else { self.core.control.ideally_standing(command) };
-        Stands { machine, control }
+    fn stands<R>(&self, command: &Command, use_them: impl FnOnce(Stands<'_>) -> R) -> R {
+        self.core.machine.standing(command, |machine| {
+            if self.core.apart_mm == 0.0 {
+                use_them(Stands { machine, control: machine })
+            } else {
+                self.control_stands(command, |control| use_them(Stands { machine, control }))
+            }
+        })
+    }
+
+    /// What the rotary axes do in what the control believes. With its centres where they are that is what the machine's
+    /// would do without errors.
+    fn control_stands<R>(&self, command: &Command, use_it: impl FnOnce(&Standing) -> R) -> R {
+        if self.core.apart_mm == 0.0 {
+            return self.core.machine.standing(command, use_it);
+        }
+        // Nothing of it has play.
+        self.core.control.standing(&Command { rotary_play: RotaryPlay::default(), ..*command }, use_it)
     }
 
     /// Real tip less the tip that was asked for, mm, in the frame of the workpiece.
-    fn error_at(&self, stands: &Stands, linear_mm: &Vector, state: &Command) -> Vector {
+    fn error_at(&self, stands: Stands<'_>, linear_mm: &Vector, state: &Command) -> Vector {
         let asked = linear_mm + state.tool_mm;
         let axes = stands.control.reach(&asked);
-        let own = self.core.machine.error_as_seen(&stands.machine, &axes, &state.direction);
+        let own = self.core.machine.error_as_seen(stands.machine, &axes, &state.direction);
         if self.core.apart_mm == 0.0 {
             // No more than that: what is zero stays zero to the last bit.
             return own;
@@ -171,16 +184,15 @@ impl TipControl {
     /// What the control tells the axes for a tip command.
     #[must_use]
     pub fn axis_command(&self, tip: &Command) -> Command {
-        Command { linear_mm: self.core.control.reach(&(tip.linear_mm + tip.tool_mm), tip), ..*tip }
+        let reach = |stands: &Standing| stands.reach(&(tip.linear_mm + tip.tool_mm));
+        Command { linear_mm: self.control_stands(tip, reach), ..*tip }
     }
 
     /// The tip command at an axis command.
     #[must_use]
     pub fn tip_command(&self, axes: &Command) -> Command {
-        Command {
-            linear_mm: self.core.control.nominal_position(&axes.linear_mm, axes) - axes.tool_mm,
-            ..*axes
-        }
+        let nominal = |stands: &Standing| stands.nominal_position(&axes.linear_mm);
+        Command { linear_mm: self.control_stands(axes, nominal) - axes.tool_mm, ..*axes }
     }
 
     /// How axes run while tip and rotary axes run evenly; `None` where they turn too far for one bound.
@@ -221,8 +233,8 @@ impl TipControl {
             (tool, swung) = (centre + arm, stands * swung + rate.cross(&arm));
         }
         let [acceleration, jerk] = [2, 3].map(|order| seen.0[order] + swings.0[order]);
-        let with_tip =
-            self.core.control.table_turn(&middle).transpose().abs() * Vector::from(stretch.speed_mm);
+        let with_tip = self.control_stands(&middle, |stands| stands.turn.transpose().abs())
+            * Vector::from(stretch.speed_mm);
         // In the middle, and as much as that may change.
         let (by_turning, unsure) = ((carried - swung).abs(), with_tip + Vector::repeat(0.5 * acceleration));
         let speed = by_turning + unsure;
@@ -245,7 +257,7 @@ impl TipControl {
 
     /// How axes run while the tip runs and the rotary axes stand.
     fn standing(&self, stretch: &Move) -> Move {
-        let turn = self.core.control.table_turn(&stretch.state).transpose();
+        let turn = self.control_stands(&stretch.state, |stands| stands.turn.transpose());
         Self::led(stretch, &turn, |middle| self.axis_command(middle).linear_mm)
     }
 
@@ -280,12 +292,13 @@ impl Engine for TipControl {
 
     fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
         self.core.machine.rotary_inside(target)?;
-        let stands = self.stands(target);
-        let solution = solve(&target.linear_mm, &ANYWHERE, |tip| self.error_at(&stands, tip, target))?;
-        for tip in [target.linear_mm, solution.linear_mm] {
-            inside(&stands.control.reach(&(tip + target.tool_mm)), &self.core.machine.volume)?;
-        }
-        Ok(solution)
+        self.stands(target, |stands| {
+            let solution = solve(&target.linear_mm, &ANYWHERE, |tip| self.error_at(stands, tip, target))?;
+            for tip in [target.linear_mm, solution.linear_mm] {
+                inside(&stands.control.reach(&(tip + target.tool_mm)), &self.core.machine.volume)?;
+            }
+            Ok(solution)
+        })
     }
 
     fn path_model(&self) -> Option<&dyn PathModel> {
@@ -296,7 +309,7 @@ impl Engine for TipControl {
 impl PathModel for TipControl {
     /// Real tip less the tip that was asked for, mm, in the frame of the workpiece.
     fn error_mm(&self, command: &Command) -> Vector {
-        self.error_at(&self.stands(command), &command.linear_mm, command)
+        self.stands(command, |stands| self.error_at(stands, &command.linear_mm, command))
     }
 
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {
@@ -397,7 +410,7 @@ impl PlaneControl {
     }
 
     /// Real tip less the tip that was asked for, mm, in the directions of the plane.
-    fn error_at(&self, stands: &Stands, place: &Command) -> Vector {
+    fn error_at(&self, stands: Stands<'_>, place: &Command) -> Vector {
         let tip = self.tip_command(place);
         let error = self.tip.error_at(stands, &tip.linear_mm, &tip);
         // What is zero stays zero to the last bit.
@@ -417,14 +430,15 @@ impl Engine for PlaneControl {
     fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
         let machine = &self.tip.core.machine;
         machine.rotary_inside(target)?;
-        let stands = self.tip.stands(target);
         let at = |place: &Vector| Command { linear_mm: *place, ..*target };
-        let solution = solve(&target.linear_mm, &ANYWHERE, |place| self.error_at(&stands, &at(place)))?;
-        for place in [target.linear_mm, solution.linear_mm] {
-            let tip = self.tip_command(&at(&place));
-            inside(&stands.control.reach(&(tip.linear_mm + tip.tool_mm)), &machine.volume)?;
-        }
-        Ok(solution)
+        self.tip.stands(target, |stands| {
+            let solution = solve(&target.linear_mm, &ANYWHERE, |place| self.error_at(stands, &at(place)))?;
+            for place in [target.linear_mm, solution.linear_mm] {
+                let tip = self.tip_command(&at(&place));
+                inside(&stands.control.reach(&(tip.linear_mm + tip.tool_mm)), &machine.volume)?;
+            }
+            Ok(solution)
+        })
     }
 
     fn path_model(&self) -> Option<&dyn PathModel> {
@@ -434,7 +448,7 @@ impl Engine for PlaneControl {
 
 impl PathModel for PlaneControl {
     fn error_mm(&self, command: &Command) -> Vector {
-        self.error_at(&self.tip.stands(command), command)
+        self.tip.stands(command, |stands| self.error_at(stands, command))
     }
 
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {
@@ -444,7 +458,7 @@ impl PathModel for PlaneControl {
             return f64::INFINITY;
         }
         let core = &self.tip.core;
-        let turn = core.control.table_turn(&stretch.state).tr_mul(&self.turn);
+        let turn = self.tip.control_stands(&stretch.state, |stands| stands.turn.tr_mul(&self.turn));
         let turn = turn.map(|share| if share.abs() < NOTHING { 0.0 } else { share });
         core.machine.chord_bound_mm(&TipControl::led(stretch, &turn, |at| self.axis_command(at).linear_mm))
     }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use diagnostic::{Code, Diagnostic, Text, both};
+use nc_syntax::Letters;
 use nc_syntax::dialect::{Action, CodeEntry, GCode};
 use toml::Spanned;
 
@@ -65,8 +66,8 @@ pub(crate) fn start_codes(
 /// Letters are capitals, each once, and the ones nothing works without are there.
 pub(crate) fn letters(written: &Spanned<String>, wrong: &mut Vec<Diagnostic>) {
     let text = written.get_ref();
-    let problem = if let Some(bad) = text.chars().find(|c| !c.is_ascii_uppercase()) {
-        Some(both!("`{bad}` is not a capital letter", "`{bad}` — не прописная буква"))
+    let problem = if let Some(bad) = no_capital(text) {
+        Some(bad)
     } else if let Some((_, twice)) = text.char_indices().find(|(at, c)| text[..*at].contains(*c)) {
         Some(both!("`{twice}` stands twice", "`{twice}` стоит дважды"))
     } else {
@@ -94,6 +95,23 @@ pub(crate) fn letters(written: &Spanned<String>, wrong: &mut Vec<Diagnostic>) {
             )),
         );
     }
+}
+
+/// What of a text is no capital letter.
+fn no_capital(text: &str) -> Option<Text> {
+    let bad = text.chars().find(|c| !c.is_ascii_uppercase())?;
+    Some(both!("`{bad}` is not a capital letter", "`{bad}` — не прописная буква"))
+}
+
+/// The capitals of a set; what is none is said.
+pub(crate) fn set_of_letters(written: Option<&Spanned<String>>, wrong: &mut Vec<Diagnostic>) -> Letters {
+    let Some(written) = written else { return Letters::NONE };
+    if let Some(bad) = no_capital(written.get_ref()) {
+        let expected = both!("expected letters of words: \"XZ\"", "ожидались буквы слов: \"XZ\"");
+        wrong.push(Diagnostic::error(Code(808), bad).at(wide(written.span()), expected));
+        return Letters::NONE;
+    }
+    Letters::of(written.get_ref().as_bytes())
 }
 
 /// Numbers within what a control or this program can mean.

@@ -159,10 +159,8 @@ pub(crate) struct LatheRow {
     pub(crate) commands: Vec<String>,
     #[serde(default)]
     pub(crate) alone: bool,
-    #[serde(default)]
-    pub(crate) with: String,
-    #[serde(default)]
-    pub(crate) without: String,
+    pub(crate) with: Option<Spanned<String>>,
+    pub(crate) without: Option<Spanned<String>>,
     pub(crate) digits: Option<Spanned<String>>,
     #[serde(default)]
     pub(crate) sure: bool,

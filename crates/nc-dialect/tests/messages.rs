@@ -143,6 +143,12 @@ fn letters_that_are_none() {
       at `"abc"`: expected each letter of a word once
       help: letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ" takes all
     "#);
+    let lathe = "[[lathe]]\ncodes = [\"G96\"]\nwith = \"X,Z\"\nsays = \"\"\nmill = \"\"\n\n[codes]";
+    insta::assert_snapshot!(changed("[codes]", lathe), @r#"
+    error[VP0808]: `,` is not a capital letter
+      at `"X,Z"`: expected letters of words: "XZ"
+      help: -
+    "#);
 }
 
 #[test]

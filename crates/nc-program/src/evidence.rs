@@ -192,7 +192,7 @@ impl Evidence {
             self.names[axis] = true;
             let span = word.span();
             let span = line.offset + u64::from(span.start)..line.offset + u64::from(span.end);
-            self.length(word.number(), &Place { span, line: line.line }, questions);
+            self.length(word.number(), || Place { span, line: line.line }, questions);
         }
     }
 
@@ -291,21 +291,28 @@ impl Evidence {
                 self.names[axis] = true;
             }
             let Value::Number(number) = word.value else { continue };
-            self.length(number, &place(block, block.file_span(word.span)), questions);
+            self.length(number, || place(block, block.file_span(word.span)), questions);
         }
     }
 
-    fn length(&mut self, number: Number, place: &Place, questions: &Questions<'_>) {
-        self.first_length.get_or_insert_with(|| place.clone());
-        if !questions.lengths_open {
-            return;
-        }
-        if number.has_point {
-            self.first_pointed.get_or_insert_with(|| place.clone());
-        } else if number.decimal.mantissa != 0 {
+    fn length(&mut self, number: Number, place: impl FnOnce() -> Place, questions: &Questions<'_>) {
+        let bare = !number.has_point && number.decimal.mantissa != 0;
+        if questions.lengths_open && bare {
             self.bare += 1;
             self.largest_bare = self.largest_bare.max(number.decimal.mantissa.unsigned_abs());
-            self.first_bare.get_or_insert_with(|| place.clone());
+        }
+        let first = match questions.lengths_open {
+            true if number.has_point => Some(&mut self.first_pointed),
+            true if bare => Some(&mut self.first_bare),
+            _ => None,
+        };
+        let is_new = first.as_ref().is_some_and(|first| first.is_none());
+        if is_new || self.first_length.is_none() {
+            let place = place();
+            if let Some(first) = first {
+                first.get_or_insert_with(|| place.clone());
+            }
+            self.first_length.get_or_insert(place);
         }
     }
 
@@ -555,9 +562,7 @@ fn place(block: &Block<'_>, span: Range<u64>) -> Place {
 }
 
 fn matches(sign: &LatheSign, block: &Block<'_>, seen: &Seen, letters: Letters) -> bool {
-    let all = |wanted: &[u8]| wanted.iter().all(|letter| letters.any(Letters::of(&[*letter])));
-    let any = |wanted: &[u8]| wanted.iter().any(|letter| letters.any(Letters::of(&[*letter])));
-    if !all(&sign.with) || any(&sign.without) {
+    if !sign.with.without(letters).is_empty() || letters.any(sign.without) {
         return false;
     }
     let coded = if !sign.commands.is_empty() {

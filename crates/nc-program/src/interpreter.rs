@@ -189,10 +189,14 @@ impl<'d> Interpreter<'d> {
     pub fn step(&mut self, block: &Block<'_>) -> Result<Step, Vec<Diagnostic>> {
         self.plain = Plain::Unasked;
         let before = self.modal.clone();
-        self.execute(block, &before).map_err(|diagnostic| {
-            self.modal = before;
-            vec![*diagnostic]
-        })
+        // A closure would take the state along on every block.
+        match self.execute(block, &before) {
+            Ok(step) => Ok(step),
+            Err(diagnostic) => {
+                self.modal = before;
+                Err(vec![*diagnostic])
+            }
+        }
     }
 
     /// What a block means; the state (which comes in equal to `before`) is then the one behind it.

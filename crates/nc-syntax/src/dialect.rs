@@ -5,8 +5,8 @@ use std::ops::Deref;
 use diagnostic::Text;
 use units::decimal::Decimal;
 
-use crate::Number;
 pub use crate::code::GCode;
+use crate::{Letters, Number};
 
 /// What `( )` means.
 ///
@@ -749,10 +749,10 @@ pub struct LatheSign {
     pub commands: Vec<String>,
     /// No other G code stands in the block.
     pub alone: bool,
-    /// All of these letters, upper case.
-    pub with: Vec<u8>,
+    /// All of these letters.
+    pub with: Letters,
     /// None of these letters.
-    pub without: Vec<u8>,
+    pub without: Letters,
     /// This letter's number has so many digits, and neither half of them is zero (`T0101`).
     pub digits: Option<(u8, u8)>,
     /// No mill's program has it; else it counts together with others.

@@ -148,3 +148,17 @@ pub(crate) fn mixed(bytes: u64, out: &mut impl Write) -> io::Result<()> {
     }
     out.write_all(CLOSING.as_bytes())
 }
+
+/// A sample of `samples/five_axis` cut again and again, from its first positioning to the end of its tool length.
+pub(super) fn again(sample: &str, bytes: u64, mut out: impl Write) -> std::io::Result<()> {
+    let lines = || sample.split_inclusive('\n');
+    let first = lines().take_while(|line| !line.starts_with("G0 ")).map(str::len).sum::<usize>();
+    let last = sample.rfind("G49\n").map_or(sample.len(), |at| at + "G49\n".len());
+    out.write_all(&sample.as_bytes()[..first])?;
+    let mut written = first as u64;
+    while written < bytes {
+        out.write_all(&sample.as_bytes()[first..last])?;
+        written += (last - first) as u64;
+    }
+    out.write_all(&sample.as_bytes()[last..])
+}

@@ -21,8 +21,9 @@ impl Engine for RigidBody {
 
     fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
         self.rotary_inside(target)?;
-        let standing = self.standing(target);
-        solve(&target.linear_mm, &self.volume, |q| self.error_at(&standing, q, &target.direction))
+        self.standing(target, |standing| {
+            solve(&target.linear_mm, &self.volume, |q| self.error_at(standing, q, &target.direction))
+        })
     }
 
     fn path_model(&self) -> Option<&dyn PathModel> {
@@ -32,7 +33,7 @@ impl Engine for RigidBody {
 
 impl PathModel for RigidBody {
     fn error_mm(&self, command: &Command) -> Vector {
-        self.error_at(&self.standing(command), &command.linear_mm, &command.direction)
+        self.standing(command, |standing| self.error_at(standing, &command.linear_mm, &command.direction))
     }
 
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {
