@@ -128,7 +128,8 @@ impl Corrector<'_> {
             let rotary_rad = whole.rotary_rad(s).unwrap_or(from);
             self.model.error_mm(&Command { linear_mm: whole.at(s), rotary_rad, ..*state }).norm()
         };
-        let mut worst = error(0.0);
+        let mut at_start = error(0.0);
+        let mut worst = at_start;
         for k in 0..parts as u32 {
             let (s0, s1) = (f64::from(k) / parts, f64::from(k + 1) / parts);
             let extent = whole.extent(s0, s1);
@@ -145,8 +146,9 @@ impl Corrector<'_> {
                     lag_rad: [state.rotary_play.lag_rad; 2],
                 }),
             });
-            let own = error(s0).max(error(s1)) + if between.is_finite() { between } else { 0.0 };
-            worst = worst.max(own);
+            let at_end = error(s1);
+            let own = at_start.max(at_end) + if between.is_finite() { between } else { 0.0 };
+            (worst, at_start) = (worst.max(own), at_end);
         }
         worst
     }
