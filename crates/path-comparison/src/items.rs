@@ -15,7 +15,7 @@ use toolpath::{
 use crate::course::{Course, Others};
 use crate::offset;
 use crate::step::Pointing;
-use crate::stretch::{LEVER_MM, Place, Span, Stretch, TURN_LEVER_MM};
+use crate::stretch::{LEVER_MM, POINTING_LEVER_MM, Place, Span, Stretch, TURN_LEVER_MM};
 use crate::way::Way;
 use crate::{Act, Step};
 
@@ -230,7 +230,7 @@ impl Feeding {
                 let s = (foot + reach * f64::from(k) / f64::from(LOOKS)).clamp(0.0, 1.0);
                 let off = place - stretch.at(s);
                 let (off_mm, leans_rad) =
-                    (off.fixed_rows::<3>(0).norm(), off.fixed_rows::<3>(3).norm() / LEVER_MM);
+                    (off.fixed_rows::<3>(0).norm(), off.fixed_rows::<3>(3).norm() / POINTING_LEVER_MM);
                 let leans = leans_rad / at_most_rad;
                 if off_mm <= limit_mm {
                     if leans < least[0] {
@@ -632,7 +632,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         let role = usize::from(self.role == Role::Commanded);
         let directions = || self.model.tool_directions(command, &command.rotary_rad);
         let (turned, coarse) = match self.pointing.and_then(|_| directions()) {
-            Some(both) => (both[role] * LEVER_MM, rotary * TURN_LEVER_MM),
+            Some(both) => (both[role] * POINTING_LEVER_MM, rotary * TURN_LEVER_MM),
             None => (rotary * LEVER_MM, Vector::zeros()),
         };
         let all = [tip, turned, coarse].map(Into::<[f64; 3]>::into);
@@ -706,7 +706,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         let reach_mm = if length_mm < 1.0 { far() } else { length_mm };
         self.limit_mm = self.limit_mm.max(common.limit_mm);
         // Tip and direction are found together, and judged apart.
-        let leans_mm = self.pointing.map_or(0.0, |pointing| LEVER_MM * pointing.leans_near_rad);
+        let leans_mm = self.pointing.map_or(0.0, |pointing| POINTING_LEVER_MM * pointing.leans_near_rad);
         let limit_mm = (common.limit_mm * common.limit_mm + leans_mm * leans_mm).sqrt();
         self.at = Partial {
             linear_mm: Into::<[f64; 3]>::into(way.at(1.0)).map(Some),

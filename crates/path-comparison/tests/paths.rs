@@ -276,3 +276,36 @@ fn an_axis_along_the_tool_stands_at_its_angle() {
         assert!(found.after.largest_mm < 1e-7, "{found:?}");
     }
 }
+
+/// What the tool may lean is no room for its tip: a corner cut by twice the limit is one, though each piece ends on the path.
+#[test]
+fn a_corner_is_not_cut_by_what_the_tool_may_lean() {
+    let table = RigidBody::new(Description {
+        chain: Chain::parse("[w C b X Y Z t]").expect("a chain"),
+        linear: [(); 3].map(|()| LinearAxis::perfect(Range { low: -500.0, high: 500.0 })),
+        rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
+        squareness: Squareness::default(),
+    })
+    .expect("a machine");
+    let leans_rad = 200e-6;
+    let pointing = Some(Pointing { leans_rad, leans_near_rad: leans_rad, near_sin: 0.0, aside_deg: 0.5 });
+    let along = |places: &[[f64; 2]]| {
+        let lines = places.windows(2).enumerate().map(|(k, pair)| {
+            let [from, to] = [pair[0], pair[1]].map(|[x, y]| [x, y, 0.0]);
+            Step { pointing, ..step(feed(from, to, Shape::Line), k + 1) }
+        });
+        lines.collect::<Vec<Step>>().into_iter()
+    };
+    let corner = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]];
+    let retreats = toolpath::PeckRetreats { clearance_mm: 0.25, chip_mm: 0.5 };
+    for (cut_mm, holds) in
+        [(0.0, true), (0.5 * LIMIT_MM, true), (2.0 * LIMIT_MM, false), (4.0 * LIMIT_MM, false)]
+    {
+        // The corner is as far from the middle of the cut.
+        let back = cut_mm * std::f64::consts::SQRT_2;
+        let made = [[0.0, 0.0], [10.0 - back, 0.0], [10.0, back], [10.0, 10.0]];
+        let models = Models { axes: &table, tip: None };
+        let found = compare(models, along(&corner), along(&made), retreats, Traces::Forgotten);
+        assert_eq!(found.mismatches.is_empty(), holds, "{cut_mm} {found:?}");
+    }
+}
