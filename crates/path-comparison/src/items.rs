@@ -214,6 +214,8 @@ impl Feeding {
     pub(crate) fn off(&self, place: &Place, limit_mm: f64) -> Off {
         /// So many places are looked at on either side of the nearest.
         const LOOKS: i32 = 24;
+        /// So many times what is looked at for the best loses a third.
+        const THIRDS: u32 = 40;
         /// Shares of the limits that differ by less are rounding.
         const ALIKE: f64 = 1e-6;
         // Share of the limits, distance, share of the direction's, direction and its limit.
@@ -226,18 +228,32 @@ impl Feeding {
                 continue;
             }
             let reach = 2.0 * self.limit_mm / stretch.length_mm().max(self.limit_mm);
-            for k in -LOOKS..=LOOKS {
-                let s = (foot + reach * f64::from(k) / f64::from(LOOKS)).clamp(0.0, 1.0);
+            let at = |s: f64| {
                 let off = place - stretch.at(s);
-                let (off_mm, leans_rad) =
-                    (off.fixed_rows::<3>(0).norm(), off.fixed_rows::<3>(3).norm() / POINTING_LEVER_MM);
+                let [tip, way] = [0, 3].map(|row| off.fixed_rows::<3>(row).norm());
+                (tip, way / POINTING_LEVER_MM, off.fixed_rows::<3>(6).amax() / TURN_LEVER_MM)
+            };
+            // The larger share of the two limits has one least value on a stretch.
+            let share = |s: f64| {
+                let (off_mm, leans_rad, _) = at(s);
+                (off_mm / limit_mm).max(leans_rad / at_most_rad)
+            };
+            let inside = |s: f64| s.clamp(0.0, 1.0);
+            let (mut low, mut high) = (inside(foot - reach), inside(foot + reach));
+            for _ in 0..THIRDS {
+                let third = (high - low) / 3.0;
+                if share(low + third) <= share(high - third) { high -= third } else { low += third }
+            }
+            let evenly = (-LOOKS..=LOOKS).map(|k| inside(foot + reach * f64::from(k) / f64::from(LOOKS)));
+            for s in evenly.chain([0.5 * (low + high)]) {
+                let (off_mm, leans_rad, own_aside_rad) = at(s);
                 let leans = leans_rad / at_most_rad;
                 if off_mm <= limit_mm {
                     if leans < least[0] {
                         least = [leans, leans_rad, *at_most_rad];
                     }
                     if leans <= 1.0 {
-                        aside_rad = aside_rad.min(off.fixed_rows::<3>(6).amax() / TURN_LEVER_MM);
+                        aside_rad = aside_rad.min(own_aside_rad);
                     }
                 }
                 let share = (off_mm / limit_mm).max(leans);
