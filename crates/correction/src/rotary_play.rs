@@ -267,18 +267,21 @@ impl<'m> Corrector<'m> {
         let turns = self.model.rotary_axes();
         let off = |axis: usize| {
             let mut other = at.rotary_play;
-            if !turns[axis] || (other.direction[axis] != 0 && unsure_rad[axis] == 0.0) {
-                return 0.0;
+            match other.direction[axis] {
+                _ if !turns[axis] => 0.0,
+                0 => {
+                    let [up, down] = [1, -1].map(|side| {
+                        other.direction[axis] = side;
+                        error(other)
+                    });
+                    0.5 * (up - down).norm()
+                }
+                _ if unsure_rad[axis] == 0.0 => 0.0,
+                _ => {
+                    other.lag_rad[axis] += unsure_rad[axis];
+                    (error(other) - error(at.rotary_play)).norm()
+                }
             }
-            if other.direction[axis] != 0 {
-                other.lag_rad[axis] += unsure_rad[axis];
-                return (error(other) - error(at.rotary_play)).norm();
-            }
-            let [up, down] = [1, -1].map(|side| {
-                other.direction[axis] = side;
-                error(other)
-            });
-            0.5 * (up - down).norm()
         };
         (0..3).map(off).sum()
     }
@@ -291,6 +294,6 @@ fn standing(rotary_rad: Vector) -> Command {
         rotary_rad,
         tool_mm: Vector::zeros(),
         direction: [0; 3],
-        rotary_play: RotaryPlay::default(),
+        ..Default::default()
     }
 }

@@ -103,15 +103,16 @@ fn no_capital(text: &str) -> Option<Text> {
     Some(both!("`{bad}` is not a capital letter", "`{bad}` — не прописная буква"))
 }
 
-/// The capitals of a set; what is none is said.
+/// The letters of a set; what is none is said.
 pub(crate) fn set_of_letters(written: Option<&Spanned<String>>, wrong: &mut Vec<Diagnostic>) -> Letters {
     let Some(written) = written else { return Letters::NONE };
-    if let Some(bad) = no_capital(written.get_ref()) {
+    let letters = written.get_ref().to_ascii_uppercase();
+    if let Some(bad) = no_capital(&letters) {
         let expected = both!("expected letters of words: \"XZ\"", "ожидались буквы слов: \"XZ\"");
         wrong.push(Diagnostic::error(Code(808), bad).at(wide(written.span()), expected));
         return Letters::NONE;
     }
-    Letters::of(written.get_ref().as_bytes())
+    Letters::of(letters.as_bytes())
 }
 
 /// Numbers within what a control or this program can mean.

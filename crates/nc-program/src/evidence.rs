@@ -192,7 +192,7 @@ impl Evidence {
             self.names[axis] = true;
             let span = word.span();
             let span = line.offset + u64::from(span.start)..line.offset + u64::from(span.end);
-            self.length(word.number(), || Place { span, line: line.line }, questions);
+            self.length(word.number(), || Place { span: span.clone(), line: line.line }, questions);
         }
     }
 
@@ -295,24 +295,17 @@ impl Evidence {
         }
     }
 
-    fn length(&mut self, number: Number, place: impl FnOnce() -> Place, questions: &Questions<'_>) {
-        let bare = !number.has_point && number.decimal.mantissa != 0;
-        if questions.lengths_open && bare {
+    fn length(&mut self, number: Number, place: impl Fn() -> Place, questions: &Questions<'_>) {
+        self.first_length.get_or_insert_with(&place);
+        if !questions.lengths_open {
+            return;
+        }
+        if number.has_point {
+            self.first_pointed.get_or_insert_with(place);
+        } else if number.decimal.mantissa != 0 {
             self.bare += 1;
             self.largest_bare = self.largest_bare.max(number.decimal.mantissa.unsigned_abs());
-        }
-        let first = match questions.lengths_open {
-            true if number.has_point => Some(&mut self.first_pointed),
-            true if bare => Some(&mut self.first_bare),
-            _ => None,
-        };
-        let is_new = first.as_ref().is_some_and(|first| first.is_none());
-        if is_new || self.first_length.is_none() {
-            let place = place();
-            if let Some(first) = first {
-                first.get_or_insert_with(|| place.clone());
-            }
-            self.first_length.get_or_insert(place);
+            self.first_bare.get_or_insert_with(place);
         }
     }
 

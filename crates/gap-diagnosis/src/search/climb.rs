@@ -173,30 +173,24 @@ impl State<'_, '_> {
         let parts = self.parts.clone();
         let limit = self.fit.score - self.space.allowance();
         let mut better = Vec::new();
-        for place in 0..parts.len() {
-            let forms: Vec<Part> =
-                self.library.plainer(parts[place]).into_iter().chain([parts[place]]).collect();
-            for rest in (0..parts.len()).map(|other| {
+        for (place, curve) in parts.iter().enumerate() {
+            let owners = self.library.owners(*curve);
+            if owners.is_empty() {
+                continue;
+            }
+            let forms: Vec<Part> = self.library.plainer(*curve).into_iter().chain([*curve]).collect();
+            // For another part as well; where that is the curve itself, for the curve alone.
+            for other in 0..parts.len() {
                 let kept = (0..parts.len()).filter(|k| *k != place && *k != other);
-                kept.map(|k| parts[k]).collect::<Vec<Part>>()
-            }) {
+                let rest: Vec<Part> = kept.map(|k| parts[k]).collect();
+                let is_new = |owner: &Part| rest.iter().all(|part| part.candidate != owner.candidate);
+                let new: Vec<Part> = owners.iter().copied().filter(is_new).collect();
+                if new.is_empty() || rest.len() + 1 + new.len() > MOST_CAUSES {
+                    continue;
+                }
                 for form in &forms {
-                    let mut owners = self.library.owners(*form);
-                    owners.retain(|owner| rest.iter().all(|part| part.candidate != owner.candidate));
-                    if owners.is_empty() || rest.len() + 1 + owners.len() > MOST_CAUSES {
-                        continue;
-                    }
-                    let mut with: Vec<Part> = rest.iter().copied().chain([*form]).chain(owners).collect();
-                    self.complete(&with);
-                    let mut fit = self.space.fit(&self.library, &with);
-                    // Of both only what is needed.
-                    for place in (rest.len() + 1..with.len()).rev() {
-                        let fewer = without(&with, place);
-                        let plainer = self.space.fit(&self.library, &fewer);
-                        if plainer.score <= fit.score {
-                            (with, fit) = (fewer, plainer);
-                        }
-                    }
+                    let with = rest.iter().chain([form]).chain(&new).copied().collect();
+                    let (fit, with) = self.what_is_needed(with, rest.len() + 1);
                     if fit.score < limit {
                         better.push((fit, with));
                     }
@@ -204,6 +198,20 @@ impl State<'_, '_> {
             }
         }
         better
+    }
+
+    /// A model without those of its parts from `first` on whose absence makes it no worse.
+    fn what_is_needed(&mut self, mut with: Vec<Part>, first: usize) -> (Fit, Vec<Part>) {
+        self.complete(&with);
+        let mut fit = self.space.fit(&self.library, &with);
+        for place in (first..with.len()).rev() {
+            let fewer = without(&with, place);
+            let plainer = self.space.fit(&self.library, &fewer);
+            if plainer.score <= fit.score {
+                (with, fit) = (fewer, plainer);
+            }
+        }
+        (fit, with)
     }
 
     /// Pairs of causes that share what they explain, or that explain only together.
