@@ -11,12 +11,17 @@ use syn::{
     Attribute, Block, FnArg, ImplItemFn, Item, ItemFn, ItemImpl, ItemMod, Meta, Signature, TraitItemFn, Type,
 };
 
+/// A wider line hides code from the count of lines.
+const WIDE_LINE: usize = 120;
+
 /// The measures of a file.
 pub(crate) struct Source {
     /// From the project's root.
     pub(crate) path: PathBuf,
     /// All lines.
     pub(crate) lines: usize,
+    /// Lines too wide to be read at once.
+    pub(crate) wide: usize,
     /// Lines that carry something of the language, those of tests apart.
     pub(crate) code: usize,
     pub(crate) test_code: usize,
@@ -57,6 +62,7 @@ impl Source {
         Ok(Self {
             path: path.to_owned(),
             lines: text.lines().count(),
+            wide: text.lines().filter(|line| line.chars().count() > WIDE_LINE).count(),
             code: carrying.len() - test_code,
             test_code,
             is_test,
