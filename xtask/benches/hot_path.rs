@@ -122,7 +122,7 @@ fn hot_path(c: &mut Criterion) {
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::zeros(),
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         })
         .collect();
     let everywhere = model.everywhere(&commands[0]).expect("three linear axes");

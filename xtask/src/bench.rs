@@ -213,6 +213,7 @@ fn budget_page(options: &Options) -> anyhow::Result<String> {
         dialect: nc_dialect::builtin("fanuc").context("a shipped dialect")?,
         setup: &setup,
         models: machine_model::Models { axes: model, tip: None },
+        datums: &rewrite::Datums::default(),
         options: correction::Options {
             tolerance_mm: profile.correction.tolerance_um * 1e-3,
             outside: correction::Outside::Refuse,

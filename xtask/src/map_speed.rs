@@ -34,7 +34,7 @@ pub(crate) fn page() -> String {
                 rotary_rad: Vector::zeros(),
                 tool_mm: Vector::zeros(),
                 direction: [0; 3],
-                rotary_play: Default::default(),
+                ..Default::default()
             })
         };
         pool.install(|| (0..grid.len()).into_par_iter().with_min_len(256).map(error).collect::<Vec<Vector>>())

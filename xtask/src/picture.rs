@@ -16,6 +16,7 @@ use machine_model::{Command, PathModel, Vector};
 use machine_profile::Profile;
 use nc_program::{Interpreter, Setup};
 use nc_syntax::{Block, Dialect, Reader};
+use rewrite::Datums;
 use toolpath::{Feed, Motion};
 use units::math::hypot;
 
@@ -51,6 +52,12 @@ struct Stroke {
     commanded: Vec<[f64; 3]>,
     /// Where the machine takes the tool.
     real: Vec<[f64; 3]>,
+}
+
+/// A machine on which the program's zero was touched.
+struct Touched<'m> {
+    machine: &'m dyn PathModel,
+    datums: Datums,
 }
 
 /// One side of the picture.
@@ -90,11 +97,13 @@ pub(crate) fn picture() -> anyhow::Result<String> {
         ..Default::default()
     };
     let engine = profile.engine(profile.correction.engine, &Conditions::default())?;
-    let model = engine.path_model().context("the profile's engine corrects paths")?;
-    let corrected = corrected(&text, model, &profile, dialect, &setup)?;
-    let before = strokes(&text, model, dialect, &setup, STEP_MM)?;
-    let after = strokes(&corrected, model, dialect, &setup, STEP_MM)?;
-    let fine = strokes(&text, model, dialect, &setup, FINE_STEP_MM)?;
+    let machine =
+        machine_model::FromDatum::new(engine).ok().context("the profile's engine corrects paths")?;
+    let machine = Touched { machine: &machine, datums: Datums::touched(rewrite::TouchTool::default()) };
+    let corrected = corrected(&text, &machine, &profile, dialect, &setup)?;
+    let before = strokes(&text, &machine, dialect, &setup, STEP_MM)?;
+    let after = strokes(&corrected, &machine, dialect, &setup, STEP_MM)?;
+    let fine = strokes(&text, &machine, dialect, &setup, FINE_STEP_MM)?;
     let (drawn, programmed) = (commanded(&before), commanded(&fine));
     // As posted, the command is the programmed point; corrected, the nearest programmed point is meant.
     let before = side("As posted", "before", &before, &programmed, |_, commanded| commanded);
@@ -131,7 +140,7 @@ fn side<'a>(
 
 fn corrected(
     text: &[u8],
-    model: &dyn PathModel,
+    machine: &Touched<'_>,
     profile: &Profile,
     dialect: &Dialect,
     setup: &Setup,
@@ -139,7 +148,8 @@ fn corrected(
     let job = rewrite::Job {
         dialect,
         setup,
-        models: machine_model::Models { axes: model, tip: None },
+        models: machine_model::Models { axes: machine.machine, tip: None },
+        datums: &machine.datums,
         options: CorrectionOptions {
             tolerance_mm: profile.correction.tolerance_um * 1e-3,
             outside: Outside::Refuse,
@@ -166,7 +176,7 @@ fn refused(diagnostics: Vec<Diagnostic>) -> anyhow::Error {
 /// The feed motions of a program that lie in the level.
 fn strokes(
     text: &[u8],
-    model: &dyn PathModel,
+    machine: &Touched<'_>,
     dialect: &Dialect,
     setup: &Setup,
     step_mm: f64,
@@ -183,7 +193,8 @@ fn strokes(
             let height = |mm: [f64; 3]| step.context.frame.to_program(mm)[2] - LEVEL_MM;
             let ends = [height(feed.start.linear_mm), height(feed.end.linear_mm)];
             if ends.iter().all(|z| z.abs() < LEVEL_HALF_WIDTH_MM) {
-                found.push(stroke(feed, &step.context, model, step_mm));
+                let datum_mm = machine.datums.error_mm(machine.machine, dialect, &step.context);
+                found.push(stroke(feed, (&step.context, datum_mm), machine.machine, step_mm));
             }
         }
         if step.ends_program {
@@ -196,7 +207,12 @@ fn strokes(
     Ok(found)
 }
 
-fn stroke(feed: &Feed, context: &nc_program::Context, model: &dyn PathModel, step_mm: f64) -> Stroke {
+fn stroke(
+    feed: &Feed,
+    (context, datum_mm): (&nc_program::Context, [f64; 3]),
+    model: &dyn PathModel,
+    step_mm: f64,
+) -> Stroke {
     let curve = Curve::new(feed.start.linear_mm.into(), feed.end.linear_mm.into(), &feed.shape);
     let count = (curve.length_mm() / step_mm).ceil().max(1.0) as usize;
     let mut stroke = Stroke { commanded: Vec::new(), real: Vec::new() };
@@ -206,8 +222,8 @@ fn stroke(feed: &Feed, context: &nc_program::Context, model: &dyn PathModel, ste
             linear_mm: commanded,
             rotary_rad: Vector::zeros(),
             tool_mm: context.tool_mm.into(),
-            direction: [0; 3],
-            rotary_play: Default::default(),
+            datum_mm: datum_mm.into(),
+            ..Default::default()
         };
         let real = commanded + model.error_mm(&command);
         stroke.commanded.push(context.frame.to_program(commanded.into()));

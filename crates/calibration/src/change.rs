@@ -78,7 +78,7 @@ pub fn compare(
             rotary_rad: Vector::zeros(),
             tool_mm,
             direction: [side; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         };
         places.iter().flat_map(|place| sides.iter().map(move |side| at(*place, *side))).collect()
     };

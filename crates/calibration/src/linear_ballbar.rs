@@ -365,7 +365,7 @@ fn uncertainty_mm(estimate: &Estimate, layout: &Layout, base: &WithEffects) -> f
         rotary_rad: Vector::zeros(),
         tool_mm: Vector::zeros(),
         direction: [side; 3],
-        rotary_play: Default::default(),
+        ..Default::default()
     };
     let places = field::places_mm(&base.volume().0);
     let commands: Vec<Command> = places.into_iter().flat_map(|place| [at(place, -1), at(place, 1)]).collect();

@@ -60,7 +60,7 @@ impl Point {
             rotary_rad: Vector::zeros(),
             tool_mm,
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         };
         Self { run, command, by_effects_mm: Vector::zeros(), reading, uncertainty_mm: None }
     }

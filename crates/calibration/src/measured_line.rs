@@ -44,7 +44,7 @@ impl MeasuredLine {
                 rotary_rad: Vector::zeros(),
                 tool_mm,
                 direction: sides,
-                rotary_play: Default::default(),
+                ..Default::default()
             };
             machine.predict(&command).error_mm
         };

@@ -263,7 +263,7 @@ fn uncertainty_mm(estimate: &Estimate, locations: &[Location], steps: &[f64], ba
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::zeros(),
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         };
         for (axis, angle) in table.iter().zip(&place[3..]) {
             command.rotary_rad[axis.direction()] = *angle;

@@ -216,7 +216,7 @@ pub(crate) fn plays(base: &Base, found: &Found) -> [Option<(f64, f64)>; 3] {
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::zeros(),
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         };
         let before = machine.as_ref().map_or(0.0, |machine| machine.reversal_mm(axis, &command));
         Some((before + found.values[parameter], found.estimate.half_width_95(parameter)))
@@ -268,7 +268,7 @@ pub(crate) fn field_commands(points: &[Point], found: &Found) -> Vec<Vec<Command
                         rotary_rad: Vector::zeros(),
                         tool_mm: *tool_mm,
                         direction: [*side; 3],
-                        rotary_play: Default::default(),
+                        ..Default::default()
                     }));
                 }
             }

@@ -126,7 +126,7 @@ fn a_change_goes_onto_the_line_of_the_base_and_the_lines_keep_their_angles() {
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::new(0.0, 0.0, -120.0),
             direction: [1, -1, 1],
-            rotary_play: Default::default(),
+            ..Default::default()
         };
         m.predict(&command).position_mm
     };

@@ -135,7 +135,7 @@ fn read(
                 rotary_rad,
                 tool_mm,
                 direction: [0; 3],
-                rotary_play: Default::default(),
+                ..Default::default()
             };
             command.linear_mm = model.same_tip_mm(&(place_mm - tool_mm), &command, &Vector::zeros());
             assert!(model.volume().contains(&command.linear_mm), "{command:?}");

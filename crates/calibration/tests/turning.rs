@@ -38,7 +38,7 @@ fn reading(part: usize, feature: Feature, radius: f64, z: f64) -> TurnedReading 
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::zeros(),
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         },
         deviation_mm: 0.0,
         by_effects_mm: 0.0,

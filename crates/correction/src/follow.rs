@@ -110,7 +110,12 @@ impl Follow<'_, '_> {
     }
 
     /// The words of a piece: the block's own may stay where it stands for the block.
-    pub(crate) fn freedom(&self, hold: [bool; 3]) -> Freedom {
+    pub(crate) fn freedom(&self, part: &Curve, hold: [bool; 3]) -> Freedom {
+        let held = match part {
+            Curve::Arc { .. } => [false; 3],
+            _ => self.block.held(&part.at(0.0), &part.at(1.0)),
+        };
+        let hold = [0, 1, 2].map(|axis| hold[axis] || held[axis]);
         Freedom::of(self.block.may_have_words()).keeping(self.alone).holding(hold)
     }
 

@@ -1,7 +1,7 @@
 //! Whole output steps: the one place where numbers are rounded.
 
 use machine_model::Vector;
-use toolpath::{Frame, Kinematics, PeckRetreats};
+use toolpath::{Frame, Kinematics, PeckRetreats, Plane};
 use units::decimal::round;
 
 /// What a block itself states: these may stay as they are.
@@ -65,6 +65,10 @@ pub struct Block {
     pub reframed: [bool; 3],
     /// From the gauge point to the tool tip, mm.
     pub tool_mm: [f64; 3],
+    /// Error of the machine where the program's zero was touched, mm, frame of the workpiece: errors count from there.
+    pub datum_mm: [f64; 3],
+    /// The plane in which the control offsets the tool, or in which it still has to lead it off its offset path.
+    pub offset: Option<Plane>,
     /// The dialect writes arcs by centre words; else by R.
     pub centre_words: bool,
     /// Largest difference of an arc's two radii that the control takes, mm.
@@ -94,6 +98,8 @@ impl Default for Block {
             named: [true; 3],
             reframed: [false; 3],
             tool_mm: [0.0; 3],
+            datum_mm: [0.0; 3],
+            offset: None,
             centre_words: true,
             arc_radius_tolerance_mm: 0.02,
             retreats: PeckRetreats { clearance_mm: 0.5, chip_mm: 0.5 },
@@ -270,6 +276,18 @@ impl Block {
     #[must_use]
     pub fn may_have_words(&self) -> [bool; 3] {
         [0, 1, 2].map(|axis| self.named[axis] || self.stated.axes[axis])
+    }
+
+    /// Axes that a motion must leave where they stand, in the program's coordinates: a control that offsets the tool takes
+    /// its direction, leads onto the contour and off it, by the first motion in the plane, be it of a micrometre.
+    pub(crate) fn held(&self, from_mm: &Vector, to_mm: &Vector) -> [bool; 3] {
+        /// A move in the plane shorter than this is none, mm.
+        const STANDS_MM: f64 = 1e-9;
+        let Some(plane) = self.offset else { return [false; 3] };
+        let [u, v, normal] = plane.axes();
+        let (from, to) = (self.program(from_mm), self.program(to_mm));
+        let stands = [u, v].iter().all(|axis| (to[*axis] - from[*axis]).abs() <= STANDS_MM);
+        [0, 1, 2].map(|axis| stands && axis != normal)
     }
 
     /// Program coordinates of an axis command.

@@ -95,7 +95,7 @@ impl<'m> Corrector<'m> {
         let before = self.standing;
         let from: Vector = before.map(|v| v.unwrap_or(f64::NAN)).into();
         let own_end = follow.own_end(part, &from);
-        let axes = self.go(follow.block, &own_end, &wanted, &follow.freedom(creep.held()));
+        let axes = self.go(follow.block, &own_end, &wanted, &follow.freedom(part, creep.held()));
         if !matches!(creep, Creep::Counted)
             && let Some(against) = self.against(&at_end.state, before, self.standing, follow.block)
         {

@@ -188,7 +188,8 @@ impl Corrector<'_> {
             };
             // Positioning moves what the block names and nothing else: the other axes take their correction from the
             // next feed.
-            let axes = self.go(block, &own_end, &wanted, &Freedom::of(block.stated.axes).keeping(true));
+            let freedom = Freedom::of(block.stated.axes).keeping(true).holding(block.held(&from, &end_mm));
+            let axes = self.go(block, &own_end, &wanted, &freedom);
             // An axis comes from where the output sends it, and where it does not from where it came before.
             let Some(against) = self.against(&state, before, self.standing, block) else {
                 break (state, wanted, axes);
@@ -215,6 +216,7 @@ impl Corrector<'_> {
         if matches!(feed.shape, Shape::Line)
             && self.lead.is_none()
             && feed.start.rotary_deg == feed.end.rotary_deg
+            && block.held(&feed.start.linear_mm.into(), &feed.end.linear_mm.into()) == [false; 3]
             && let Some(lines) = self.short_lines(block, feed.end.rotary_deg)
             && let names = block.stated.axes
             && let ends_mm = [feed.end.linear_mm; LANES]

@@ -433,7 +433,7 @@ fn under_tip_control_directions_hold() {
             rotary_rad: rotary.map(f64::to_radians),
             tool_mm: tool_mm.into(),
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         };
         let start = thousandth(tip.tip_command(&command(Vector::new(300.0, 310.0, 350.0), from)).linear_mm);
         let end = thousandth(start + Vector::new(11.0, -7.0, 2.0));

@@ -80,7 +80,7 @@ fn worst(model: &dyn PathModel, wanted: &Curve, commanded: &[Curve]) -> f64 {
                 rotary_rad: Vector::zeros(),
                 tool_mm: Vector::zeros(),
                 direction: [0; 3],
-                rotary_play: Default::default(),
+                ..Default::default()
             };
             worst = worst.max(distance(wanted, &(q + model.error_mm(&command))));
         }
@@ -92,7 +92,7 @@ fn worst(model: &dyn PathModel, wanted: &Curve, commanded: &[Curve]) -> f64 {
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::zeros(),
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         };
         worst = worst.max((q + model.error_mm(&command) - wanted.at(1.0)).norm());
     }
@@ -260,7 +260,7 @@ fn incremental_moves_do_not_drift() {
         rotary_rad: Vector::zeros(),
         tool_mm: Vector::zeros(),
         direction: [0; 3],
-        rotary_play: Default::default(),
+        ..Default::default()
     };
     assert!((q + model.error_mm(&command) - at).norm() < 8.7e-4, "{}", q + model.error_mm(&command) - at);
 }

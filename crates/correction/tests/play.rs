@@ -142,7 +142,7 @@ impl Hysteresis {
                 rotary_rad: Vector::zeros(),
                 tool_mm: Vector::zeros(),
                 direction,
-                rotary_play: Default::default(),
+                ..Default::default()
             })
         };
         let mean = error([0; 3]);

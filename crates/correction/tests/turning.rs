@@ -121,7 +121,7 @@ impl Case<'_> {
             rotary_rad: Vector::zeros(),
             tool_mm: self.block.tool_mm.into(),
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         };
         let (mut so_far, mut worst, mut aside) = (0.0, 0.0_f64, 0.0_f64);
         for (piece, from, to) in pieces {

@@ -47,7 +47,7 @@ fn at(x: f64, y: f64, z: f64, tool_mm: Vector) -> Command {
         rotary_rad: Vector::zeros(),
         tool_mm,
         direction: [0; 3],
-        rotary_play: Default::default(),
+        ..Default::default()
     }
 }
 
@@ -234,7 +234,7 @@ fn all_over() -> Vec<Command> {
             rotary_rad: Vector::new(0.0, 1.5 * of(0.7), f64::from(i % 12) * 30.0_f64.to_radians() - 3.0),
             tool_mm: Vector::new(0.0, 0.0, -120.0),
             direction: [1, if i % 2 == 0 { 1 } else { -1 }, 0],
-            rotary_play: Default::default(),
+            ..Default::default()
         });
     }
     commands

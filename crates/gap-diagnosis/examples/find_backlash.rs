@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     rotary_rad: Vector::zeros(),
                     tool_mm,
                     direction,
-                    rotary_play: Default::default(),
+                    ..Default::default()
                 },
                 conditions: Conditions { feed_mm_min: Some(feed), ..Conditions::default() },
                 predicted_mm: Vector::zeros(),

@@ -64,7 +64,7 @@ fn measured(plan: Plan, field_um: impl Fn(&Row) -> Vector) -> Measurements {
                         rotary_rad: Vector::zeros(),
                         tool_mm: Vector::new(0.0, 0.0, plan.tools_mm[corner % plan.tools_mm.len()]),
                         direction,
-                        rotary_play: Default::default(),
+                        ..Default::default()
                     },
                     conditions: Conditions {
                         time_s: Some(time_s),

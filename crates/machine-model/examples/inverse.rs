@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         rotary_rad: Vector::zeros(),
         tool_mm,
         direction: [0; 3],
-        rotary_play: Default::default(),
+        ..Default::default()
     };
     let goes = |linear_mm| machine.predict(&Command { linear_mm, ..told }).position_mm - tool_mm;
     let better = machine.solve(&told)?.linear_mm;

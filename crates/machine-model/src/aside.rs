@@ -21,7 +21,7 @@ use crate::{Command, Engine, EngineId, Move, PathModel, Solution, SolveError, Tu
 ///     rotary_rad: Vector::zeros(),
 ///     tool_mm: Vector::new(100.0, 0.0, 0.0),
 ///     direction: [0; 3],
-///     rotary_play: Default::default(),
+///     ..Default::default()
 /// };
 /// assert!((aside.error_mm(&command) - Vector::new(0.0, 0.010, 0.0)).norm() < 1e-6);
 /// ```

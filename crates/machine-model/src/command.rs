@@ -18,12 +18,12 @@ pub type Matrix = nalgebra::Matrix3<f64>;
 ///     rotary_rad: Vector::zeros(),
 ///     tool_mm: Vector::new(0.0, 0.0, -80.0),
 ///     direction: [-1, 0, 0],
-///     rotary_play: Default::default(),
+///     ..Default::default()
 /// };
 /// // A perfect machine without rotary axes has its tip here.
 /// assert_eq!(command.linear_mm + command.tool_mm, Vector::new(100.0, 50.0, -60.0));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {
     /// X, Y, Z, machine coordinates, mm.
     pub linear_mm: Vector,
@@ -35,6 +35,9 @@ pub struct Command {
     pub direction: [i8; 3],
     /// Where the rotary axes stand in their play; by default in its middle.
     pub rotary_play: RotaryPlay,
+    /// Error of the machine where the program's zero was touched, mm, frame of the workpiece: errors count from there.
+    /// Zero: they count from the measuring frame. Equation (121).
+    pub datum_mm: Vector,
 }
 
 /// Where rotary axes stand in their play.
@@ -120,7 +123,7 @@ impl Volume {
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], ..Default::default() }
 /// # }
 /// // A line from X10 to X40. Here the error grows evenly, so that it does not leave its chord at all.
 /// let stretch = Move {

@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 use toolpath::{Kinematics, TiltedPlane};
 
-use crate::{Command, Everywhere, Move, Vector, Volume};
+use crate::{Command, Everywhere, Move, Turn, Vector, Volume};
 
 /// How many points are evaluated together.
 pub const LANES: usize = 4;
@@ -22,7 +22,7 @@ pub const LANES: usize = 4;
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], ..Default::default() }
 /// # }
 /// let told = machine().solve(&at(50.0, 0.0, 0.0)).unwrap();
 /// assert!(told.residual_mm <= TOLERANCE_MM && told.iterations < 10);
@@ -51,7 +51,7 @@ pub struct Solution {
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], ..Default::default() }
 /// # }
 /// let error = machine().solve(&at(130.0, 0.0, 0.0)).unwrap_err();
 /// assert!(matches!(error, SolveError::OutsideVolume { axis: 'X', value_mm: 130.0, .. }));
@@ -176,7 +176,7 @@ pub enum EngineId {
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], ..Default::default() }
 /// # }
 /// // Those who correct points need not know which engine they have.
 /// let machine = machine();
@@ -262,7 +262,7 @@ impl<'m> Models<'m> {
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], ..Default::default() }
 /// # }
 /// let machine = machine();
 /// assert!((machine.error_mm(&at(25.0, 0.0, 0.0)).x - 0.005).abs() < 1e-12);
@@ -273,6 +273,8 @@ impl<'m> Models<'m> {
 pub trait PathModel: Engine {
     /// Real tip minus nominal tip, mm, in the directions of the linear axes: the displacement the
     /// linear axes would have to undo.
+    ///
+    /// That of the measuring frame, whatever [`Command::datum_mm`] says; [`crate::FromDatum`] counts from the datum.
     ///
     /// The command must lie in [`Engine::volume`]; outside, the value at the volume's nearest point.
     fn error_mm(&self, command: &Command) -> Vector;
@@ -302,6 +304,16 @@ pub trait PathModel: Engine {
     /// * `programmed_rad` – A, B, C with which it is there
     fn same_tip_mm(&self, linear_mm: &Vector, _state: &Command, _programmed_rad: &Vector) -> Vector {
         *linear_mm
+    }
+
+    /// A vector of the workpiece's frame in the directions of the linear axes, as an ideal table turns it.
+    fn along_axes(&self, workpiece_mm: &Vector, _state: &Command) -> Vector {
+        *workpiece_mm
+    }
+
+    /// Upper bound of how far the workpiece turns along a stretch, all axes of the table together, rad.
+    fn table_turns_rad(&self, _turn: &Turn) -> f64 {
+        0.0
     }
 
     /// The tip of an ideal machine as the workpiece sees it, mm, but for a shift that is the same everywhere.

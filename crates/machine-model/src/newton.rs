@@ -230,7 +230,7 @@ mod tests {
                 rotary_rad: Vector::zeros(),
                 tool_mm: Vector::new(3.0, -5.0, -120.0),
                 direction: [0; 3],
-                rotary_play: Default::default(),
+                ..Default::default()
             };
             let everywhere = model.everywhere(&state).unwrap();
             for k in 0..400 {

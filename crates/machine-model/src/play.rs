@@ -23,7 +23,7 @@
 //!     rotary_rad: Vector::zeros(),
 //!     tool_mm: Vector::zeros(),
 //!     direction: [0; 3],
-//!     rotary_play: Default::default(),
+//!     ..Default::default()
 //! };
 //! let mut play = Play::unknown();
 //! let mut tip_x = |x: f64| {
@@ -374,7 +374,7 @@ mod tests {
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::zeros(),
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         }
     }
 

@@ -38,7 +38,7 @@ use crate::{
 ///     rotary_rad: Vector::new(0.0, 0.0, c),
 ///     tool_mm: Vector::zeros(),
 ///     direction: [0; 3],
-///     rotary_play: Default::default(),
+///     ..Default::default()
 /// };
 /// assert_eq!(tip.error_mm(&at(0.0)), Vector::zeros());
 /// assert!((tip.error_mm(&at(std::f64::consts::PI)).x + 0.020).abs() < 1e-12);
@@ -173,7 +173,8 @@ impl TipControl {
     fn error_at(&self, stands: Stands<'_>, linear_mm: &Vector, state: &Command) -> Vector {
         let asked = linear_mm + state.tool_mm;
         let axes = stands.control.reach(&asked);
-        let own = self.core.machine.error_as_seen(stands.machine, &axes, &state.direction);
+        // Tip commands are places of the workpiece: the datum is the same wherever its axes stand.
+        let own = self.core.machine.error_as_seen(stands.machine, &axes, &state.direction) - state.datum_mm;
         if self.core.apart_mm == 0.0 {
             // No more than that: what is zero stays zero to the last bit.
             return own;
@@ -461,6 +462,10 @@ impl PathModel for PlaneControl {
         let turn = self.tip.control_stands(&stretch.state, |stands| stands.turn.tr_mul(&self.turn));
         let turn = turn.map(|share| if share.abs() < NOTHING { 0.0 } else { share });
         core.machine.chord_bound_mm(&TipControl::led(stretch, &turn, |at| self.axis_command(at).linear_mm))
+    }
+
+    fn along_axes(&self, workpiece_mm: &Vector, _state: &Command) -> Vector {
+        self.turn.tr_mul(workpiece_mm)
     }
 
     fn has_rotary_play(&self) -> bool {

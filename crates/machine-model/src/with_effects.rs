@@ -4,7 +4,7 @@ use crate::effects::{Conditions, EffectKind, EffectTerm, MissingCondition};
 use crate::solve::{FIXED_POINT_ROUNDS, TOLERANCE_MM, solve};
 use crate::{
     Command, Engine, EngineId, Everywhere, LANES, Move, PathModel, Prediction, RigidBody, Solution,
-    SolveError, Vector, Volume,
+    SolveError, Turn, Vector, Volume,
 };
 
 /// An effect cannot be evaluated: what it depends on is not known.
@@ -22,7 +22,7 @@ use crate::{
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], ..Default::default() }
 /// # }
 /// let parameters = [("expansion_um_per_m_k".to_owned(), 11.5)];
 /// let warm = EffectTerm::from_entry("thermal.X", &parameters).unwrap();
@@ -57,7 +57,7 @@ pub struct UnknownCondition {
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], ..Default::default() }
 /// # }
 /// // Half a lost motion of 3 µm: the tip lags behind, whichever way X goes.
 /// let lost = EffectTerm::from_entry("backlash.X", &[("half_width_um".to_owned(), 3.0)]).unwrap();
@@ -94,7 +94,7 @@ impl WithEffects {
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::zeros(),
             direction: [1; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         };
         for term in &terms {
             term.displacement_mm(&anywhere, &conditions)
@@ -137,7 +137,7 @@ impl WithEffects {
     }
 
     /// Sum of the effects, where the linear axes have to undo it.
-    fn along_axes(&self, command: &Command) -> Vector {
+    fn undone(&self, command: &Command) -> Vector {
         let seen = self.displacement(command);
         if self.base.description().chain.table().is_empty() {
             return seen;
@@ -182,7 +182,7 @@ impl Engine for WithEffects {
 impl PathModel for WithEffects {
     fn error_mm(&self, command: &Command) -> Vector {
         let command = self.inside(command);
-        self.base.error_mm(&command) + self.along_axes(&command)
+        self.base.error_mm(&command) + self.undone(&command)
     }
 
     /// A sum leaves its chord by no more than its parts do.
@@ -209,6 +209,14 @@ impl PathModel for WithEffects {
 
     fn same_tip_mm(&self, linear_mm: &Vector, state: &Command, programmed_rad: &Vector) -> Vector {
         self.base.same_tip_mm(linear_mm, state, programmed_rad)
+    }
+
+    fn along_axes(&self, workpiece_mm: &Vector, state: &Command) -> Vector {
+        self.base.along_axes(workpiece_mm, state)
+    }
+
+    fn table_turns_rad(&self, turn: &Turn) -> f64 {
+        self.base.table_turns_rad(turn)
     }
 
     fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {
@@ -286,7 +294,7 @@ impl PathModel for WithEffects {
                     continue;
                 }
                 let at = Command { linear_mm: q[lane], direction: directions[lane], ..*state };
-                let error = errors[lane] + self.along_axes(&at);
+                let error = errors[lane] + self.undone(&at);
                 let residual = (q[lane] - targets[lane]) + error;
                 let squared = residual.norm_squared();
                 // A root is asked for only where it may decide.

@@ -18,7 +18,7 @@ fn at(linear_mm: Vector) -> Command {
         rotary_rad: Vector::zeros(),
         tool_mm: Vector::zeros(),
         direction: [0; 3],
-        rotary_play: Default::default(),
+        ..Default::default()
     }
 }
 

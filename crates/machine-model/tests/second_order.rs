@@ -14,7 +14,7 @@ fn commands() -> Vec<Command> {
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::zeros(),
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         })
         .collect()
 }

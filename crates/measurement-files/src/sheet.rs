@@ -547,7 +547,7 @@ impl<'s> Row<'s> {
                 .into(),
             tool_mm: Vector::from_fn(|i, _| tool[i].unwrap_or(tool_mm[i])),
             direction: self.directions()?,
-            rotary_play: Default::default(),
+            ..Default::default()
         })
     }
 

@@ -25,15 +25,18 @@ pub struct Course {
 /// others should be the first without some of its errors.
 ///
 /// * `step_mm` – distance between places on a line, at most; an arc turns by [`TURN_RAD`] between them at most
+/// * `datum_of` – [`Command::datum_mm`] of a machine, by its number, where that of the first is given: each machine would
+///   have been touched by itself
 pub fn courses<'m>(
     models: &[Models<'m>],
     steps: impl Iterator<Item = Step>,
     retreats: PeckRetreats,
     step_mm: f64,
+    datum_of: &'m DatumOf<'m>,
     each: &mut dyn FnMut(Course),
 ) {
     let Some((first, others)) = models.split_first() else { return };
-    let others = Others::new(others, step_mm);
+    let others = Others { datum_of, ..Others::new(others, step_mm) };
     let mut items = Items::new(*first, steps, Role::Wanted, retreats, Counted::default()).with_others(others);
     while let Some(item) = items.pop() {
         if let Item::Feed(mut feed) = item
@@ -44,6 +47,9 @@ pub fn courses<'m>(
     }
 }
 
+/// See [`courses`].
+pub type DatumOf<'m> = dyn Fn(usize, Vector) -> Vector + 'm;
+
 /// Largest turn of an arc, and of all rotary axes together, between two places, rad: a chord lies off a circle by 1/800
 /// of its radius.
 pub const TURN_RAD: f64 = 0.1;
@@ -52,12 +58,15 @@ pub const TURN_RAD: f64 = 0.1;
 pub(crate) struct Others<'m> {
     machines: Vec<Other<'m>>,
     step_mm: f64,
+    datum_of: &'m DatumOf<'m>,
 }
 
 struct Other<'m> {
     models: Models<'m>,
     model: &'m dyn PathModel,
     play: Option<Play>,
+    /// Of the first machine and of this one.
+    datums_mm: [Vector; 2],
 }
 
 impl<'m> Others<'m> {
@@ -65,9 +74,15 @@ impl<'m> Others<'m> {
         let mut others = Self {
             machines: models
                 .iter()
-                .map(|models| Other { models: *models, model: models.axes, play: None })
+                .map(|models| Other {
+                    models: *models,
+                    model: models.axes,
+                    play: None,
+                    datums_mm: [Vector::zeros(); 2],
+                })
                 .collect(),
             step_mm,
+            datum_of: &|_, own| own,
         };
         others.switch(Kinematics::Axes);
         others
@@ -94,12 +109,18 @@ impl<'m> Others<'m> {
 
     /// The error of each, its axes having gone to a command.
     pub(crate) fn errors_mm(&mut self, here: &Command) -> impl Iterator<Item = Vector> {
-        self.machines.iter_mut().map(|other| match &mut other.play {
-            None => other.model.error_mm(here),
-            Some(play) => {
-                play.go(other.model, here);
-                play.turn(other.model, here, [true; 3]);
-                play.error_mm(other.model, here)
+        self.machines.iter_mut().zip(1..).map(|(other, number)| {
+            if other.datums_mm[0] != here.datum_mm {
+                other.datums_mm = [here.datum_mm, (self.datum_of)(number, here.datum_mm)];
+            }
+            let here = &Command { datum_mm: other.datums_mm[1], ..*here };
+            match &mut other.play {
+                None => other.model.error_mm(here),
+                Some(play) => {
+                    play.go(other.model, here);
+                    play.turn(other.model, here, [true; 3]);
+                    play.error_mm(other.model, here)
+                }
             }
         })
     }

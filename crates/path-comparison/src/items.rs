@@ -122,6 +122,26 @@ pub(crate) struct Off {
     pub(crate) aside_rad: f64,
 }
 
+impl Off {
+    /// No place.
+    const FAR: Self = Self {
+        tip_mm: f64::INFINITY,
+        leans_rad: f64::INFINITY,
+        leans_at_most_rad: 1.0,
+        aside_rad: f64::INFINITY,
+    };
+
+    /// The direction's share of its limit.
+    fn leans(&self) -> f64 {
+        self.leans_rad / self.leans_at_most_rad
+    }
+
+    /// The larger share of tip and direction.
+    fn share(&self, limit_mm: f64) -> f64 {
+        (self.tip_mm / limit_mm).max(self.leans())
+    }
+}
+
 /// A feed motion.
 pub(crate) struct Feeding {
     pub(crate) stretches: SmallVec<[Stretch; 2]>,
@@ -218,54 +238,51 @@ impl Feeding {
         const THIRDS: u32 = 40;
         /// Shares of the limits that differ by less are rounding.
         const ALIKE: f64 = 1e-6;
-        // Share of the limits, distance, share of the direction's, direction and its limit.
-        let mut best = [f64::INFINITY; 5];
-        let (mut least, mut aside_rad) = ([f64::INFINITY; 3], f64::INFINITY);
-        for (stretch, at_most_rad) in self.stretches.iter().zip(&self.leans_at_most_rad) {
+        let (mut best, mut least, mut aside_rad) = (Off::FAR, Off::FAR, f64::INFINITY);
+        for (stretch, leans_at_most_rad) in self.stretches.iter().zip(&self.leans_at_most_rad) {
             let foot = stretch.foot(place);
             let away_mm = (place - stretch.at(foot)).fixed_rows::<6>(0).norm();
-            if away_mm > 4.0 * self.limit_mm && best[0].is_finite() {
+            if away_mm > 4.0 * self.limit_mm && best.tip_mm.is_finite() {
                 continue;
             }
             let reach = 2.0 * self.limit_mm / stretch.length_mm().max(self.limit_mm);
-            let at = |s: f64| {
+            let off = |s: f64| {
                 let off = place - stretch.at(s);
-                let [tip, way] = [0, 3].map(|row| off.fixed_rows::<3>(row).norm());
-                (tip, way / POINTING_LEVER_MM, off.fixed_rows::<3>(6).amax() / TURN_LEVER_MM)
-            };
-            // The larger share of the two limits has one least value on a stretch.
-            let share = |s: f64| {
-                let (off_mm, leans_rad, _) = at(s);
-                (off_mm / limit_mm).max(leans_rad / at_most_rad)
+                Off {
+                    tip_mm: off.fixed_rows::<3>(0).norm(),
+                    leans_rad: off.fixed_rows::<3>(3).norm() / POINTING_LEVER_MM,
+                    leans_at_most_rad: *leans_at_most_rad,
+                    aside_rad: off.fixed_rows::<3>(6).amax() / TURN_LEVER_MM,
+                }
             };
             let inside = |s: f64| s.clamp(0.0, 1.0);
+            // The larger share has one least value on a stretch.
             let (mut low, mut high) = (inside(foot - reach), inside(foot + reach));
             for _ in 0..THIRDS {
                 let third = (high - low) / 3.0;
-                if share(low + third) <= share(high - third) { high -= third } else { low += third }
+                let [first, second] = [low + third, high - third].map(|s| off(s).share(limit_mm));
+                if first <= second { high -= third } else { low += third }
             }
             let evenly = (-LOOKS..=LOOKS).map(|k| inside(foot + reach * f64::from(k) / f64::from(LOOKS)));
-            for s in evenly.chain([0.5 * (low + high)]) {
-                let (off_mm, leans_rad, own_aside_rad) = at(s);
-                let leans = leans_rad / at_most_rad;
-                if off_mm <= limit_mm {
-                    if leans < least[0] {
-                        least = [leans, leans_rad, *at_most_rad];
+            for own in evenly.chain([0.5 * (low + high)]).map(off) {
+                if own.tip_mm <= limit_mm {
+                    if own.leans() < least.leans() {
+                        least = own;
                     }
-                    if leans <= 1.0 {
-                        aside_rad = aside_rad.min(own_aside_rad);
+                    if own.leans() <= 1.0 {
+                        aside_rad = aside_rad.min(own.aside_rad);
                     }
                 }
-                let share = (off_mm / limit_mm).max(leans);
+                let [share, so_far] = [own, best].map(|off| off.share(limit_mm));
                 // Of places that are as good the nearest.
-                if share < best[0] - ALIKE || (share < best[0] + ALIKE && off_mm < best[1]) {
-                    best = [share, off_mm, leans, leans_rad, *at_most_rad];
+                if share < so_far - ALIKE || (share < so_far + ALIKE && own.tip_mm < best.tip_mm) {
+                    best = own;
                 }
             }
         }
-        let [_, tip_mm, leans, at_best @ ..] = best;
-        let [leans_rad, leans_at_most_rad] = if least[0] <= leans { [least[1], least[2]] } else { at_best };
-        Off { tip_mm, leans_rad, leans_at_most_rad, aside_rad }
+        let Off { leans_rad, leans_at_most_rad, .. } =
+            if least.leans() <= best.leans() { least } else { best };
+        Off { tip_mm: best.tip_mm, leans_rad, leans_at_most_rad, aside_rad }
     }
 
     /// Distance of a place, mm, and how far along the motion the nearest lies, 0 to 1.
@@ -393,6 +410,7 @@ struct Common {
     process: Process,
     limit_mm: f64,
     tool_mm: Vector,
+    datum_mm: Vector,
     dwell: Option<u32>,
 }
 
@@ -402,8 +420,9 @@ impl Common {
             linear_mm,
             rotary_rad,
             tool_mm: self.tool_mm,
+            datum_mm: self.datum_mm,
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         }
     }
 }
@@ -511,14 +530,14 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
     fn take(&mut self, step: &Step) {
         let Step { act, line, process: number, limit_mm, compensated, pointing } = *step;
         self.pointing = pointing;
-        let (motion, tool_mm, kinematics, feed, dwell) = match act {
+        let (motion, [tool_mm, datum_mm], kinematics, feed, dwell) = match act {
             Act::Deed(deed) => {
                 let process = Process::of_number(number);
                 self.ready.push_back(Item::Deed(Deed { number: deed, line, process }));
                 return;
             }
-            Act::Motion { motion, tool_mm, kinematics, feed, dwell } => {
-                (motion, tool_mm, kinematics, feed, dwell)
+            Act::Motion { motion, tool_mm, datum_mm, kinematics, feed, dwell } => {
+                (motion, [tool_mm, datum_mm].map(Vector::from), kinematics, feed, dwell)
             }
         };
         if kinematics != self.kinematics {
@@ -531,7 +550,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         }
         let block = Some(self.compensated).filter(|_| compensated && matches!(motion, Motion::Feed(_)));
         let process = Process { number, feed, compensated: block };
-        let common = Common { line, process, limit_mm, tool_mm: tool_mm.into(), dwell };
+        let common = Common { line, process, limit_mm, tool_mm, datum_mm, dwell };
         self.feeds += usize::from(matches!(motion, Motion::Feed(_) | Motion::Hole(_)));
         match motion {
             Motion::Feed(Feed { start, end, shape: Shape::Bezier(curve), rate, .. }) => {
@@ -711,10 +730,11 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
                 let sin = singular_sin(self.model, &common.command(way.at(s), way.rotary_rad(s)));
                 sin.is_some_and(|sin| sin < pointing.near_sin)
             };
-            let at_most = |k: usize| {
-                if near(k) || near(k + 1) { pointing.leans_near_rad } else { pointing.leans_rad }
+            let near: SmallVec<[bool; 4]> = (0..=places).map(near).collect();
+            let at_most = |ends: &[bool]| {
+                if ends.contains(&true) { pointing.leans_near_rad } else { pointing.leans_rad }
             };
-            (0..places).map(at_most).collect()
+            near.windows(2).map(at_most).collect()
         });
         // Of a long motion its length will do.
         let start = stretches[0].at(0.0);

@@ -32,7 +32,7 @@ use machine_model::Models;
 use toolpath::PeckRetreats;
 
 pub use comparison::{Comparison, Deviation, Lean, Mismatch, Trace, Traces, What};
-pub use course::{Course, TURN_RAD, courses};
+pub use course::{Course, DatumOf, TURN_RAD, courses};
 pub use step::{Act, Pointing, Step};
 pub use stretch::LEVER_MM;
 pub use way::Way;

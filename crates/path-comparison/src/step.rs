@@ -42,6 +42,8 @@ pub enum Act {
         motion: Motion,
         /// From gauge point to tip, mm.
         tool_mm: [f64; 3],
+        /// Error of the machine where the program's zero was touched, mm, frame of the workpiece.
+        datum_mm: [f64; 3],
         /// What X, Y and Z are.
         kinematics: Kinematics,
         /// The number of F in force.

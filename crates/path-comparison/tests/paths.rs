@@ -9,14 +9,26 @@ use toolpath::{Arc, Division, Feed, FeedRate, Kinematics, Motion, Plane, Positio
 
 const LIMIT_MM: f64 = 0.002;
 
-fn straight() -> RigidBody {
+/// A machine without errors.
+fn machine(chain: &str) -> RigidBody {
     RigidBody::new(Description {
-        chain: Chain::parse("[w X Y b Z t]").expect("a chain"),
+        chain: Chain::parse(chain).expect("a chain"),
         linear: [(); 3].map(|()| LinearAxis::perfect(Range { low: -500.0, high: 500.0 })),
         rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
         squareness: Squareness::default(),
     })
     .expect("a machine")
+}
+
+fn straight() -> RigidBody {
+    machine("[w X Y b Z t]")
+}
+
+/// What a comparison finds on a machine.
+fn found_on(machine: &RigidBody, [wanted, made]: [Vec<Step>; 2]) -> Comparison {
+    let retreats = toolpath::PeckRetreats { clearance_mm: 0.25, chip_mm: 0.5 };
+    let models = Models { axes: machine, tip: None };
+    compare(models, wanted.into_iter(), made.into_iter(), retreats, Traces::Kept)
 }
 
 fn at(linear_mm: [f64; 3]) -> Position {
@@ -31,6 +43,7 @@ fn step(feed: Feed, line: usize) -> Step {
     let act = Act::Motion {
         motion: Motion::Feed(feed),
         tool_mm: [0.0; 3],
+        datum_mm: [0.0; 3],
         kinematics: Kinematics::Axes,
         feed: Some(100.0),
         dwell: None,
@@ -41,14 +54,7 @@ fn step(feed: Feed, line: usize) -> Step {
 fn compared(wanted: &[Feed], made: &[Feed]) -> Comparison {
     let steps =
         |feeds: &[Feed]| -> Vec<Step> { feeds.iter().enumerate().map(|(k, f)| step(*f, k + 1)).collect() };
-    let retreats = toolpath::PeckRetreats { clearance_mm: 0.25, chip_mm: 0.5 };
-    compare(
-        Models { axes: &straight(), tip: None },
-        steps(wanted).into_iter(),
-        steps(made).into_iter(),
-        retreats,
-        Traces::Kept,
-    )
+    found_on(&straight(), [wanted, made].map(steps))
 }
 
 /// Lines through places; every third of them an arc of a quarter turn in XY.
@@ -155,7 +161,7 @@ fn timed(wanted: &[Feed], made: &[Feed]) -> Vec<u64> {
         let under_g93 = |(k, one): (usize, &Feed)| {
             let act = match step(*one, k + 1).act {
                 Act::Motion { motion, tool_mm, kinematics, dwell, .. } => {
-                    Act::Motion { motion, tool_mm, kinematics, dwell, feed: None }
+                    Act::Motion { motion, tool_mm, datum_mm: [0.0; 3], kinematics, dwell, feed: None }
                 }
                 act @ Act::Deed(_) => act,
             };
@@ -163,9 +169,7 @@ fn timed(wanted: &[Feed], made: &[Feed]) -> Vec<u64> {
         };
         feeds.iter().enumerate().map(under_g93).collect()
     };
-    let retreats = toolpath::PeckRetreats { clearance_mm: 0.25, chip_mm: 0.5 };
-    let models = Models { axes: &straight(), tip: None };
-    let found = compare(models, steps(wanted).into_iter(), steps(made).into_iter(), retreats, Traces::Kept);
+    let found = found_on(&straight(), [wanted, made].map(steps));
     assert!(found.mismatches.iter().all(|one| matches!(one.what, What::Time(_))), "{found:?}");
     found.mismatches.iter().map(|one| one.commanded_line).collect()
 }
@@ -219,28 +223,23 @@ fn the_time_of_short_pieces_adds_up() {
     }
 }
 
+/// A direction that may be off by so much everywhere, and a rotary axis.
+fn held(leans_rad: f64, aside_deg: f64) -> Option<Pointing> {
+    Some(Pointing { leans_rad, leans_near_rad: leans_rad, near_sin: 0.0, aside_deg })
+}
+
 /// Where directions are compared, what the tool leans at the start of a feed is none of its tip's distance.
 #[test]
 fn a_lean_at_the_start_is_no_distance_of_the_tip() {
-    let table = RigidBody::new(Description {
-        chain: Chain::parse("[w A b X Y Z t]").expect("a chain"),
-        linear: [(); 3].map(|()| LinearAxis::perfect(Range { low: -500.0, high: 500.0 })),
-        rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
-        squareness: Squareness::default(),
-    })
-    .expect("a machine");
+    let table = machine("[w A b X Y Z t]");
     // Along the axis of A: the tip stays where it is.
     let along = |a_deg: f64| {
         let place = |x: f64, a: f64| Position { linear_mm: [x, 0.0, 0.0], rotary_deg: [a, 0.0, 0.0] };
         Feed { start: place(0.0, a_deg), end: place(10.0, 10.0), ..feed([0.0; 3], [0.0; 3], Shape::Line) }
     };
-    let pointing =
-        Some(Pointing { leans_rad: 100e-6, leans_near_rad: 100e-6, near_sin: 0.0, aside_deg: 1.0 });
-    let steps = |a_deg: f64| std::iter::once(Step { pointing, ..step(along(a_deg), 1) });
-    let retreats = toolpath::PeckRetreats { clearance_mm: 0.25, chip_mm: 0.5 };
-    let models = Models { axes: &table, tip: None };
-    let found =
-        compare(models, steps(10.0), steps(10.0 + 60e-6_f64.to_degrees()), retreats, Traces::Forgotten);
+    let pointing = held(100e-6, 1.0);
+    let steps = |a_deg: f64| vec![Step { pointing, ..step(along(a_deg), 1) }];
+    let found = found_on(&table, [10.0, 10.0 + 60e-6_f64.to_degrees()].map(steps));
     assert!(found.mismatches.is_empty(), "{found:?}");
     assert!(found.after.largest_mm < 1e-9, "{found:?}");
     assert!((found.leans_after.largest_rad - 60e-6).abs() < 1e-9, "{found:?}");
@@ -249,15 +248,8 @@ fn a_lean_at_the_start_is_no_distance_of_the_tip() {
 /// A tool along the axis of the table points the same way at each of its angles; the axis may not stand anywhere for that.
 #[test]
 fn an_axis_along_the_tool_stands_at_its_angle() {
-    let table = RigidBody::new(Description {
-        chain: Chain::parse("[w C b X Y Z t]").expect("a chain"),
-        linear: [(); 3].map(|()| LinearAxis::perfect(Range { low: -500.0, high: 500.0 })),
-        rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
-        squareness: Squareness::default(),
-    })
-    .expect("a machine");
-    let pointing =
-        Some(Pointing { leans_rad: 100e-6, leans_near_rad: 100e-6, near_sin: 0.0, aside_deg: 0.5 });
+    let table = machine("[w C b X Y Z t]");
+    let pointing = held(100e-6, 0.5);
     let plunge = |end_deg: f64| {
         let place = |z: f64, c: f64| Position { linear_mm: [0.0, 0.0, z], rotary_deg: [0.0, 0.0, c] };
         let feed = Feed {
@@ -265,12 +257,10 @@ fn an_axis_along_the_tool_stands_at_its_angle() {
             end: place(10.0, end_deg),
             ..feed([0.0; 3], [0.0; 3], Shape::Line)
         };
-        std::iter::once(Step { pointing, ..step(feed, 1) })
+        vec![Step { pointing, ..step(feed, 1) }]
     };
-    let retreats = toolpath::PeckRetreats { clearance_mm: 0.25, chip_mm: 0.5 };
     for (made_deg, stands) in [(30.0, true), (30.4, true), (30.6, false), (31.0, false), (29.0, false)] {
-        let models = Models { axes: &table, tip: None };
-        let found = compare(models, plunge(30.0), plunge(made_deg), retreats, Traces::Forgotten);
+        let found = found_on(&table, [30.0, made_deg].map(plunge));
         assert_eq!(found.mismatches.is_empty(), stands, "{made_deg} {found:?}");
         assert!(found.mismatches.iter().all(|mismatch| mismatch.what == What::Turned), "{found:?}");
         assert!(found.after.largest_mm < 1e-7, "{found:?}");
@@ -280,32 +270,23 @@ fn an_axis_along_the_tool_stands_at_its_angle() {
 /// What the tool may lean is no room for its tip: a corner cut by twice the limit is one, though each piece ends on the path.
 #[test]
 fn a_corner_is_not_cut_by_what_the_tool_may_lean() {
-    let table = RigidBody::new(Description {
-        chain: Chain::parse("[w C b X Y Z t]").expect("a chain"),
-        linear: [(); 3].map(|()| LinearAxis::perfect(Range { low: -500.0, high: 500.0 })),
-        rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
-        squareness: Squareness::default(),
-    })
-    .expect("a machine");
-    let leans_rad = 200e-6;
-    let pointing = Some(Pointing { leans_rad, leans_near_rad: leans_rad, near_sin: 0.0, aside_deg: 0.5 });
+    let table = machine("[w C b X Y Z t]");
+    let pointing = held(200e-6, 0.5);
     let along = |places: &[[f64; 2]]| {
         let lines = places.windows(2).enumerate().map(|(k, pair)| {
             let [from, to] = [pair[0], pair[1]].map(|[x, y]| [x, y, 0.0]);
             Step { pointing, ..step(feed(from, to, Shape::Line), k + 1) }
         });
-        lines.collect::<Vec<Step>>().into_iter()
+        lines.collect::<Vec<Step>>()
     };
     let corner = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]];
-    let retreats = toolpath::PeckRetreats { clearance_mm: 0.25, chip_mm: 0.5 };
     for (cut_mm, holds) in
         [(0.0, true), (0.5 * LIMIT_MM, true), (2.0 * LIMIT_MM, false), (4.0 * LIMIT_MM, false)]
     {
         // The corner is as far from the middle of the cut.
         let back = cut_mm * std::f64::consts::SQRT_2;
         let made = [[0.0, 0.0], [10.0 - back, 0.0], [10.0, back], [10.0, 10.0]];
-        let models = Models { axes: &table, tip: None };
-        let found = compare(models, along(&corner), along(&made), retreats, Traces::Forgotten);
+        let found = found_on(&table, [along(&corner), along(&made)]);
         assert_eq!(found.mismatches.is_empty(), holds, "{cut_mm} {found:?}");
     }
 }

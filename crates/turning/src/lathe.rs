@@ -59,7 +59,7 @@ pub struct Station {
 ///     rotary_rad: Vector::zeros(),
 ///     tool_mm: Vector::zeros(),
 ///     direction: [0; 3],
-///     rotary_play: Default::default(),
+///     ..Default::default()
 /// };
 /// // A cone of 50 µm on the diameter.
 /// assert!((2000.0 * lathe.error_mm(&told).x - 49.999_86).abs() < 1e-5);
@@ -113,7 +113,7 @@ impl Lathe {
                     tool_mm: *tool_mm,
                     rotary_rad: Vector::zeros(),
                     direction: [0; 3],
-                    rotary_play: Default::default(),
+                    ..Default::default()
                 }
             })
         });

@@ -44,7 +44,7 @@ fn at(x: f64, z: f64) -> Command {
         rotary_rad: Vector::zeros(),
         tool_mm: Vector::zeros(),
         direction: [0; 3],
-        rotary_play: Default::default(),
+        ..Default::default()
     }
 }
 

@@ -197,7 +197,7 @@ pub(crate) fn grid<'py>(
                 rotary_rad,
                 tool_mm,
                 direction: [0; 3],
-                rotary_play: Default::default(),
+                ..Default::default()
             })
         });
         let errors: Vec<f64> = map.errors_mm().iter().flat_map(|error| [error.x, error.y, error.z]).collect();

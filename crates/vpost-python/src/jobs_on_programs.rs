@@ -71,7 +71,7 @@ pub(crate) fn check(
             jobs::lines::check_lines(text, name)?;
         }
         let checked = closed([original, corrected], &settings, Traces::Forgotten, &|_| ())?;
-        Ok(Outcome::new(&settings, &checked.comparison, checked.findings))
+        Ok(Outcome::new(&settings, &checked))
     });
     let outcome = outcome.map_err(|failure| raised(py, &failure))?;
     let json = String::from_utf8_lossy(&outcome.json()).into_owned();

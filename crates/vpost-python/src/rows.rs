@@ -29,7 +29,7 @@ pub(crate) fn commands(arrays: [&[u8]; 4]) -> Vec<Command> {
             tool_mm,
             // Python has seen to it that each is -1, 0 or 1.
             direction: [direction.x, direction.y, direction.z].map(|sign| sign as i8),
-            rotary_play: Default::default(),
+            ..Default::default()
         }
     };
     rows.map(command).collect()

@@ -213,7 +213,7 @@ fn command(linear_mm: [f64; 3]) -> Command {
         rotary_rad: Vector::zeros(),
         tool_mm: Vector::new(0.0, 0.0, -120.0),
         direction: [0; 3],
-        rotary_play: Default::default(),
+        ..Default::default()
     }
 }
 

@@ -226,7 +226,7 @@ pub(super) fn everywhere(
                 rotary_rad,
                 tool_mm,
                 direction: [0; 3],
-                rotary_play: Default::default(),
+                ..Default::default()
             };
             command.linear_mm = machine.same_tip_mm(&(place_mm - tool_mm), &command, &Vector::zeros());
             rows.push(BallReading {

@@ -275,7 +275,7 @@ mod tests {
                 rotary_rad: Vector::zeros(),
                 tool_mm: Vector::zeros(),
                 direction: [0; 3],
-                rotary_play: Default::default(),
+                ..Default::default()
             },
             conditions: Conditions::default(),
             predicted_mm: Vector::zeros(),

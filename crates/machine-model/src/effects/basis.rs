@@ -17,7 +17,7 @@ use crate::{Command, Vector};
 ///     rotary_rad: Vector::zeros(),
 ///     tool_mm: Vector::zeros(),
 ///     direction: [0; 3],
-///     rotary_play: Default::default(),
+///     ..Default::default()
 /// };
 /// // Calibrated at 20 °C: at that temperature the machine is as its tables say, and an unknown one is never guessed.
 /// let known = Conditions { temp_c: [Some(20.0); 3], ..Conditions::default() };

@@ -254,7 +254,7 @@ mod tests {
             rotary_rad,
             tool_mm: Vector::new(0.0, 0.0, -50.0),
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         }
     }
 

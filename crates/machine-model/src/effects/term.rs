@@ -18,7 +18,7 @@ use crate::{Command, Vector};
 ///     rotary_rad: Vector::zeros(),
 ///     tool_mm: Vector::zeros(),
 ///     direction: [0; 3],
-///     rotary_play: Default::default(),
+///     ..Default::default()
 /// };
 /// let moved = long.displacement_mm(&at, &Conditions::default()).unwrap();
 /// assert!((moved - Vector::new(0.020, 0.0, 0.0)).norm() < 1e-12);
@@ -284,7 +284,7 @@ mod tests {
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::new(0.0, 0.0, -100.0),
             direction,
-            rotary_play: Default::default(),
+            ..Default::default()
         }
     }
 

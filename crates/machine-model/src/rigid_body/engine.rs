@@ -57,13 +57,28 @@ impl PathModel for RigidBody {
         // Outside the volume the error is that of its nearest point, as everywhere.
         let inside = Command { linear_mm: self.volume.nearest(&command.linear_mm), ..*command };
         let programmed = Command { rotary_rad: *programmed_rad, ..inside };
-        let off = self.predict(&inside).position_mm - self.nominal_position(&inside.linear_mm, &programmed);
-        self.table_turn(&programmed).tr_mul(&off)
+        let position_mm = self.predict(&inside).position_mm;
+        self.standing(&programmed, |standing| {
+            standing.turn.tr_mul(&(position_mm - standing.nominal_position(&inside.linear_mm)))
+        })
     }
 
     fn same_tip_mm(&self, linear_mm: &Vector, state: &Command, programmed_rad: &Vector) -> Vector {
         let programmed = Command { rotary_rad: *programmed_rad, ..*state };
         self.reach(&self.nominal_position(linear_mm, &programmed), state)
+    }
+
+    fn along_axes(&self, workpiece_mm: &Vector, state: &Command) -> Vector {
+        if self.description.chain.table().is_empty() {
+            return *workpiece_mm;
+        }
+        self.standing(state, |standing| standing.turn.tr_mul(workpiece_mm))
+    }
+
+    fn table_turns_rad(&self, turn: &Turn) -> f64 {
+        let [from, to] = turn.programmed_rad;
+        let table = self.description.chain.table();
+        table.iter().map(|axis| (to - from)[axis.direction()].abs()).sum()
     }
 
     fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {

@@ -128,7 +128,7 @@ pub fn field(machine: &RigidBody, tables: &[ParametricTable; 3]) -> Field {
                     rotary_rad: Vector::zeros(),
                     tool_mm: Vector::zeros(),
                     direction: [0; 3],
-                    rotary_play: Default::default(),
+                    ..Default::default()
                 });
                 vectors.push(ErrorVector { place_mm, error_mm, uncertainty_mm: Vector::zeros(), run: 0 });
             }

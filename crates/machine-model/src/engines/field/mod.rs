@@ -174,7 +174,7 @@ pub enum Made {
 ///     rotary_rad: Vector::zeros(),
 ///     tool_mm: Vector::zeros(),
 ///     direction: [0; 3],
-///     rotary_play: Default::default(),
+///     ..Default::default()
 /// };
 /// assert!((field.error_mm(&at(50.0)).x - 0.005).abs() < 1e-12);
 /// assert!((field.jacobian(&at(50.0)).unwrap()[(0, 0)] - 1e-4).abs() < 1e-12);

@@ -421,7 +421,7 @@ mod tests {
                         rotary_rad: Vector::zeros(),
                         tool_mm: Vector::zeros(),
                         direction: [0; 3],
-                        rotary_play: Default::default(),
+                        ..Default::default()
                     },
                     turn: None,
                 };

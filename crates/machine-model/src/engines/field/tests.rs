@@ -11,7 +11,7 @@ fn at(q: Vector) -> Command {
         rotary_rad: Vector::zeros(),
         tool_mm: Vector::zeros(),
         direction: [0; 3],
-        rotary_play: Default::default(),
+        ..Default::default()
     }
 }
 

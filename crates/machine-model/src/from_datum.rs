@@ -1,0 +1,185 @@
+//! Errors counted from where the program's zero was touched. Equation (121).
+
+use crate::{
+    Command, Engine, EngineId, Everywhere, LANES, Matrix, Move, PathModel, Solution, SolveError, Vector,
+    Volume,
+};
+
+/// A machine whose errors count from the datum of a program ([`Command::datum_mm`]).
+///
+/// An operator who touches a zero on a crooked machine writes down the command at which the tool stood on it. The
+/// machine's error there is in that number: the corrected tool goes where a machine would take it that is right at the
+/// datum and straight from there on. So the error that has to be undone is `e(q) - Rᵀ(θ) e_d`, `e_d` fixed in the
+/// workpiece and turning with its table.
+///
+/// ```
+/// use machine_model::{Command, FromDatum, PathModel, Vector};
+/// # use machine_model::{AxisTables, Chain, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Table};
+/// # let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+/// # let long = Table::new(vec![0.0, 100.0], vec![0.0, 0.020], Interpolation::Linear).unwrap();
+/// # linear[0].errors = AxisTables::new(&[Some(long), None, None, None, None, None]);
+/// # let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// # let chain = Chain::parse("[w X Y b Z t]").unwrap();
+/// # let machine = RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap();
+/// // X is too long by 0.02 %. Touched at X50, where it stands 10 µm farther, X50 is right and X100 10 µm off.
+/// let at = |x: f64| Command { linear_mm: Vector::new(x, 0.0, 0.0), ..Command::default() };
+/// let datum_mm = machine.error_mm(&at(50.0));
+/// let machine = FromDatum::new(Box::new(machine)).unwrap();
+/// assert_eq!(machine.error_mm(&Command { datum_mm, ..at(50.0) }), Vector::zeros());
+/// assert!((machine.error_mm(&Command { datum_mm, ..at(100.0) }).x - 0.010).abs() < 1e-12);
+/// ```
+pub struct FromDatum(Box<dyn Engine>);
+
+impl FromDatum {
+    /// The engine back, where it is no model of paths.
+    ///
+    /// # Errors
+    /// The engine.
+    pub fn new(engine: Box<dyn Engine>) -> Result<Self, Box<dyn Engine>> {
+        if engine.path_model().is_some() { Ok(Self(engine)) } else { Err(engine) }
+    }
+
+    fn machine(&self) -> &dyn PathModel {
+        self.0.path_model().expect("it was one when this was made")
+    }
+
+    /// The datum in the directions of the linear axes; none where it is the measuring frame, so that no bit changes.
+    fn datum(&self, state: &Command) -> Option<Vector> {
+        (state.datum_mm != Vector::zeros()).then(|| self.machine().along_axes(&state.datum_mm, state))
+    }
+
+    /// The target as the machine without a datum has to be asked for it.
+    fn target(&self, target: &Command) -> Command {
+        match self.datum(target) {
+            Some(datum_mm) => Command { linear_mm: target.linear_mm + datum_mm, ..*target },
+            None => *target,
+        }
+    }
+}
+
+impl Engine for FromDatum {
+    fn id(&self) -> EngineId {
+        self.0.id()
+    }
+
+    fn volume(&self) -> Volume {
+        self.0.volume()
+    }
+
+    fn knows(&self, command: &Command) -> Result<(), SolveError> {
+        self.0.knows(command)
+    }
+
+    fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
+        self.0.solve(&self.target(target))
+    }
+
+    fn path_model(&self) -> Option<&dyn PathModel> {
+        Some(self)
+    }
+}
+
+impl PathModel for FromDatum {
+    fn error_mm(&self, command: &Command) -> Vector {
+        let error = self.machine().error_mm(command);
+        self.datum(command).map_or(error, |datum_mm| error - datum_mm)
+    }
+
+    /// A vector that turns by α in all, evenly, leaves its chord by an eighth of `|v| α²` at most.
+    fn chord_bound_mm(&self, stretch: &Move) -> f64 {
+        let turned = stretch.turn.map_or(0.0, |turn| self.machine().table_turns_rad(&turn));
+        self.machine().chord_bound_mm(stretch) + stretch.state.datum_mm.norm() * turned * turned / 8.0
+    }
+
+    fn follows_turns(&self) -> bool {
+        self.machine().follows_turns()
+    }
+
+    fn error_from_mm(&self, command: &Command, programmed_rad: &Vector) -> Vector {
+        let error = self.machine().error_from_mm(command, programmed_rad);
+        let programmed = Command { rotary_rad: *programmed_rad, ..*command };
+        self.datum(&programmed).map_or(error, |datum_mm| error - datum_mm)
+    }
+
+    fn same_tip_mm(&self, linear_mm: &Vector, state: &Command, programmed_rad: &Vector) -> Vector {
+        self.machine().same_tip_mm(linear_mm, state, programmed_rad)
+    }
+
+    fn along_axes(&self, workpiece_mm: &Vector, state: &Command) -> Vector {
+        self.machine().along_axes(workpiece_mm, state)
+    }
+
+    fn table_turns_rad(&self, turn: &crate::Turn) -> f64 {
+        self.machine().table_turns_rad(turn)
+    }
+
+    fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {
+        self.machine().tip_mm(linear_mm, state)
+    }
+
+    fn tilt_rad(&self, command: &Command) -> f64 {
+        self.machine().tilt_rad(command)
+    }
+
+    fn tool_directions(&self, command: &Command, programmed_rad: &Vector) -> Option<[Vector; 2]> {
+        self.machine().tool_directions(command, programmed_rad)
+    }
+
+    fn direction_bound_rad(&self, stretch: &Move) -> f64 {
+        self.machine().direction_bound_rad(stretch)
+    }
+
+    fn rotary_axes(&self) -> [bool; 3] {
+        self.machine().rotary_axes()
+    }
+
+    fn in_travel(&self, command: &Command, which: [bool; 3]) -> Result<(), SolveError> {
+        self.machine().in_travel(command, which)
+    }
+
+    fn may_turn_to(&self, command: &Command) -> bool {
+        self.machine().may_turn_to(command)
+    }
+
+    fn jacobian(&self, command: &Command) -> Option<Matrix> {
+        self.machine().jacobian(command)
+    }
+
+    fn everywhere(&self, state: &Command) -> Option<Everywhere> {
+        self.machine().everywhere(state)
+    }
+
+    fn command_for(&self, target: &Command, everywhere: &Everywhere) -> Result<Vector, SolveError> {
+        self.machine().command_for(&self.target(target), everywhere)
+    }
+
+    fn commands_for(
+        &self,
+        targets_mm: &[[f64; 3]; LANES],
+        directions: &[[i8; 3]; LANES],
+        state: &Command,
+        everywhere: &Everywhere,
+    ) -> Option<[[f64; LANES]; 3]> {
+        let Some(datum) = self.datum(state) else {
+            return self.machine().commands_for(targets_mm, directions, state, everywhere);
+        };
+        let targets = targets_mm.map(|target| [0, 1, 2].map(|axis| target[axis] + datum[axis]));
+        self.machine().commands_for(&targets, directions, state, everywhere)
+    }
+
+    fn depends_on_direction(&self) -> bool {
+        self.machine().depends_on_direction()
+    }
+
+    fn reversal_mm(&self, axis: usize, command: &Command) -> f64 {
+        self.machine().reversal_mm(axis, command)
+    }
+
+    fn has_rotary_play(&self) -> bool {
+        self.machine().has_rotary_play()
+    }
+
+    fn rotary_reversal_rad(&self, axis: usize, command: &Command) -> f64 {
+        self.machine().rotary_reversal_rad(axis, command)
+    }
+}
