@@ -51,7 +51,7 @@ fn the_profile_may_say_what_its_control_takes() {
     let place = Place::new();
     let program = place.write("part.ngc", TWO_DECIMALS);
     let with = |rules: &str| {
-        let profile = profile(&place, |text| format!("{text}\n[program]\n{rules}\n"));
+        let profile = profile(&place, |text| text.replace("[program]\n", &format!("[program]\n{rules}\n")));
         run(&[&program, "-m", &profile, "-d", "perspektiva"])
     };
     let ran = run(&[&program, "-m", CROOKED, "-d", "perspektiva"]);

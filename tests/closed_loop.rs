@@ -18,9 +18,10 @@ fn every_sample_follows_its_path() {
         for (sample, dialect) in SAMPLES {
             let out = folder.path().join("out.nc");
             let out_text = out.to_str().expect("a plain path");
-            let ran = run(&[sample, "-m", profile, "-d", dialect, "-o", out_text]);
+            let ran = run(&[sample, "-m", profile, "--zero", "true", "-d", dialect, "-o", out_text]);
             assert!(ran.status.success(), "{sample} for {profile}\n{}", messages(&ran));
-            let check = run(&["check", sample, out_text, "-m", profile, "-d", dialect, "--json"]);
+            let check =
+                run(&["check", sample, out_text, "-m", profile, "--zero", "true", "-d", dialect, "--json"]);
             let judged: serde_json::Value = serde_json::from_slice(&check.stdout).expect("JSON");
             assert!(check.status.success(), "{sample} for {profile}: {judged:#}");
             let (before, after) = (&judged["deviation_before_um"], &judged["deviation_after_um"]);
@@ -250,13 +251,14 @@ fn rapids_of_pecks_and_turns_are_judged() {
     };
     let judged = |posted: &str, corrected: &str, profile: &str| {
         let (posted, corrected) = (written("posted.nc", posted), written("out.nc", corrected));
-        let ran = run(&["check", &posted, &corrected, "-m", profile, "-d", "fanuc", "--json"]);
+        let shared = ["-m", profile, "-d", "fanuc", "--zero", "true"];
+        let ran = run(&[&["check", &posted, &corrected, "--json"][..], &shared].concat());
         let outcome: serde_json::Value = serde_json::from_slice(&ran.stdout).expect("JSON");
         outcome["findings"].to_string()
     };
     let posted = "G21 G17 G90 G54\nG43 H1\nG0 X50. Y80. Z50.\nG98 G83 X60. Y80. Z-20. R5. Q10. F200.\nX90.\nG80\nG0 Z80.\nM30\n";
     let program = written("program.nc", posted);
-    let ran = run(&[&program, "-m", SQUARE, "-d", "fanuc", "-q"]);
+    let ran = run(&[&program, "-m", SQUARE, "-d", "fanuc", "-q", "--zero", "true"]);
     let right = String::from_utf8(ran.stdout).expect("text");
     assert_eq!(judged(posted, &right, SQUARE), "[]");
     // From the peck at -5 back to R and to 0.25 mm above it: a millimetre deeper, or aside; straight down to the next hole.
@@ -278,7 +280,7 @@ fn rapids_of_pecks_and_turns_are_judged() {
     );
     let machine = written("tilting.toml", &machine);
     let posted = "G21 G17 G90 G54\nG0 X0. Y0. Z100. A0.\nG0 A90.\nG1 X50. F200.\nG0 Z200.\nA0.\nM30\n";
-    let ran = run(&[&written("program.nc", posted), "-m", &machine, "-d", "fanuc", "-q"]);
+    let ran = run(&[&written("program.nc", posted), "-m", &machine, "-d", "fanuc", "-q", "--zero", "true"]);
     let right = String::from_utf8(ran.stdout).expect("text");
     assert_eq!(judged(posted, &right, &machine), "[]", "{right}");
     for (good, wrong, finding) in [

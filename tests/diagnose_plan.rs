@@ -49,7 +49,7 @@ fn design(csv: &str, profile: &str, kept: &dyn Fn(&str) -> bool) -> Measurements
                 rotary_rad: Vector::zeros(),
                 tool_mm: three(["tool_x_mm", "tool_y_mm", "tool_z_mm"]),
                 direction: ["dir_x", "dir_y", "dir_z"].map(|n| value(n).expect("filled in") as i8),
-                rotary_play: Default::default(),
+                ..Default::default()
             },
             conditions: Conditions {
                 time_s: value("time_s"),
@@ -318,7 +318,7 @@ fn the_second_judge_runs_the_program() {
     let (program, _) = plan("program", profile, &["-d", "linuxcnc"]);
     std::fs::write(&input, program).expect("writable");
     let [from, to] = [&input, &output].map(|p| p.to_str().expect("a plain path"));
-    let ran = run(&[from, "-m", profile, "-d", "linuxcnc", "-o", to]);
+    let ran = run(&[from, "-m", profile, "-d", "linuxcnc", "--zero", "true", "-o", to]);
     assert!(ran.status.success(), "{}", messages(&ran));
     let verdict = referee(&input, &output, profile, "linuxcnc", &[]);
     assert_eq!(verdict["ok"], true, "{verdict:#}");

@@ -167,7 +167,7 @@ fn corrected_and_checked(profile: &str, more: &[&str]) {
     let folder = Folder::new();
     let out = folder.path("out.nc");
     for (sample, dialect) in SAMPLES {
-        let shared = [&["-m", profile, "-d", dialect][..], more].concat();
+        let shared = [&["-m", profile, "-d", dialect, "--zero", "true"][..], more].concat();
         let ran = run(&[&[sample, "-o", &out][..], &shared].concat());
         assert!(ran.status.success(), "{sample}\n{}", messages(&ran));
         let check = run(&[&["check", sample, &out, "--json"][..], &shared].concat());

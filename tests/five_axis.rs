@@ -116,9 +116,9 @@ fn the_tip_goes_where_the_program_says() {
         let dialect = dialect_of(name);
         let place = Place::new(&program(name));
         let [from, to, points] = ["in.nc", "out.nc", "points.csv"].map(|name| place.path(name));
-        let ran = run(&[&from, "-m", PROFILE, "-d", dialect, "-o", &to]);
+        let ran = run(&[&from, "-m", PROFILE, "--zero", "true", "-d", dialect, "-o", &to]);
         assert!(ran.status.success(), "{name}: {}", messages(&ran));
-        let check = run(&["check", &from, &to, "-m", PROFILE, "-d", dialect]);
+        let check = run(&["check", &from, &to, "-m", PROFILE, "--zero", "true", "-d", dialect]);
         let said = String::from_utf8_lossy(&check.stdout).into_owned();
         assert!(check.status.success(), "{name}: {said}");
 
@@ -380,11 +380,11 @@ fn in_a_tilted_plane_the_tip_goes_where_the_program_says() {
     for plane in PLANES {
         let place = Place::new(&in_a_plane("A-30. C0.", plane));
         let [from, to, points] = ["in.nc", "out.nc", "points.csv"].map(|name| place.path(name));
-        let ran = run(&[&from, "-m", PROFILE, "-o", &to]);
+        let ran = run(&[&from, "-m", PROFILE, "--zero", "true", "-o", &to]);
         assert!(ran.status.success(), "{plane}: {}", messages(&ran));
-        let check = run(&["check", &from, &to, "-m", PROFILE]);
+        let check = run(&["check", &from, &to, "-m", PROFILE, "--zero", "true"]);
         assert!(check.status.success(), "{plane}: {}", String::from_utf8_lossy(&check.stdout));
-        let unchanged = run(&["check", &from, &from, "-m", PROFILE]);
+        let unchanged = run(&["check", &from, &from, "-m", PROFILE, "--zero", "true"]);
         assert_eq!(unchanged.status.code(), Some(1), "uncorrected it is off: {plane}");
 
         let made = std::fs::read_to_string(&to).expect("written");

@@ -39,11 +39,11 @@ fn each_is_corrected_within_tolerance() {
         let to = place.path().join("out.nc");
         let to = to.to_str().expect("a plain path");
         let dialect = dialect_of(&name);
-        let ran = run(&[&from, "-m", &profile, "-d", dialect, "-o", to]);
+        let ran = run(&[&from, "-m", &profile, "--zero", "true", "-d", dialect, "-o", to]);
         assert!(ran.status.success() && messages(&ran).is_empty(), "{name}: {}", messages(&ran));
-        let check = run(&["check", &from, to, "-m", &profile, "-d", dialect]);
+        let check = run(&["check", &from, to, "-m", &profile, "--zero", "true", "-d", dialect]);
         assert!(check.status.success(), "{name}: {}", String::from_utf8_lossy(&check.stdout));
-        let before = run(&["check", &from, &from, "-m", &profile, "-d", dialect]);
+        let before = run(&["check", &from, &from, "-m", &profile, "--zero", "true", "-d", dialect]);
         assert_eq!(before.status.code(), Some(1), "{name} needs no correction");
     }
 }

@@ -268,7 +268,7 @@ fn full_brings_the_wall_within_tolerance_and_lever() {
         assert!(programmed.len() > 220, "{chain}: {} places", programmed.len());
         let before = worst(&ideal, &real, &programmed, &programmed, false);
         let after = ["xyz", "full"].map(|orientation| {
-            let options = ["-m", &machine, "-d", "linuxcnc", "--orientation", orientation];
+            let options = ["-m", &machine, "--zero", "true", "-d", "linuxcnc", "--orientation", orientation];
             let ran = run(&[&[from.as_str(), "-o", &to], &options[..]].concat());
             assert!(ran.status.success(), "{chain} {orientation}: {}", messages(&ran));
             let check = run(&[&["check", &from, &to], &options[..]].concat());

@@ -98,11 +98,11 @@ fn tips_are_in(planes: &[Swivel], direction: i32, above: bool) {
     let place = Place::new(&program(&calls.join("\n")));
     let profile = with_rule(&place, RULE);
     let [from, to, points] = ["in.nc", "out.nc", "points.csv"].map(|name| place.path(name));
-    let ran = run(&[&from, "-m", &profile, "-d", "sinumerik", "-o", &to]);
+    let ran = run(&[&from, "-m", &profile, "--zero", "true", "-d", "sinumerik", "-o", &to]);
     assert!(ran.status.success(), "{calls:?}: {}", messages(&ran));
-    let check = run(&["check", &from, &to, "-m", &profile, "-d", "sinumerik"]);
+    let check = run(&["check", &from, &to, "-m", &profile, "--zero", "true", "-d", "sinumerik"]);
     assert!(check.status.success(), "{calls:?}: {}", String::from_utf8_lossy(&check.stdout));
-    let same = run(&["check", &from, &from, "-m", &profile, "-d", "sinumerik"]);
+    let same = run(&["check", &from, &from, "-m", &profile, "--zero", "true", "-d", "sinumerik"]);
     assert_eq!(same.status.code(), Some(1), "uncorrected it is off: {calls:?}");
 
     let [zero, up] = [[0.0; 3], [0.0, 0.0, 1.0]].map(|at| in_workpiece(planes, at));
@@ -225,13 +225,13 @@ fn planes_that_are_none_and_ends_of_planes_pass() {
             "CYCLE800(1,\"TC1\",100000,57,0,0,0,20,0,0,0,0,0,-1,,1)"
         );
         std::fs::write(place.path("in.nc"), &text).expect("writable");
-        let ran = run(&[&place.path("in.nc"), "-m", &profile, "-d", "sinumerik"]);
+        let ran = run(&[&place.path("in.nc"), "-m", &profile, "--zero", "true", "-d", "sinumerik"]);
         assert_eq!(ran.status.code(), Some(1), "{end}");
         let said = messages(&ran);
         assert!(said.contains("the tilted plane in line 6"), "{end}: {said}");
         std::fs::write(place.path("in.nc"), text.replace("G1 X5 F", "G0 X5 Y0 Z90\nG1 X9 F"))
             .expect("writable");
-        let ran = run(&[&place.path("in.nc"), "-m", &profile, "-d", "sinumerik"]);
+        let ran = run(&[&place.path("in.nc"), "-m", &profile, "--zero", "true", "-d", "sinumerik"]);
         assert!(ran.status.success(), "{end}: {}", messages(&ran));
     }
 }
@@ -252,7 +252,7 @@ fn without_kinematics_only_the_end_of_a_plane_passes() {
         let place = Place::new(&program(call));
         let profile = place.path("machine.toml");
         std::fs::write(&profile, &bare).expect("writable");
-        let ran = run(&[&place.path("in.nc"), "-m", &profile, "-d", "sinumerik"]);
+        let ran = run(&[&place.path("in.nc"), "-m", &profile, "--zero", "true", "-d", "sinumerik"]);
         assert_eq!(ran.status.code(), Some(status), "{call}: {}", messages(&ran));
         assert_eq!(messages(&ran).contains("error[VP0231]"), status == 1, "{call}: {}", messages(&ran));
     }

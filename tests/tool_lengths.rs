@@ -51,7 +51,7 @@ impl Place {
 
     /// The corrected program, or what is said.
     fn corrected(&self, machine: &str, more: &[&str]) -> Result<String, String> {
-        let ran = run(&[&[self.path("in.nc").as_str(), "-m", machine], more].concat());
+        let ran = run(&[&[self.path("in.nc").as_str(), "-m", machine, "--zero", "true"], more].concat());
         if ran.status.success() {
             Ok(String::from_utf8_lossy(&ran.stdout).into_owned())
         } else {

@@ -37,6 +37,7 @@ mod closed_loop;
 mod controls;
 mod corpus;
 mod curves;
+mod datum;
 mod devtools;
 mod diagnose;
 mod diagnose_plan;

@@ -182,7 +182,7 @@ fn impellers_are_corrected_with_what_the_bar_told() {
         let [machine, to] = ["with.toml", "out.ngc"].map(|name| folder.path().join(name));
         std::fs::write(&machine, profile).expect("writable");
         let [from, machine, to] = [&from, &machine, &to].map(|path| path.to_str().expect("a plain path"));
-        let ran = run(&[from, "-m", machine, "-o", to]);
+        let ran = run(&[from, "-m", machine, "--zero", "true", "-o", to]);
         assert!(ran.status.success(), "{}", messages(&ran));
         let [programmed, corrected] =
             [from, to].map(|path| places(&std::fs::read_to_string(path).expect("readable")));
@@ -200,7 +200,7 @@ fn impellers_are_corrected_with_what_the_bar_told() {
         );
         assert!(before[0] > 200.0 && before[1] > 200.0, "{from}: {before:?}");
         assert!(after[0] < 5.0 && after[1] < 5.0, "{from}: {after:?}");
-        let check = run(&["check", from, to, "-m", machine]);
+        let check = run(&["check", from, to, "-m", machine, "--zero", "true"]);
         assert!(check.status.success(), "{}", String::from_utf8_lossy(&check.stdout));
     }
 }

@@ -224,7 +224,7 @@ def main():
             with open(path, "wb") as file:
                 file.write(program.text.encode())
             try:
-                done = subprocess.run([arguments.vpost, path, "-m", profile], capture_output=True, check=False, timeout=20)
+                done = subprocess.run([arguments.vpost, path, "-m", profile, "--zero", "true"], capture_output=True, check=False, timeout=20)
             except subprocess.TimeoutExpired:
                 table["FAILED"] += 1
                 print(f"seed {seed}: no answer within 20 s", flush=True)

@@ -6,7 +6,7 @@
 
 use error_budget::{Family, Machine};
 use machine_model::effects::Conditions;
-use machine_model::{EngineId, Models, PathModel, TipControl, Vector, WithEffects};
+use machine_model::{EngineId, FromDatum, Models, PathModel, TipControl, Vector, WithEffects};
 use machine_profile::Profile;
 
 use crate::conditions;
@@ -26,7 +26,7 @@ pub struct Causes {
     machine: Machine,
     /// In the order of the deviations.
     causes: Vec<Cause>,
-    without: Vec<(WithEffects, Option<TipControl>)>,
+    without: Vec<(FromDatum, Option<TipControl>)>,
 }
 
 impl Causes {
@@ -59,6 +59,7 @@ impl Causes {
             // As the profile's own: no path under it is proven on a machine with effects.
             let tip = centres_mm.filter(|_| profile.effects.is_empty());
             let tip = tip.and_then(|centres_mm| TipControl::new(machine.base(), centres_mm));
+            let Ok(machine) = FromDatum::new(Box::new(machine)) else { unreachable!("a model of paths") };
             (machine, tip)
         });
         let without = without.collect();

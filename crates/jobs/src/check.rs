@@ -7,10 +7,10 @@ use path_comparison::{Comparison, Course, Lean, Traces};
 use rewrite::Checked;
 use serde::Serialize;
 
-use crate::expand;
 use crate::message::Failure;
 use crate::settings::Settings;
-use crate::summary::{json, um};
+use crate::summary::{DatumUsed, json, um};
+use crate::{datums, expand};
 
 /// The JSON of `vpost check --json`.
 #[derive(Debug, Clone, Serialize)]
@@ -49,6 +49,12 @@ pub struct Outcome {
     /// Where.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tilt_after_line: Option<u64>,
+    /// Touched zeros from which deviations count.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub datums: Vec<DatumUsed>,
+    /// The same in words.
+    #[serde(skip)]
+    pub counted_from: Vec<Text>,
     /// What is wrong.
     #[serde(serialize_with = "in_english")]
     pub findings: Vec<Text>,
@@ -57,7 +63,8 @@ pub struct Outcome {
 impl Outcome {
     /// What a comparison says.
     #[must_use]
-    pub fn new(settings: &Settings, comparison: &Comparison, findings: Vec<Text>) -> Self {
+    pub fn new(settings: &Settings, checked: &Checked) -> Self {
+        let Checked { comparison, datums, findings } = checked;
         let [before, after] = [comparison.leans_before, comparison.leans_after];
         let leans = before.largest_rad > 0.0 || after.largest_rad > 0.0;
         let urad = |lean: Lean| leans.then(|| (lean.largest_rad * 1e9).round() / 1e3);
@@ -77,7 +84,9 @@ impl Outcome {
             deviation_before_line: comparison.before.line,
             deviation_after_um: um(comparison.after.largest_mm),
             deviation_after_line: comparison.after.line,
-            findings,
+            counted_from: datums::said(datums),
+            datums: DatumUsed::all(datums),
+            findings: findings.clone(),
         }
     }
 
@@ -108,6 +117,9 @@ impl Outcome {
                 self.tilt_before_line.unwrap_or_default(),
                 self.tilt_after_line.unwrap_or_default(),
             ));
+        }
+        for sentence in &self.counted_from {
+            text.push(&both!("{sentence}\n", "{sentence:#}\n"));
         }
         for finding in &self.findings {
             text.push(&both!("- {finding}\n", "- {finding:#}\n"));

@@ -8,6 +8,7 @@ pub mod causes;
 pub mod check;
 pub mod conditions;
 pub mod correct;
+pub mod datums;
 pub mod diagnose;
 pub mod expand;
 pub mod figures;

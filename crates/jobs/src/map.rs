@@ -42,7 +42,7 @@ pub fn require_tool(model: &dyn PathModel, tool_mm: Vector) -> Result<(), Failur
         rotary_rad,
         tool_mm,
         direction: [0; 3],
-        rotary_play: Default::default(),
+        ..Default::default()
     }) {
         Err(error @ SolveError::OtherTool { .. }) => {
             let help = both!(
@@ -182,7 +182,7 @@ pub fn rotary(given: Option<&Given<Rotary>>, profile: &Profile) -> Result<Vector
         rotary_rad,
         tool_mm: Vector::zeros(),
         direction: [0; 3],
-        rotary_play: Default::default(),
+        ..Default::default()
     };
     profile.rigid_body_without_effects().rotary_inside(&turned).map_err(|error| {
         let error = error.text();

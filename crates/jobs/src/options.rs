@@ -41,6 +41,32 @@ pub struct JobOptions {
         allow_hyphen_values = true
     )]
     pub work_offset: Vec<Given<WorkOffset>>,
+    /// What work offsets are: touched, or true.
+    ///
+    /// Those that do not say it themselves: touched on this machine with correction off, so that its error at that place is in
+    /// them, or found through a compensation or by an outside instrument; default: the profile's, else touched.
+    #[arg(
+        long,
+        value_enum,
+        value_name = "HOW",
+        global = true,
+        hide_possible_values = true,
+        help_heading = "Program"
+    )]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub zero: Option<Zero>,
+    /// Where a zero was touched, mm (repeatable).
+    ///
+    /// Axis commands (machine coordinates, the tool's length added); the program's zero where left out.
+    #[arg(
+        long = "touched-at",
+        value_name = "G54=X,Y,Z",
+        global = true,
+        help_heading = "Program",
+        allow_hyphen_values = true
+    )]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub touched_at: Vec<Given<WorkOffset>>,
     /// Length of an H number, mm (repeatable).
     ///
     /// H1=120, or the vector H1=0,0,120.
@@ -188,6 +214,16 @@ pub enum Outside {
     Refuse,
     /// The nearest point's correction.
     Clamp,
+}
+
+/// How work offsets were found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Zero {
+    /// On this machine, with correction off.
+    Touched,
+    /// Through a compensation, or by an outside instrument.
+    True,
 }
 
 /// A length without a decimal point.

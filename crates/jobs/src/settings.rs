@@ -11,13 +11,13 @@ use nc_syntax::Dialect;
 use nc_syntax::dialect::{
     DrillPecks, DrillR, FlankFrom, MCode, Macros, PointFree, TipSwitch, TurningParameters,
 };
-use rewrite::{Guards, Job};
+use rewrite::{Datums, Guards, Job};
 
 use crate::flow::Flow;
 use crate::message::{Failure, Report, Source};
 use crate::options::{self, JobOptions};
 use crate::stored::Stored;
-use crate::{conditions, lines, profile};
+use crate::{conditions, datums, lines, profile};
 
 /// Everything a job on a program needs.
 pub struct Settings {
@@ -39,6 +39,8 @@ pub struct Settings {
     tip: Option<TipControl>,
     /// What correction keeps to.
     pub options: Options,
+    /// How the work offsets came to be.
+    pub datums: Datums,
     /// What programs with flow are given.
     pub flow: Flow,
     /// Doubtful programs are refused.
@@ -100,6 +102,8 @@ impl Settings {
                 ),
             ));
         }
+        let datums = datums::of(options, &profile, &setup, engine.as_ref())?;
+        let engine = datums::counted_from(&datums, engine);
         let orientation = orientation(&profile, options, engine.as_ref())?;
         if orientation != Orientation::Tip {
             // Linear axes turn the tool too.
@@ -131,6 +135,7 @@ impl Settings {
             engine,
             tip,
             options: limits,
+            datums,
             flow,
             strict: options.strict,
             guards,
@@ -190,6 +195,7 @@ impl Settings {
                 axes: self.path_model()?,
                 tip: self.tip.as_ref().map(|tip| -> &dyn PathModel { tip }),
             },
+            datums: &self.datums,
             options: self.options,
             decimals_mm: self.decimals_mm(),
             rotary_steps: self.profile.resolution_deg.map(decimal_steps),
@@ -431,7 +437,7 @@ fn orientation(profile: &Profile, options: &JobOptions, engine: &dyn Engine) -> 
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::zeros(),
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         };
         model.tool_directions(&at, &at.rotary_rad).is_some()
             && model.follows_turns()

@@ -3,9 +3,10 @@
 use diagnostic::{Text, both};
 use serde::Serialize;
 
-use rewrite::{Digest, Figures};
+use rewrite::{Datum, Digest, Figures};
 
 use crate::correct::Program;
+use crate::datums;
 use crate::settings::Settings;
 
 /// The JSON of `--summary`.
@@ -42,7 +43,33 @@ pub struct Summary<'a> {
     tilt_before_line: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     directions_held: Option<DirectionsHeld>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    datums: Vec<DatumUsed>,
     warnings: Vec<Warning>,
+}
+
+/// A touched zero from which deviations count.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DatumUsed {
+    /// `G54`
+    pub work_offset: String,
+    /// Its machine coordinate.
+    pub at_mm: [f64; 3],
+    /// The machine's error where it was touched: by that the part lies off in the measuring frame.
+    pub error_um: [f64; 3],
+}
+
+impl DatumUsed {
+    /// Of those that a program used.
+    #[must_use]
+    pub fn all(datums: &[Datum]) -> Vec<Self> {
+        let used = |datum: &Datum| Self {
+            work_offset: datum.name.clone(),
+            at_mm: datum.zero_mm,
+            error_um: datum.error_mm.map(um),
+        };
+        datums.iter().map(used).collect()
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -160,6 +187,7 @@ impl<'a> Summary<'a> {
                 largest_line: figures.held.largest.1,
                 lines: figures.held.lines.clone(),
             }),
+            datums: DatumUsed::all(&figures.datums),
             warnings: figures
                 .warnings
                 .iter()
@@ -199,9 +227,13 @@ impl<'a> Summary<'a> {
                 )
             }
         });
+        let mut rest = tilt;
+        for sentence in datums::said(&figures.datums) {
+            rest.push(&both!("; {sentence}", "; {sentence:#}"));
+        }
         both!(
-            "{} blocks in, {} out, {} split; largest correction {:.1} um (line {}); path off by at most {:.1} um before, {:.2} um after{tilt}",
-            "кадров было {}, стало {}, разделено {}; наибольшая поправка {:.1} мкм (строка {}); отклонение от траектории не больше {:.1} мкм до, {:.2} мкм после{tilt:#}",
+            "{} blocks in, {} out, {} split; largest correction {:.1} um (line {}); path off by at most {:.1} um before, {:.2} um after{rest}",
+            "кадров было {}, стало {}, разделено {}; наибольшая поправка {:.1} мкм (строка {}); отклонение от траектории не больше {:.1} мкм до, {:.2} мкм после{rest:#}",
             figures.blocks_in,
             figures.blocks_out,
             figures.splits,

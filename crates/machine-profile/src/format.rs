@@ -3,35 +3,11 @@
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 use toml::Spanned;
 
-/// A number that is neither infinite nor NaN: TOML knows both, machines neither.
-#[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
-#[schemars(transparent)]
-pub(crate) struct Finite(pub(crate) f64);
-
-impl<'de> Deserialize<'de> for Finite {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let value = f64::deserialize(deserializer)?;
-        if value.is_finite() {
-            Ok(Self(value))
-        } else {
-            Err(serde::de::Error::custom(format!("{value} is not a finite number")))
-        }
-    }
-}
-
-/// Three numbers X, Y, Z.
-pub(crate) type Triple = [Finite; 3];
-
-/// A length along Z, or a vector.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "expected a length along Z in mm, or three numbers [x, y, z]")]
-pub(crate) enum Length {
-    Number(Finite),
-    Vector(Triple),
-}
+use crate::number::{Finite, Length, Triple};
+use crate::zeros::{Found, WorkOffset};
 
 /// A machine profile of vpost.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -81,10 +57,10 @@ pub(crate) struct Document {
     /// Tool vectors.
     #[serde(default)]
     pub(crate) tool: Tool,
-    /// Machine coordinate of each program zero, mm.
+    /// Machine coordinate of each program zero, mm, and how it was found.
     #[serde(default)]
-    #[schemars(with = "BTreeMap<String, Triple>")]
-    pub(crate) work_offsets_mm: BTreeMap<String, Spanned<Triple>>,
+    #[schemars(with = "BTreeMap<String, WorkOffset>")]
+    pub(crate) work_offsets_mm: BTreeMap<String, Spanned<WorkOffset>>,
     /// How programs are corrected.
     #[serde(default)]
     pub(crate) correction: Correction,
@@ -313,6 +289,8 @@ pub(crate) struct Tool {
     /// tables measured from the spindle nose: of the bare nose). Not given: 0, and no length below 0 is taken.
     #[schemars(with = "Option<Finite>")]
     pub(crate) gauge_point_mm: Option<Spanned<Finite>>,
+    /// Where lengths are touched off on the part or on a setter: axis commands of that surface, the length not added.
+    pub(crate) touched_at_mm: Option<Triple>,
     /// H number → length along Z, or vector.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Length>")]
@@ -475,6 +453,8 @@ pub(crate) enum OrientationName {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Program {
+    /// What a work offset is that does not say it itself: "touched" on this machine with correction off, or "true".
+    pub(crate) zero: Option<Found>,
     /// A length without a point: "increments" (Z10 is ten steps) or "millimetres" (Z10 is Z10.; inches under G20).
     pub(crate) decimal: Option<DecimalName>,
     /// Where a tool change (M6) leaves X, Y and Z; anywhere where left out.

@@ -10,8 +10,9 @@ use turning::{
 use units::{Angle, Length};
 
 use crate::error::{CHAIN, CONFLICT, KEY, ProfileError, VALUE};
-use crate::format::{self, ClampingName, Document, Finite, Nose as WrittenNose};
+use crate::format::{self, ClampingName, Document, Nose as WrittenNose};
 use crate::load::Loader;
+use crate::number::Finite;
 use crate::profile::{LatheParts, Nose};
 
 const fn number(value: Option<Finite>) -> f64 {

@@ -9,11 +9,14 @@ mod field;
 mod format;
 mod lathe;
 mod load;
+mod number;
 mod profile;
 mod show;
 mod tables;
 mod toml_error;
+mod touched;
 mod write;
+mod zeros;
 
 pub use effects::EngineError;
 pub use error::ProfileError;
@@ -26,3 +29,4 @@ pub use profile::{
 pub use show::schema;
 pub use tables::ErrorRows;
 pub use write::{ProfileText, rename_tables};
+pub use zeros::{Found, TouchPlace, TouchedBy, ZeroFound};

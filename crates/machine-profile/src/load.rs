@@ -15,9 +15,10 @@ use units::{Angle, Length};
 use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, TILT, VALUE, span};
 use crate::field::Around;
 use crate::format::{
-    self, ChangePlace, ContourCompensation, DecimalName, Document, DrawingWords, DrillRName, Finite,
-    FlankName, InterpolationName, OutsideName, PecksName, ToolChange, XName,
+    self, ChangePlace, ContourCompensation, DecimalName, Document, DrawingWords, DrillRName, FlankName,
+    InterpolationName, OutsideName, PecksName, ToolChange, XName,
 };
+use crate::number::{Finite, Length as WrittenLength};
 use crate::profile::{
     AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics,
     MeasuringFrame, Outside, Profile, ProgramRules, TurningRules,
@@ -139,7 +140,9 @@ impl Loader<'_> {
         let tool_names = self.tool_names(&document.tool, &tools);
         let cutter_radii_mm = self.cutter_radii(&document);
         let gauge_point_mm = self.gauge_point(&document, is_lathe);
-        let work_offsets = self.work_offsets(&document);
+        let has_rotary = [Axis::A, Axis::B, Axis::C]
+            .map(|axis| chain.as_ref().is_some_and(|chain| chain.axes().any(|own| own == axis)));
+        let (work_offsets, zeros) = self.work_offsets(&document.work_offsets_mm, has_rotary);
         let correction = self.correction(&document.correction);
         let program = self.program_rules(&document.program, &document.m_codes);
         let kinematics =
@@ -198,6 +201,8 @@ impl Loader<'_> {
             cutter_radii_mm,
             tools,
             work_offsets,
+            zeros,
+            lengths_touched_at_mm: document.tool.touched_at_mm.map(|place| triple(Some(place))),
             correction,
             program,
             kinematics,
@@ -387,6 +392,7 @@ impl Loader<'_> {
             }
         }
         ProgramRules {
+            zero: program.zero.unwrap_or_default(),
             bare_lengths,
             tool_change,
             arc_tolerance_mm,
@@ -1051,8 +1057,8 @@ impl Loader<'_> {
                 Some(number) => tools.push((
                     number,
                     match length.get_ref() {
-                        format::Length::Number(Finite(z)) => [0.0, 0.0, *z],
-                        format::Length::Vector(v) => v.map(|Finite(v)| v),
+                        WrittenLength::Number(Finite(z)) => [0.0, 0.0, *z],
+                        WrittenLength::Vector(v) => v.map(|Finite(v)| v),
                     },
                 )),
                 None => {
@@ -1068,25 +1074,6 @@ impl Loader<'_> {
         }
         tools.sort_by_key(|(number, _)| *number);
         tools
-    }
-
-    fn work_offsets(&mut self, document: &Document) -> Vec<(String, [f64; 3])> {
-        let mut offsets = Vec::new();
-        for (name, zero) in &document.work_offsets_mm {
-            if !name.strip_prefix('G').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) {
-                let diagnostic = Diagnostic::error(
-                    KEY,
-                    both!("`{name}` is no work offset", "`{name}` — не смещение нуля"),
-                )
-                .help(both!(
-                    "write the word that selects it, like G54 or \"G54.1 P2\"",
-                    "напишите слово, которым его выбирают, например G54 или \"G54.1 P2\""
-                ));
-                self.refuse(zero, diagnostic, both!("of this entry", "в этой записи"));
-            }
-            offsets.push((name.clone(), zero.get_ref().map(|Finite(v)| v)));
-        }
-        offsets
     }
 
     fn correction(&mut self, written: &format::Correction) -> CorrectionOptions {

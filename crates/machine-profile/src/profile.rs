@@ -8,6 +8,7 @@ use toolpath::{RotaryChain, RotaryLink, TiltRule};
 
 use crate::field::MeasuredField;
 use crate::tables::ErrorRows;
+use crate::zeros::{Found, ZeroFound};
 
 /// When, how warm and with what a machine was measured.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -78,6 +79,8 @@ pub enum AfterChange {
 /// How the machine's programs are to be read, where its control's dialect leaves that open.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProgramRules {
+    /// How work offsets were found that do not say it themselves.
+    pub zero: Found,
     /// Lengths without a point; `None`: not said.
     pub bare_lengths: Option<BareLengths>,
     /// X, Y, Z behind a tool change.
@@ -243,6 +246,10 @@ pub struct Profile {
     pub cutter_radii_mm: Vec<(u32, f64)>,
     /// Name (`G54`) and machine coordinate of that program zero, mm, ordered by name.
     pub work_offsets: Vec<(String, [f64; 3])>,
+    /// How they were found, where the profile says more than their place.
+    pub zeros: Vec<(String, ZeroFound)>,
+    /// Axis commands of the surface on which all tool lengths were touched off, the length not added, mm; `None`: they are true.
+    pub lengths_touched_at_mm: Option<[f64; 3]>,
     /// How programs are corrected.
     pub correction: CorrectionOptions,
     /// How programs are read.

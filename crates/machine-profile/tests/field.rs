@@ -34,7 +34,7 @@ fn at(profile: &Profile, place_mm: Vector) -> Command {
         rotary_rad: Vector::zeros(),
         tool_mm: profile.default_tool_mm.into(),
         direction: [0; 3],
-        rotary_play: Default::default(),
+        ..Default::default()
     }
 }
 

@@ -19,7 +19,7 @@ fn command(linear_mm: [f64; 3], tool_mm: [f64; 3]) -> Command {
         rotary_rad: Vector::zeros(),
         tool_mm: tool_mm.into(),
         direction: [0; 3],
-        rotary_play: Default::default(),
+        ..Default::default()
     }
 }
 

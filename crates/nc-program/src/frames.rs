@@ -4,8 +4,8 @@
 //! rotation, scaling or mirror in force. What a manual leaves open is refused.
 
 use diagnostic::{Text, both};
-use nc_syntax::Span;
 use nc_syntax::dialect::{Action, FramePart, GCode, OffsetL20};
+use nc_syntax::{Dialect, Span};
 use toolpath::{Frame, Kinematics};
 
 use crate::codes;
@@ -452,7 +452,7 @@ fn write_offset(
     let by_position = l == Some(20) && rules.l20 == OffsetL20::Position;
     let name = match (l, p) {
         (Some(20), _) if !by_position => numbered(p),
-        (_, 0) if rules.l20 == OffsetL20::Position => match active_name(env, state) {
+        (_, 0) if rules.l20 == OffsetL20::Position => match name_of(env.dialect, &state.work_offset) {
             Some(name) => name,
             None => {
                 return Err(refuse(
@@ -496,7 +496,7 @@ fn write_offset(
         },
     };
     let old = offset(env, state, &name);
-    let active = active_name(env, state).as_deref() == Some(name.as_str());
+    let active = name_of(env.dialect, &state.work_offset).as_deref() == Some(name.as_str());
     let mut zero = [0.0; 3];
     for i in 0..3 {
         // Fanuc adds under G91; LinuxCNC never does.
@@ -549,10 +549,11 @@ pub(crate) fn offset(env: &Environment<'_>, state: &Modal, name: &str) -> Option
     written.or_else(|| env.setup.work_offset(name))
 }
 
-/// The name of the work offset in force.
-pub(crate) fn active_name(env: &Environment<'_>, state: &Modal) -> Option<String> {
-    let WorkOffset { code, number, .. } = state.work_offset;
-    match (number, env.dialect.code(code?).map(|entry| &entry.action)) {
+/// The name of a work offset as profiles have it: `G54`, `G54.1 P3`.
+#[must_use]
+pub fn name_of(dialect: &Dialect, offset: &WorkOffset) -> Option<String> {
+    let WorkOffset { code, number, .. } = *offset;
+    match (number, dialect.code(code?).map(|entry| &entry.action)) {
         (Some(number), Some(Action::WorkOffsetByH)) => Some(by_h(code?, number)),
         (Some(number), _) => Some(numbered(number)),
         (None, Some(Action::WorkOffset(name))) => Some(name.clone()),

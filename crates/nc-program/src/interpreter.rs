@@ -62,6 +62,10 @@ pub struct Context {
     pub plane: Plane,
     /// From the gauge point to the tool tip, mm.
     pub tool_mm: [f64; 3],
+    /// The work offset in force, which says what a program's zero is.
+    pub work_offset: WorkOffset,
+    /// What the tool length in force adds to axis commands, mm.
+    pub length_mm: [f64; 3],
     /// Motion code in force, after modal resolution: G1, G83; `None` after G80 or before the first.
     pub motion_code: Option<GCode>,
     /// The motion code in force cuts a thread: lines in step with the spindle.
@@ -76,6 +80,8 @@ pub struct Context {
     pub curve: Option<CurvePart>,
     /// Cutter compensation is in force before or after the block.
     pub compensation: Option<Side>,
+    /// The plane in which the tool is offset, or is still to be led off its offset path.
+    pub offset: Option<Plane>,
     /// The block may be skipped, in a cycle that goes on behind it: levels that it wrote would hold for the next
     /// holes only where it is executed.
     pub may_not_set_levels: bool,
@@ -429,6 +435,8 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
         arc_centres_absolute: state.arc_centres == ArcCentres::Absolute,
         plane: state.plane,
         tool_mm: env.setup.tool_vector(&state.tool_length),
+        work_offset: state.work_offset,
+        length_mm: state.tool_length.applied_mm(),
         kinematics: state.kinematics,
         motion_code: state.motion_code(),
         thread: matches!(state.motion, MotionMode::Thread(_)),
@@ -436,6 +444,7 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
         arc_by_radius: moved.arc_by_radius,
         curve: moved.curve,
         compensation: state.compensation.side().or(before.compensation.side()),
+        offset: (!before.offset.is_off() || !state.offset.is_off()).then_some(state.plane),
         may_not_set_levels: state.aside.as_ref().is_some_and(|aside| aside.skipped.cycle.is_some()),
         repeats: moved.repeats,
         unnamed: moved.unnamed,

@@ -67,6 +67,7 @@ pub use alike::looks_like;
 pub use curves::CurvePart;
 pub use direction::DirectionWords;
 pub use evidence::{Evidence, Finding, Place, Questions};
+pub use frames::name_of as work_offset_name;
 pub use interpreter::{Context, Interpreter, Step};
 pub use modal::{Compensation, Modal, ToolLength, WorkOffset};
 pub use offset::Offset;

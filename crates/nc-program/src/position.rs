@@ -28,7 +28,7 @@ pub(crate) fn require_frame<'s>(
 fn no_frame(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &Modal) -> Box<Diagnostic> {
     let span = words.span(AXIS_LETTERS);
     if state.work_offset.rewritten {
-        let name = frames::active_name(env, state).unwrap_or_default();
+        let name = frames::name_of(env.dialect, &state.work_offset).unwrap_or_default();
         let message = both!(
             "G10 wrote work offset {name} while it was in force",
             "G10 записала смещение нуля {name}, пока оно действовало"

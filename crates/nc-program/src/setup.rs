@@ -130,7 +130,8 @@ impl Setup {
 
     /// From the gauge point to the tip, mm, where this length shifts the axes.
     /// Where G44 subtracts it, the tool points the other way.
-    pub(crate) fn tool_vector(&self, length: &ToolLength) -> [f64; 3] {
+    #[must_use]
+    pub fn tool_vector(&self, length: &ToolLength) -> [f64; 3] {
         let Some([x, y, z]) = length.ends_mm() else { return self.default_tool_mm };
         [0.0 - x, 0.0 - y, self.gauge_point_mm.unwrap_or(0.0) - z]
     }

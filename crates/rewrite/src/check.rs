@@ -6,10 +6,12 @@ mod reading;
 use std::cell::RefCell;
 
 use diagnostic::{Diagnostic, Text, both};
-use machine_model::Models;
+use machine_model::{Models, Vector};
 use nc_expand::Expanded;
+use nc_program::Context;
 use path_comparison::{Comparison, Course, Traces, compare};
 
+use crate::datum::Datum;
 use crate::job::Job;
 use crate::words::retreats;
 use reading::{Numbers, Optional, Program, file_and_line};
@@ -19,6 +21,8 @@ use reading::{Numbers, Optional, Program, file_and_line};
 pub struct Checked {
     /// Distances and counts, of blocks under `/` executed.
     pub comparison: Comparison,
+    /// Touched zeros from which distances count.
+    pub datums: Vec<Datum>,
     /// What differs, a sentence each; none where the program passes.
     pub findings: Vec<Text>,
 }
@@ -64,7 +68,8 @@ pub fn check(
         }
         let may_skip = steps.iter().any(|program| program.may_skip);
         let findings = findings::of(&comparison, &numbers.borrow());
-        Ok((Checked { comparison, findings }, may_skip))
+        let [Program { datums, .. }, _] = steps;
+        Ok((Checked { comparison, datums, findings }, may_skip))
     };
     let (mut executed, may_skip) = compared(Optional::Executed, traces)?;
     if may_skip {
@@ -93,11 +98,27 @@ pub fn courses(
     each: &mut dyn FnMut(usize, Course),
 ) -> Result<(), Vec<Diagnostic>> {
     let numbers = RefCell::new(Numbers::default());
+    let touched = RefCell::new(Vec::new());
     let mut steps = Program::new(program, job, Optional::Executed, &numbers, &|_| ()).with_files();
-    path_comparison::courses(models, &mut steps, retreats(job.dialect), step_mm, &mut |mut course| {
-        let (file, line) = file_and_line(course.line);
-        course.line = line;
-        each(file, course);
-    });
+    steps.touched = Some(&touched);
+    let datum_of = |machine: usize, own: Vector| -> Vector {
+        let of = |(error_mm, _): &&([f64; 3], Context)| Vector::from(*error_mm) == own;
+        let error_mm = |(_, context): &([f64; 3], Context)| {
+            job.datums.error_mm(models[machine].axes, job.dialect, context).into()
+        };
+        touched.borrow().iter().find(of).map_or(own, error_mm)
+    };
+    path_comparison::courses(
+        models,
+        &mut steps,
+        retreats(job.dialect),
+        step_mm,
+        &datum_of,
+        &mut |mut course| {
+            let (file, line) = file_and_line(course.line);
+            course.line = line;
+            each(file, course);
+        },
+    );
     steps.refused.take().map_or(Ok(()), Err)
 }

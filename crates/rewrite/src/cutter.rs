@@ -29,8 +29,7 @@ pub(crate) fn beside(job: &Job<'_>, modal: &Modal, motion: &Motion, context: &Co
     let tool_mm = Vector::from(context.tool_mm);
     let places = [feed.start.linear_mm, middle(feed), feed.end.linear_mm];
     let rotary_rad = Vector::from(feed.start.rotary_deg.map(f64::to_radians));
-    let (direction, rotary_play) = ([0; 3], Default::default());
-    let state = Command { linear_mm: Vector::zeros(), rotary_rad, tool_mm, direction, rotary_play };
+    let state = Command { rotary_rad, tool_mm, ..Command::default() };
     let most = |place: &[f64; 3]| {
         beside_mm(job.models.axes, &Command { linear_mm: Vector::from(*place), ..state }, [u, v], radius_mm)
     };

@@ -2,9 +2,11 @@
 
 use correction::Options;
 use diagnostic::{Code, Diagnostic};
-use machine_model::Models;
+use machine_model::{Models, PathModel};
 use nc_program::{Evidence, Setup};
 use nc_syntax::Dialect;
+
+use crate::datum::{Datum, Datums};
 
 /// Feed motion, or what would correct it, lies outside the calibrated volume.
 pub const OUTSIDE: Code = Code(501);
@@ -48,6 +50,10 @@ pub const LEANS: Code = Code(540);
 pub const DIRECTION_IN_PLANE: Code = Code(541);
 /// Another tool than the one with which a field was measured.
 pub const OTHER_TOOL: Code = Code(533);
+/// A zero is taken as touched outside the calibrated volume.
+pub const TOUCHED_OUTSIDE: Code = Code(522);
+/// A zero is taken as touched without a tool length, which another tool would have touched elsewhere.
+pub const TOUCHED_BY_GUESS: Code = Code(523);
 /// Lost motion moves the tool sideways where an axis turns, by more than can be hidden.
 pub const SIDEWAYS: Code = Code(519);
 
@@ -69,6 +75,8 @@ pub struct Job<'a> {
     pub setup: &'a Setup,
     /// Where the machine really goes.
     pub models: Models<'a>,
+    /// How the work offsets came to be.
+    pub datums: &'a Datums,
     /// Tolerance and policy.
     pub options: Options,
     /// Decimals of X, Y, Z in mm.
@@ -81,6 +89,13 @@ pub struct Job<'a> {
     pub provenance: &'a str,
     /// Whether the output asks the control for what it was corrected for.
     pub guards: Guards,
+}
+
+impl<'a> Job<'a> {
+    /// What a datum is asked of.
+    pub(crate) fn machine(&self) -> (&'a dyn PathModel, &'a Dialect) {
+        (self.models.axes, self.dialect)
+    }
 }
 
 /// What happened, in figures.
@@ -106,6 +121,8 @@ pub struct Figures {
     pub held: Held,
     /// Short moves to a corrected start that were put in.
     pub approaches: u64,
+    /// Touched zeros that were used, in the order of the program; one whose tools differ comes once with each.
+    pub datums: Vec<Datum>,
     /// What the user should know.
     pub warnings: Vec<Diagnostic>,
 }

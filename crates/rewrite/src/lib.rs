@@ -8,7 +8,7 @@
 //! ```
 //! use correction::{Options, Outside};
 //! use machine_model::Models;
-//! use rewrite::{Guards, Job, correct};
+//! use rewrite::{Datums, Guards, Job, correct};
 //!
 //! let profile = include_str!("../../../machine-profiles/stan_s500.toml");
 //! # let tables = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machine-profiles");
@@ -21,6 +21,7 @@
 //!         ..Default::default()
 //!     },
 //!     models: Models { axes: engine.path_model().expect("it corrects programs"), tip: None },
+//!     datums: &Datums::default(),
 //!     options: Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5, orientation: correction::Orientation::Tip },
 //!     decimals_mm: [3; 3],
 //!     rotary_steps: [(3, 1); 3],
@@ -38,6 +39,7 @@ mod check;
 mod chunks;
 mod curves;
 mod cutter;
+mod datum;
 mod feed;
 mod guards;
 mod job;
@@ -55,6 +57,7 @@ mod whole;
 mod words;
 
 pub use check::{Checked, Unreadable, check, courses};
+pub use datum::{Datum, Datums, Touch, TouchTool, Zero};
 pub use job::*;
 pub use large::{Digest, Large, LargeEnd, Manner, Part, Source};
 pub use survey::all_refusals;

@@ -35,7 +35,7 @@ fn beside_mm(model: &dyn PathModel, nose_mm: f64, tool_mm: [f64; 3], feed: &Feed
             rotary_rad,
             tool_mm: tool_mm - aside,
             direction,
-            rotary_play: Default::default(),
+            ..Default::default()
         })
     };
     let difference = |place: [f64; 3]| {

@@ -12,7 +12,7 @@ use toolpath::{AXIS_NAMES, Motion};
 use crate::job::{
     COMPENSATED, DIRECTION, DIRECTION_HELD, DIRECTION_IN_PLANE, Held, LEANING_CYCLE, LEANS, MUST_NOT_SPLIT,
     NO_BOUNDS_FOR_TURNS, NOT_CONVERGED, NOT_WITHIN_TOLERANCE, OTHER_TOOL, OUTSIDE, RAPID_OUTSIDE, SIDEWAYS,
-    SPIRAL, TOO_MANY_PECKS, UNKNOWN_SIDE, UNNAMED,
+    SPIRAL, TOO_MANY_PECKS, TOUCHED_BY_GUESS, TOUCHED_OUTSIDE, UNKNOWN_SIDE, UNNAMED,
 };
 
 /// Things that happen more than once and are told once.
@@ -25,6 +25,8 @@ pub(crate) struct Notices {
     pub(crate) unknown_side: Notice,
     pub(crate) spirals: Notice,
     pub(crate) held: Notice,
+    pub(crate) touched_outside: Notice,
+    pub(crate) touched_by_guess: Notice,
 }
 
 /// One kind of them.
@@ -85,6 +87,8 @@ impl Notices {
         self.unknown_side.add(&later.unknown_side);
         self.spirals.add(&later.spirals);
         self.held.add(&later.held);
+        self.touched_outside.add(&later.touched_outside);
+        self.touched_by_guess.add(&later.touched_by_guess);
     }
 
     pub(crate) fn warnings(&self, held: &Held) -> Vec<Warning> {
@@ -146,8 +150,47 @@ impl Notices {
         );
         [clamped, leaning, compensated, beside, unknown_side, spirals, directions]
             .into_iter()
+            .chain(self.of_zeros())
             .flatten()
             .collect()
+    }
+
+    /// What is not known of touched zeros.
+    fn of_zeros(&self) -> [Option<Warning>; 2] {
+        let outside = self.touched_outside.warning(
+            TOUCHED_OUTSIDE,
+            |_, um| {
+                both!(
+                    "a zero is taken as touched outside the calibrated volume, with the error of {um:.1} um of its nearest point",
+                    "нуль считается найденным касанием вне калиброванного объёма, с погрешностью {um:.1} мкм в ближайшей точке"
+                )
+            },
+            both!("the first cut from that zero", "первое резание от этого нуля"),
+            both!(
+                "say where it was touched (`touched_at` in the profile, `--touched-at G54=X,Y,Z`), or that it is true (`--zero true`)",
+                "скажите, где его касались (`touched_at` в профиле, `--touched-at G54=X,Y,Z`), или что он точный (`--zero true`)"
+            ),
+        );
+        let guess = &self.touched_by_guess;
+        let largest = Notice { first: guess.at_largest.clone(), ..guess.clone() };
+        let by_guess = largest.warning(
+            TOUCHED_BY_GUESS,
+            |_, um| {
+                both!(
+                    "a zero is taken as touched without a tool length; touched by the tool in force it would lie up to {um:.1} um elsewhere",
+                    "нуль считается найденным касанием без длины инструмента; если касались этим инструментом, он лежит до {um:.1} мкм в стороне"
+                )
+            },
+            both!(
+                "cut from that zero with this tool; all of the part moves by as much, and nothing within it",
+                "резание от этого нуля этим инструментом; на столько сдвинута вся деталь, внутри неё ничего"
+            ),
+            both!(
+                "say which tool touched it, `touched_at = {{ tool = \"H1\" }}` or a length in mm, or that it is true (`--zero true`)",
+                "скажите, чем касались: `touched_at = {{ tool = \"H1\" }}` или длина в мм; или что нуль точный (`--zero true`)"
+            ),
+        );
+        [by_guess, outside]
     }
 }
 

@@ -8,6 +8,7 @@ use smallvec::SmallVec;
 use toolpath::{Feed, FeedRate, Hole, Motion, Shape};
 
 use crate::cutter;
+use crate::datum::{LastDatum, going_on};
 use crate::feed;
 use crate::job::Job;
 use crate::nose::{nose_mm, reserved_mm};
@@ -27,6 +28,7 @@ pub(crate) struct Pass<'a> {
     pub(crate) state: State<'a>,
     pub(crate) out: Vec<u8>,
     pub(crate) tally: Tally,
+    pub(crate) datum: LastDatum,
     /// In front of blocks before this offset nobody asks whether the pass ends: set by who does.
     pub(crate) next_stop: u64,
 }
@@ -41,6 +43,7 @@ impl<'a> Pass<'a> {
             state,
             out: Vec::with_capacity(bytes + bytes / 8 + 64),
             tally: Tally::default(),
+            datum: LastDatum::default(),
             next_stop: 0,
         }
     }
@@ -121,6 +124,8 @@ impl Pass<'_> {
         let mut corrections: SmallVec<[Correction; 1]> = SmallVec::new();
         let mut untouched = true;
         for motion in motions {
+            let last_mm = &mut self.state.datum_mm;
+            let motion = &going_on(&self.job.models, motion, context, info.datum_mm, last_mm);
             let mut at_deg = self.rotary_start_deg(motion);
             let modal = self.state.interpreter.modal();
             info.reserved_mm = reserved_mm(self.job, modal, motion, block, context)?;
@@ -312,8 +317,8 @@ impl Pass<'_> {
         [0, 1, 2].map(|axis| program_deg[axis] + aside_deg[axis])
     }
 
-    pub(crate) fn info(&self, context: &Context, letters: Letters) -> correction::Block {
-        info(self.job, context, letters)
+    pub(crate) fn info(&mut self, context: &Context, letters: Letters) -> correction::Block {
+        info(self.job, context, letters, self.datum.error_mm(self.job.datums, self.job.machine(), context))
     }
 
     pub(crate) fn editing<'e>(
@@ -351,11 +356,16 @@ impl Pass<'_> {
         blocks_out: usize,
         written: bool,
     ) {
-        let Tally { figures, notices, .. } = &mut self.tally;
+        let figures = &mut self.tally.figures;
         figures.blocks_out += if written { blocks_out as u64 } else { 0 };
         figures.splits += u64::from(blocks_out > 1);
         let line = block.line;
         let span = block.file_range();
+        let cuts = motions.iter().any(|motion| matches!(motion, Motion::Feed(_) | Motion::Hole(_)));
+        if let Some(datum) = cuts.then(|| self.datum.to_note()).flatten() {
+            self.tally.cut_from(datum, self.job.options.tolerance_mm, (&span, line));
+        }
+        let Tally { figures, notices, .. } = &mut self.tally;
         for (motion, correction) in motions.iter().zip(corrections) {
             figures.raise(correction, line);
             if let Some(directed) = &correction.directed {
@@ -426,7 +436,12 @@ fn rotary_end_deg(motion: &Motion) -> [f64; 3] {
 const OF_A_VECTOR: u8 = 6;
 
 /// What correction must know of a block.
-pub(crate) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correction::Block {
+pub(crate) fn info(
+    job: &Job<'_>,
+    context: &Context,
+    letters: Letters,
+    datum_mm: [f64; 3],
+) -> correction::Block {
     let output = &job.dialect.output;
     let by_vector = context.direction.is_some();
     let mut stated = stated(letters);
@@ -448,6 +463,8 @@ pub(crate) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correc
         named: context.unnamed.map(|lost| lost.is_none()),
         reframed: [false; 3],
         tool_mm: context.tool_mm,
+        datum_mm,
+        offset: context.offset,
         centre_words: output.centre_words,
         arc_radius_tolerance_mm: output.arc_radius_tolerance_mm,
         retreats: retreats(job.dialect),

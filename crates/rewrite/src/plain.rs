@@ -24,7 +24,9 @@ impl Pass<'_> {
             return Ok(false);
         }
         let Some((feeds, mut start_mm)) = self.state.interpreter.plain_feeds() else { return Ok(false) };
-        let (info, rotary_deg) = (info(self.job, &feeds.context, Letters::default()), feeds.rotary_deg);
+        let datum_mm = self.datum.error_mm(self.job.datums, self.job.machine(), &feeds.context);
+        let letters = Letters::default();
+        let (info, rotary_deg) = (info(self.job, &feeds.context, letters, datum_mm), feeds.rotary_deg);
         // The lines rely on the code before them, which must be in force in the output too.
         let motion_code = feeds.context.motion_code;
         let mut short: Option<ShortLines> = None;
@@ -101,6 +103,11 @@ impl Pass<'_> {
         run: &ShortRun,
         decimals: [u8; 3],
     ) -> Result<(), Vec<Diagnostic>> {
+        if let Some(datum) = self.datum.to_note() {
+            let (first, line) = (lines[0].offset, lines[0].line);
+            let span = first..first + lines[0].content().len() as u64;
+            self.tally.cut_from(datum, self.job.options.tolerance_mm, (&span, line));
+        }
         for ((line, end), counts) in lines.iter().zip(ends).zip(run.counts).take(run.count) {
             if counts == [None; 3] {
                 self.state.emitter.pass_line(line, &mut self.out);

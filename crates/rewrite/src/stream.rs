@@ -434,6 +434,7 @@ mod tests {
             let profile = std::fs::read_to_string(folder.join(name)).unwrap();
             let profile = machine_profile::load(&profile, &|t| std::fs::read(folder.join(t))).unwrap();
             let engine = profile.engine(EngineId::RigidBody, &Default::default()).unwrap();
+            let Ok(engine) = machine_model::FromDatum::new(engine) else { panic!("it corrects programs") };
             let offset = if crooked { [-440.0, -250.0, -350.0] } else { [140.0, 110.0, 20.0] };
             let setup = Setup {
                 work_offsets: vec![("G54".to_owned(), offset), ("G55".to_owned(), offset.map(|v| v + 10.0))],
@@ -443,7 +444,8 @@ mod tests {
             let job = Job {
                 dialect: nc_dialect::builtin("fanuc").unwrap(),
                 setup: &setup,
-                models: machine_model::Models { axes: engine.path_model().unwrap(), tip: None },
+                models: machine_model::Models { axes: &engine, tip: None },
+                datums: &crate::datum::Datums::touched(Default::default()),
                 options: Options { tolerance_mm: 1e-3, outside: Outside::Clamp, minimum_segment_mm: 0.0, orientation_rad: 5e-5, orientation: correction::Orientation::Tip },
                 decimals_mm: [3; 3],
                 rotary_steps: [(3, 1); 3],

@@ -1,8 +1,12 @@
 //! What is counted on the way through a program.
 
+use std::ops::Range;
+
 use correction::Correction;
+use machine_model::Vector;
 use nc_program::Evidence;
 
+use crate::datum::Datum;
 use crate::job::Figures;
 use crate::notices::Notices;
 
@@ -28,8 +32,23 @@ impl Tally {
         raise(&mut figures.tilt, more.tilt);
         raise(&mut figures.tilt_before, more.tilt_before);
         figures.held.add(&more.held);
+        more.datums.iter().for_each(|datum| figures.see(datum));
         self.notices.add(&later.notices);
         self.evidence.add(&later.evidence);
+    }
+}
+
+impl Tally {
+    /// Notes the zero that something is cut from in a line, and what is not known of it.
+    pub(crate) fn cut_from(&mut self, datum: &Datum, tolerance_mm: f64, (span, line): (&Range<u64>, u64)) {
+        let Self { figures, notices, .. } = self;
+        if datum.is_outside && !figures.datums.iter().any(|known| known.is(datum)) {
+            notices.touched_outside.see(span, line, Vector::from(datum.error_mm).norm());
+        }
+        if datum.unsure_mm > tolerance_mm {
+            notices.touched_by_guess.see(span, line, datum.unsure_mm);
+        }
+        figures.see(datum);
     }
 }
 
@@ -40,6 +59,14 @@ impl Figures {
         raise(&mut self.largest, (correction.largest_mm, line));
         raise(&mut self.before, (correction.before_mm, line));
         raise(&mut self.after, (correction.after_mm, line));
+    }
+
+    /// Notes a touched zero.
+    fn see(&mut self, datum: &Datum) {
+        match self.datums.iter_mut().find(|known| known.is(datum)) {
+            Some(known) => known.unsure_mm = known.unsure_mm.max(datum.unsure_mm),
+            None => self.datums.push(datum.clone()),
+        }
     }
 
     /// False where [`Figures::raise`] changes nothing.

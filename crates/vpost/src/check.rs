@@ -8,7 +8,6 @@ use std::path::Path;
 use diagnostic::both;
 use jobs::check::{Outcome, closed, limit_mm};
 use path_comparison::Traces;
-use rewrite::Checked;
 
 use crate::arguments::{Check, Shared};
 use crate::file;
@@ -38,11 +37,11 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
     };
     let progress = Progress::new(messages, None);
     let programs = [(wanted_name.as_str(), wanted.as_slice()), (&commanded_name, &commanded)];
-    let Checked { comparison, findings } =
-        closed(programs, &settings, traces, &|done| progress.report(done))?;
+    let checked = closed(programs, &settings, traces, &|done| progress.report(done))?;
     progress.end();
+    let outcome = Outcome::new(&settings, &checked);
+    let comparison = checked.comparison;
     let limit_mm = limit_mm(&settings, &comparison);
-    let outcome = Outcome::new(&settings, &comparison, findings);
     let passed = outcome.passed;
     let json = outcome.json();
     if arguments.html.is_some() || arguments.viewer.is_some() {

@@ -70,10 +70,12 @@ pub enum Command {
 
 /// Ids of the options in [`Shared`] that say something of the machine or the program: who reads which.
 const OF_MACHINE: [&str; 3] = ["machine", "engine", "at"];
-const OF_PROGRAM: [&str; 12] = [
+const OF_PROGRAM: [&str; 14] = [
     "dialect",
     "tolerance",
     "work_offset",
+    "zero",
+    "touched_at",
     "tool",
     "tool_table",
     "linuxcnc_ini",
@@ -100,7 +102,9 @@ fn reads(command: &[&str], option: &str) -> bool {
         ["correct", ..] => true,
         ["check", ..] => option != "outside" && !OF_OUTPUT.contains(&option),
         // A lathe's program, or points.
-        ["predict", ..] => option != "orientation" && !OF_OUTPUT.contains(&option),
+        ["predict", ..] => {
+            !["orientation", "zero", "touched_at"].contains(&option) && !OF_OUTPUT.contains(&option)
+        }
         ["diagnose", ..] => {
             ["machine", "engine", "tolerance"].contains(&option) || OF_WRITTEN_PLAN.contains(&option)
         }

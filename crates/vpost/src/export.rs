@@ -317,7 +317,7 @@ fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<Text>, Failure> 
                     rotary_rad: Vector::zeros(),
                     tool_mm,
                     direction: [0; 3],
-                    rotary_play: Default::default(),
+                    ..Default::default()
                 };
                 let error = model.error_mm(&command) * (1e3 * sign);
                 let cells: Vec<String> = at

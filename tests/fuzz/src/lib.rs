@@ -173,7 +173,7 @@ pub fn tables(bytes: &[u8]) {
                     rotary_rad: machine_model::Vector::zeros(),
                     tool_mm: profile.default_tool_mm.into(),
                     direction: [1; 3],
-                    rotary_play: Default::default(),
+                    ..Default::default()
                 };
                 let error = profile.rigid_body_without_effects().predict(&command).error_mm;
                 assert!(error.iter().all(|v| v.is_finite()), "{error:?} at {middle:?}\n{text}");

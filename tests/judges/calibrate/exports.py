@@ -149,7 +149,7 @@ def closed_loop(vpost, rng, folder, scenario, tolerance=1.0):
     source, target = os.path.join(folder, "in.ngc"), os.path.join(folder, "out.ngc")
     with open(source, "w", encoding="utf-8") as file:
         file.write(text)
-    arguments = [source, "-m", profile, "-d", "linuxcnc", "--work-offset", "G54=0,0,0", "--tolerance", tolerance,
+    arguments = [source, "-m", profile, "--zero", "true", "-d", "linuxcnc", "--work-offset", "G54=0,0,0", "--tolerance", tolerance,
                  "--start-at=" + ",".join(f"{v:g}" for v in corners[0] - tool)]
     status, _, err = run(vpost, [*arguments, *(["--tool", f"H1={-tool[2]:g}"] if tool[2] else []), "-o", target])
     if status:

@@ -139,7 +139,7 @@ class Judge:
         except (centre.Refused, centre.Unreadable) as why:
             self.tally["unjudged: the input is refused here: %s" % str(why).splitlines()[-1][:60]] += 1
             return
-        status, output, errors = run(self.o.vpost, "correct", folder / "in.nc", "-m", where)
+        status, output, errors = run(self.o.vpost, "correct", folder / "in.nc", "-m", where, "--zero", "true")
         if status == 2:
             self.report("profile", n, folder, errors.strip().replace("\n", " | ")[:300])
             return
@@ -171,7 +171,7 @@ class Judge:
             found = again
         for what, why in found[:2]:
             self.report(what, n, folder, "%s (%s, radius %s)" % (why, spec["dialect"], spec["radius"]))
-        status, _, errors = run(self.o.vpost, "check", folder / "in.nc", folder / "out.nc", "-m", where)
+        status, _, errors = run(self.o.vpost, "check", folder / "in.nc", folder / "out.nc", "-m", where, "--zero", "true")
         if (status != 0) != bool(found):
             self.report("check-blind" if found else "check-alarm", n, folder, errors.strip().replace("\n", " | ")[:200])
 

@@ -63,7 +63,7 @@ class Case:
         self.machine = Machine(self.profile)
         self.text = generator.Program(self.dialect, seed, rotated).text
         self.start = generator.START if seed % 4 else None
-        self.options = ["-m", self.profile] + ([f"--start-at={','.join(map(str, self.start))}"] if self.start else [])
+        self.options = ["-m", self.profile, "--zero", "true"] + ([f"--start-at={','.join(map(str, self.start))}"] if self.start else [])
         self.declared = 0.0
         self.write("in.nc", self.text)
 

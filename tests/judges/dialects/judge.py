@@ -38,7 +38,7 @@ def programs(dialect):
 def batch(vpost, folder, dialect, out):
     """Corrects a folder under a dialect: what became of each program."""
     results = out + ".jsonl"
-    command = [vpost, "batch", folder, "-m", PROFILE, "-d", dialect, "-O", out, "-q", "--results", results, "--pattern", "*.*"]
+    command = [vpost, "batch", folder, "-m", PROFILE, "--zero", "true", "-d", dialect, "-O", out, "-q", "--results", results, "--pattern", "*.*"]
     subprocess.run(command, capture_output=True, cwd=ROOT)
     with open(results, encoding="utf-8") as file:
         return [json.loads(line) for line in file]
@@ -52,7 +52,7 @@ def off_um(vpost, program, made, dialect):
     text = re.sub(rb"(?m)^[^\n]*CORRECTED BY VPOST[^\n]*\n", b"", text)
     with open(made, "wb") as file:
         file.write(text)
-    ran = subprocess.run([vpost, "check", program, made, "-m", PROFILE, "-d", dialect], capture_output=True, text=True, cwd=ROOT)
+    ran = subprocess.run([vpost, "check", program, made, "-m", PROFILE, "--zero", "true", "-d", dialect], capture_output=True, text=True, cwd=ROOT)
     if ran.returncode == 0:
         return 0.0, ""
     found = re.search(r"after: .* up to\s+([0-9.]+) um", ran.stdout + ran.stderr)
@@ -98,7 +98,7 @@ def self_test(vpost):
     program = os.path.join(ROOT, "samples/plate_linuxcnc.nc")
     with tempfile.TemporaryDirectory() as folder:
         made = os.path.join(folder, "made.nc")
-        subprocess.run([vpost, program, "-m", PROFILE, "-d", "linuxcnc", "-o", made, "-q"], check=True, cwd=ROOT)
+        subprocess.run([vpost, program, "-m", PROFILE, "--zero", "true", "-d", "linuxcnc", "-o", made, "-q"], check=True, cwd=ROOT)
         whole, _ = off_um(vpost, program, made, "linuxcnc")
         with open(made, encoding="utf-8") as file:
             text = file.read()

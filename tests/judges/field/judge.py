@@ -115,7 +115,7 @@ def correct(case, folder, vpost, number):
     source, target = f"in{number}.ngc", f"out{number}.ngc"
     with open(f"{folder}/{source}", "w", encoding="ascii") as file:
         file.write(text)
-    status, out, error = run(vpost, folder, [source, "-m", "machine.toml", "-o", target, "--summary", "summary.json"])
+    status, out, error = run(vpost, folder, [source, "-m", "machine.toml", "--zero", "true", "-o", target, "--summary", "summary.json"])
     if status:
         code = re.search(r"VP\d{4}", error)
         return [("refused", f"{source}: {' '.join(error.split())[:250]}")], {"refused": code[0] if code else "?"}
@@ -141,7 +141,7 @@ def correct(case, folder, vpost, number):
         wrong.append(("rapid", f"{source}: a positioning move ends {found['rapid_um']:.2f} um off"))
     if found["um"] > summary["deviation_after_um"] + SLACK_UM:
         wrong.append(("summary", f"{source}: says {summary['deviation_after_um']} um, found {found['um']:.3f}"))
-    status, out, error = run(vpost, folder, ["check", source, target, "-m", "machine.toml", "--json"])
+    status, out, error = run(vpost, folder, ["check", source, target, "-m", "machine.toml", "--zero", "true", "--json"])
     if status and found["um"] <= limit:
         wrong.append(("check", f"{source}: {(out + error)[:250]}"))
     # a damaged output is found, where the damage leaves the path
@@ -154,7 +154,7 @@ def correct(case, folder, vpost, number):
         off = compare.compare(wanted, reader.read(damaged, case.offset, case.lengths), tips, 1e-3 * limit, STEP_MM)["um"]
         with open(f"{folder}/damaged{number}.ngc", "w", encoding="ascii") as file:
             file.write(damaged)
-        status, out, error = run(vpost, folder, ["check", source, f"damaged{number}.ngc", "-m", "machine.toml"])
+        status, out, error = run(vpost, folder, ["check", source, f"damaged{number}.ngc", "-m", "machine.toml", "--zero", "true"])
         if off > limit + 3 and status != 1:
             wrong.append(("check-blind", f"{source}: X of line {k + 1} moved by 30 um, {off:.1f} um off the path, is passed, status {status}"))
     return wrong, figures

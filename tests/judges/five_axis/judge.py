@@ -74,7 +74,7 @@ def correct(vpost, spec, text, folder, has, orientation):
         out.write(text)
     with open(os.path.join(folder, "spec.json"), "w", encoding="ascii") as out:
         json.dump(spec, out)
-    options = ["-m", profile]
+    options = ["-m", profile, "--zero", "true"]
     more = ["--orientation", orientation] if orientation and has.option("--orientation") else []
     command = [vpost, source, *options, *more, "-o", target, "--summary", os.path.join(folder, "summary.json")]
     with open(os.path.join(folder, "command.txt"), "w", encoding="utf-8") as out:

@@ -84,7 +84,7 @@ def execute(vpost, folder, test, m):
             text = corrected_and_changed(vpost, folder, test, profile)
             if text is None:
                 return "the program that check is to judge was refused", 1, "", "", []
-        command = [*([vpost, "check", "in.nc", "changed.nc"] if test.check else [*correct(vpost), "in.nc"]), "-m", profile, "--dialect", test.dialect, "--color", "never", *test.args]
+        command = [*([vpost, "check", "in.nc", "changed.nc"] if test.check else [*correct(vpost), "in.nc"]), "-m", profile, "--zero", "true", "--dialect", test.dialect, "--color", "never", *test.args]
         try:
             done = subprocess.run(command, cwd=folder, capture_output=True, timeout=60)
         except subprocess.TimeoutExpired:
@@ -110,7 +110,7 @@ def corrected_and_changed(vpost, folder, test, profile):
     paths = [os.path.join(folder, x) for x in ("in.nc", "changed.nc")]
     with open(paths[0], "w", newline="") as file:
         file.write(test.text)
-    done = subprocess.run([*correct(vpost), "in.nc", "-m", profile, "--dialect", test.dialect], cwd=folder, capture_output=True, timeout=60)
+    done = subprocess.run([*correct(vpost), "in.nc", "-m", profile, "--zero", "true", "--dialect", test.dialect], cwd=folder, capture_output=True, timeout=60)
     if done.returncode or old not in done.stdout.decode():
         return None
     for path, text in zip(paths, (test.text, done.stdout.decode())):

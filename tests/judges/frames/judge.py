@@ -43,7 +43,7 @@ def call(vpost, folder, text, profile, dialect, arguments=()):
     program = os.path.join(folder, "in.nc")
     with open(program, "w") as file:
         file.write(text)
-    command = [*directed.correct(vpost), "in.nc", "-m", profile, "--dialect", dialect, "--color", "never", *arguments]
+    command = [*directed.correct(vpost), "in.nc", "-m", profile, "--zero", "true", "--dialect", dialect, "--color", "never", *arguments]
     try:
         done = subprocess.run(command, cwd=folder, capture_output=True, timeout=60)
     except subprocess.TimeoutExpired:

@@ -178,7 +178,7 @@ def run_pair(vpost, spec, text, start_at, folder):
     source, target = os.path.join(folder, "in.ngc"), os.path.join(folder, "out.ngc")
     with open(source, "w", encoding="ascii") as out:
         out.write(text)
-    options = ["-m", path] + profiles.conditions(spec)
+    options = ["-m", path, "--zero", "true"] + profiles.conditions(spec)
     if start_at:
         options += ["--start-at", ",".join(f"{v:.6f}" for v in start_at)]
     command = [vpost, source, *options, "-o", target, "--summary", os.path.join(folder, "summary.json")]

@@ -446,7 +446,7 @@ def ask(vpost, folder, control, own, other):
     if os.path.exists(out):
         os.remove(out)
     decimal = [] if control == "mach" else ["--decimal", "increments"]
-    done = subprocess.run([vpost, source, "-m", profile, "-d", control, "-o", out, "-q", *decimal], capture_output=True, text=True, check=False)
+    done = subprocess.run([vpost, source, "-m", profile, "--zero", "true", "-d", control, "-o", out, "-q", *decimal], capture_output=True, text=True, check=False)
     if done.returncode:
         code = re.search(r"VP\d{4}", done.stderr)
         return "refused " + (code.group(0) if code else "?"), done.stderr
@@ -456,7 +456,7 @@ def ask(vpost, folder, control, own, other):
         problems = compare(other, in_linuxcnc(corrected, control))
     except (Unreadable, IndexError) as error:
         return "unreadable", repr(error)
-    check = subprocess.run([vpost, "check", source, out, "-m", profile, "-d", control, "-q", *decimal], capture_output=True, text=True, check=False)
+    check = subprocess.run([vpost, "check", source, out, "-m", profile, "--zero", "true", "-d", control, "-q", *decimal], capture_output=True, text=True, check=False)
     if check.returncode:
         problems.append("check: " + check.stderr[:300])
     return ("wrong", "; ".join(problems)) if problems else ("within", "")

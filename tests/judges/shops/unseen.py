@@ -72,7 +72,7 @@ def one(options, machine, path, work):
     while True:
         if os.path.exists(out):
             os.remove(out)
-        command = [options.vpost, path, "-m", machine, "-d", options.dialect, "-q", "--color", "never", "--include", os.path.dirname(path), "-o", out]
+        command = [options.vpost, path, "-m", machine, "--zero", "true", "-d", options.dialect, "-q", "--color", "never", "--include", os.path.dirname(path), "-o", out]
         status, _, said = ran(command + ways)
         if status == 1 and "--decimal" in said and "--decimal" not in ways:
             ways += ["--decimal", "millimetres"]
@@ -85,7 +85,7 @@ def one(options, machine, path, work):
         return ("refused", number.group(1) if number else "no number", (number.group(2) if number else said)[:150], "")
     if status != 0:
         return ("WRONG", f"exit status {status}", said[-300:], "")
-    status, text, said = ran([options.vpost, "check", path, out, "-m", machine, "-d", options.dialect, "--json", "--color", "never", "--include", os.path.dirname(path)] + ways)
+    status, text, said = ran([options.vpost, "check", path, out, "-m", machine, "--zero", "true", "-d", options.dialect, "--json", "--color", "never", "--include", os.path.dirname(path)] + ways)
     try:
         found = json.loads(text)
     except ValueError:

@@ -1051,7 +1051,7 @@ def ask(vpost, folder, program):
             file.write(text)
     if os.path.exists(out):
         os.remove(out)
-    done = subprocess.run([vpost, source, "-m", profile, "-d", "sinumerik", "-o", out, "-q"], capture_output=True, text=True, check=False)
+    done = subprocess.run([vpost, source, "-m", profile, "--zero", "true", "-d", "sinumerik", "-o", out, "-q"], capture_output=True, text=True, check=False)
     if done.returncode:
         code = re.search(r"VP\d{4}", done.stderr)
         return "refused " + (code.group(0) if code else "?"), done.stderr
@@ -1061,7 +1061,7 @@ def ask(vpost, folder, program):
         problems = compare(program, corrected)
     except (Unreadable, KeyError, IndexError, TypeError) as error:
         return "unreadable", repr(error)
-    check = subprocess.run([vpost, "check", source, out, "-m", profile, "-d", "sinumerik", "-q"], capture_output=True, text=True, check=False)
+    check = subprocess.run([vpost, "check", source, out, "-m", profile, "--zero", "true", "-d", "sinumerik", "-q"], capture_output=True, text=True, check=False)
     if check.returncode:
         problems.append("check: " + check.stderr[:200])
     return ("wrong", "; ".join(problems)) if problems else ("within", "")

@@ -198,7 +198,7 @@ class Judge:
         (folder / "in.nc").write_text(text)
         (folder / "spec.json").write_text(json.dumps(spec))
         self.tally["programs"] += 1
-        status, output, errors = run(self.o.vpost, "correct", folder / "in.nc", "-m", where)
+        status, output, errors = run(self.o.vpost, "correct", folder / "in.nc", "-m", where, "--zero", "true")
         if status == 2:
             self.report("profile", n, folder, errors.strip().replace("\n", " | ")[:300])
             return
@@ -220,7 +220,7 @@ class Judge:
         found = compare(m, text, output)
         for what, block, why in found[:2]:
             self.report(what, n, folder, "N%s %s (%s)" % (block, why, spec["kind"]))
-        status, _, errors = run(self.o.vpost, "check", folder / "in.nc", folder / "out.nc", "-m", where)
+        status, _, errors = run(self.o.vpost, "check", folder / "in.nc", folder / "out.nc", "-m", where, "--zero", "true")
         if (status != 0) != bool(found):
             self.report("check-blind" if found else "check-alarm", n, folder, errors.strip().replace("\n", " | ")[:200])
 

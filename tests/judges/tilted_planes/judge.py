@@ -274,7 +274,7 @@ class Judge:
         self.tally["programs"] += 1
         self.tally["chain " + spec["kind"]] += 1
         self.tally["angles " + align] += 1
-        status, output, errors = run(self.o.vpost, "correct", source, "-m", profile)
+        status, output, errors = run(self.o.vpost, "correct", source, "-m", profile, "--zero", "true")
         if status:
             self.refused[code_of(errors)] += 1
             self.reasons.setdefault(code_of(errors), (n, errors.strip().splitlines()[:3]))
@@ -293,7 +293,7 @@ class Judge:
             self.report(what, n, folder, "N%s %s (%s, %s)" % (block, why, spec["kind"], align))
         before = max([0.0] + [float(re.search(r"([\d.]+) um", w).group(1)) for k, _, w in compare(m, text, text)[0] if k == "path" and " um" in w])
         self.worst["um before"] = max(self.worst["um before"], before)
-        status, _, errors = run(self.o.vpost, "check", source, target, "-m", profile)
+        status, _, errors = run(self.o.vpost, "check", source, target, "-m", profile, "--zero", "true")
         self.tally["checked"] += 1
         if (status != 0) != bool(found):
             self.report("check-blind" if found else "check-alarm", n, folder, errors.strip().replace("\n", " | ")[:300])
@@ -308,7 +308,7 @@ class Judge:
                 self.tally["damage without harm: " + name] += 1
                 continue
             (folder / "bad.nc").write_text(bad)
-            status, _, errors = run(self.o.vpost, "check", source, folder / "bad.nc", "-m", profile)
+            status, _, errors = run(self.o.vpost, "check", source, folder / "bad.nc", "-m", profile, "--zero", "true")
             self.tally["damage: " + name] += 1
             if status == 0:
                 self.report("damage-missed", n, folder, "%s (%s)" % (name, found[0][0]))

@@ -134,4 +134,4 @@ def all_of(judge):
 def run(vpost, source, profile):
     import judge
 
-    return judge.run(vpost, "correct", source, "-m", profile)
+    return judge.run(vpost, "correct", source, "-m", profile, "--zero", "true")

@@ -14,6 +14,7 @@ use path_comparison::{Act, LEVER_MM, Pointing, Step};
 use smallvec::SmallVec;
 use toolpath::{Division, Feed, FeedRate, Motion, Position, Shape};
 
+use crate::datum::{Datum, LastDatum, going_on};
 use crate::job::Job;
 use crate::notices::other_tool;
 
@@ -80,6 +81,13 @@ pub(super) struct Program<'a, 'n> {
     /// The number of the process, while it is what it was.
     process_number: Option<u32>,
     feed: Option<f64>,
+    datum: LastDatum,
+    /// [`Command::datum_mm`] of the last motion.
+    datum_mm: Option<[f64; 3]>,
+    /// Touched zeros in which something was cut.
+    pub(super) datums: Vec<Datum>,
+    /// Where asked for: the error of each of them, and in which context it was used first.
+    pub(super) touched: Option<&'n std::cell::RefCell<Vec<([f64; 3], Context)>>>,
     ready: SmallVec<[Step; 4]>,
     ended: bool,
     /// Why it cannot be read on.
@@ -124,6 +132,10 @@ impl<'a, 'n> Program<'a, 'n> {
             process: Process::at_start(job.dialect),
             process_number: None,
             feed: None,
+            datum: LastDatum::default(),
+            datum_mm: None,
+            datums: Vec::new(),
+            touched: None,
             ready: SmallVec::new(),
             ended: false,
             refused: None,
@@ -209,7 +221,18 @@ impl<'a, 'n> Program<'a, 'n> {
                 self.feed
             };
             let (tool_mm, kinematics) = (context.tool_mm, context.kinematics);
-            let act = Act::Motion { motion: *motion, tool_mm, kinematics, feed, dwell };
+            let datum_mm = self.datum.error_mm(self.job.datums, self.job.machine(), context);
+            let cuts = matches!(motion, Motion::Feed(_) | Motion::Hole(_));
+            if let Some(datum) = cuts.then(|| self.datum.to_note()).flatten()
+                && !self.datums.iter().any(|known| known.is(datum))
+            {
+                self.datums.push(datum.clone());
+                if let Some(touched) = self.touched {
+                    touched.borrow_mut().push((datum.error_mm, context.clone()));
+                }
+            }
+            let motion = &going_on(&self.job.models, motion, context, datum_mm, &mut self.datum_mm);
+            let act = Act::Motion { motion: *motion, tool_mm, datum_mm, kinematics, feed, dwell };
             let pointing = self.pointing(motion, context);
             // Where directions are compared they are by themselves.
             let turned_mm = if pointing.is_some() { 0.0 } else { self.turn_rounding_mm(motion) };
@@ -261,7 +284,7 @@ impl<'a, 'n> Program<'a, 'n> {
                     rotary_rad: mix(feed.start.rotary_deg, feed.end.rotary_deg, s).map(f64::to_radians),
                     tool_mm: context.tool_mm.into(),
                     direction: [0; 3],
-                    rotary_play: Default::default(),
+                    ..Default::default()
                 };
                 most_rad = most_rad.max(model.tilt_rad(&at));
             }
@@ -291,7 +314,7 @@ impl<'a, 'n> Program<'a, 'n> {
             rotary_rad,
             tool_mm: context.tool_mm.into(),
             direction,
-            rotary_play: Default::default(),
+            ..Default::default()
         };
         match self.job.models.axes.knows(&command) {
             Err(error @ SolveError::OtherTool { .. }) => Some(other_tool(&error, block.file_range())),

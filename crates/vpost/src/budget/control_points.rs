@@ -79,6 +79,7 @@ fn over_the_volume(
         tool_mm,
         direction: *direction,
         rotary_play: RotaryPlay { direction: *rotary, ..RotaryPlay::default() },
+        ..Command::default()
     };
     let commands: Vec<Command> =
         (0..grid.len()).flat_map(|place| directions.iter().map(move |d| (place, d))).map(command).collect();
@@ -169,6 +170,7 @@ fn on_a_ball(
                 tool_mm,
                 direction: [0; 3],
                 rotary_play: RotaryPlay { direction: plays, ..RotaryPlay::default() },
+                ..Command::default()
             };
             command.linear_mm = body.same_tip_mm(&place, &command, &Vector::zeros());
             let before = commands.last().map_or(command, |before| *before);

@@ -218,7 +218,7 @@ impl Line {
             rotary_rad: Vector::new(a, b, c),
             tool_mm,
             direction: self.direction,
-            rotary_play: Default::default(),
+            ..Default::default()
         };
         command.linear_mm -= turned(&command);
         command

@@ -131,7 +131,7 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
                     rotary_rad: Vector::zeros(),
                     tool_mm,
                     direction,
-                    rotary_play: Default::default(),
+                    ..Default::default()
                 };
                 let mut here = said;
                 here.temp_c = here.temp_c.map(|known| warm.or(arguments.target.temperature).or(known));

@@ -11,7 +11,7 @@ use calibration::turning::{
 };
 use clap::Args;
 use diagnostic::{Diagnostic, Speaks, Text, both};
-use machine_model::{Axis, Command, PathModel, RotaryPlay, Vector};
+use machine_model::{Axis, Command, PathModel, Vector};
 use machine_profile::{Calibrated, LatheParts, Profile};
 use measurement_files::{Row, Sheet, numbered};
 
@@ -136,13 +136,7 @@ pub(crate) fn stood_at(
         );
         return Err(row.refuse(AXES, "z_mm", message, help).into());
     }
-    Ok(Command {
-        linear_mm,
-        rotary_rad: Vector::zeros(),
-        tool_mm,
-        direction: [0; 3],
-        rotary_play: RotaryPlay::default(),
-    })
+    Ok(Command { linear_mm, rotary_rad: Vector::zeros(), tool_mm, direction: [0; 3], ..Default::default() })
 }
 
 impl Parts {

@@ -30,7 +30,7 @@ pub(super) fn command(asked: &Asked, linear_mm: Vector, direction: [i8; 3]) -> C
         rotary_rad: asked.rotary_rad,
         tool_mm: asked.tool_mm,
         direction,
-        rotary_play: Default::default(),
+        ..Default::default()
     }
 }
 

@@ -29,7 +29,7 @@ impl Cut {
                 .tangent(s)
                 .map(|way| if way == 0.0 { 0 } else { way.signum() as i8 })
                 .into(),
-            rotary_play: Default::default(),
+            ..Default::default()
         }
     }
 }

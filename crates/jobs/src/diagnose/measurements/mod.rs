@@ -115,7 +115,7 @@ fn measured(
                 rotary_rad: Vector::zeros(),
                 tool_mm,
                 direction,
-                rotary_play: Default::default(),
+                ..Default::default()
             }
         }
         _ => row.command(tool_mm)?,

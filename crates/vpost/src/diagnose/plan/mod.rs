@@ -152,7 +152,7 @@ pub(super) fn design(plan: &[Line], geometry: &EffectGeometry) -> Measurements {
                     rotary_rad: Vector::from(stop.rotary_deg.map(f64::to_radians)),
                     tool_mm: line.tool_mm,
                     direction: stop.direction,
-                    rotary_play: Default::default(),
+                    ..Default::default()
                 },
                 conditions: Conditions {
                     time_s: Some(time),

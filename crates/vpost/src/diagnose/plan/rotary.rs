@@ -131,7 +131,7 @@ fn line(profile: &Profile, swing: &Swing, tool_mm: Vector) -> Option<Line> {
             rotary_rad,
             tool_mm,
             direction: [0; 3],
-            rotary_play: Default::default(),
+            ..Default::default()
         };
         model.same_tip_mm(target, &state, &Vector::zeros())
     };

@@ -1,0 +1,134 @@
+//! How a job's zeros came to be: what profile and command line say together.
+
+use diagnostic::{Text, both};
+use machine_model::{Engine, FromDatum, Vector};
+use machine_profile::{Found, Profile, TouchPlace, TouchedBy};
+use nc_program::{Setup, ToolLength};
+use rewrite::{Datum, Datums, Touch, TouchTool, Zero};
+
+use crate::message::Failure;
+use crate::options::{self, JobOptions};
+
+/// What is known of the zeros.
+///
+/// # Errors
+/// A tool that touched and has no length, a place of touching outside the calibrated volume.
+pub(crate) fn of(
+    options: &JobOptions,
+    profile: &Profile,
+    setup: &Setup,
+    engine: &dyn Engine,
+) -> Result<Datums, Failure> {
+    if profile.lathe.is_some() {
+        // Lathes touch with each tool, on a diameter that they have measured.
+        return Ok(Datums::default());
+    }
+    let plain = match options.zero {
+        Some(options::Zero::True) => Found::True,
+        Some(options::Zero::Touched) => Found::Touched,
+        None => profile.program.zero,
+    };
+    let tool = TouchTool { vector_mm: setup.default_tool_mm, ..TouchTool::default() };
+    let zero = |found: Found, touches: [Touch; 3]| match found {
+        Found::True => Zero::True,
+        Found::Touched => Zero::Touched(Box::new(touches)),
+    };
+    let mut named = Vec::new();
+    for (name, said) in &profile.zeros {
+        // A flag that gives the offset anew says nothing of where another was touched.
+        let is_other = options.work_offset.iter().any(|given| given.name == *name);
+        let touches = match said.touched_at.as_ref().filter(|_| !is_other) {
+            None => Default::default(),
+            Some(places) => touches(name, places, setup, engine)?,
+        };
+        named.push((name.clone(), zero(said.found.unwrap_or(plain), touches)));
+    }
+    for given in &options.touched_at {
+        let place = TouchPlace { at_mm: vec![given.zero_mm], ..TouchPlace::default() };
+        let touches = touches(&given.name, &[0, 1, 2].map(|_| place.clone()), setup, engine)?;
+        named.retain(|(name, _)| *name != given.name);
+        named.push((given.name.clone(), Zero::Touched(Box::new(touches))));
+    }
+    let lengths_at_mm = profile.lengths_touched_at_mm;
+    Ok(Datums { named, others: zero(plain, Default::default()), tool, lengths_at_mm })
+}
+
+/// The engine whose errors count from a datum, where zeros were touched.
+pub(crate) fn counted_from(datums: &Datums, engine: Box<dyn Engine>) -> Box<dyn Engine> {
+    if datums.are_true() {
+        return engine;
+    }
+    match FromDatum::new(engine) {
+        Ok(engine) => Box::new(engine),
+        Err(engine) => engine,
+    }
+}
+
+fn touch_tool(setup: &Setup, length_mm: [f64; 3]) -> TouchTool {
+    TouchTool { vector_mm: setup.tool_vector(&ToolLength::Written { applied_mm: length_mm }), length_mm }
+}
+
+fn touches(
+    name: &str,
+    places: &[TouchPlace; 3],
+    setup: &Setup,
+    engine: &dyn Engine,
+) -> Result<[Touch; 3], Failure> {
+    let mut touches: [Touch; 3] = Default::default();
+    for (axis, TouchPlace { at_mm, tool, rotary_deg, direction }) in places.iter().enumerate() {
+        let volume = engine.volume();
+        if let Some(place) = at_mm.iter().find(|place| !volume.contains(&Vector::from(**place))) {
+            let [x, y, z] = place;
+            return Err(Failure::option(
+                both!(
+                    "{} of {name} was touched at X{x} Y{y} Z{z}, outside the calibrated volume",
+                    "{} нуля {name} касались в X{x} Y{y} Z{z}, вне калиброванного объёма",
+                    ["X", "Y", "Z"][axis]
+                ),
+                both!(
+                    "`touched_at` takes axis commands (machine coordinates, the tool's length added); calibrate a volume that holds the place, or write zero = \"true\" where the offset was found another way",
+                    "`touched_at` — команды осей (координаты станка с прибавленной длиной инструмента); калибруйте объём, в котором лежит это место, или напишите zero = \"true\", если нуль найден иначе"
+                ),
+            ));
+        }
+        let tool = match tool {
+            None => None,
+            Some(TouchedBy::Vector(vector_mm)) => {
+                let length_mm = vector_mm.map(|v| 0.0 - v);
+                Some(TouchTool { vector_mm: *vector_mm, length_mm })
+            }
+            Some(TouchedBy::Length(number)) => match setup.tools.iter().find(|(own, _)| own == number) {
+                Some((_, length_mm)) => Some(touch_tool(setup, *length_mm)),
+                None => {
+                    return Err(Failure::option(
+                        both!(
+                            "{name} was touched with H{number}, whose length is not given",
+                            "{name} касались инструментом H{number}, длина которого не задана"
+                        ),
+                        both!(
+                            "add H{number} to `lengths_mm` under `[tool]`, or give the probe's length in mm: tool = 80.0",
+                            "добавьте H{number} в `lengths_mm` раздела `[tool]` или задайте длину щупа в мм: tool = 80.0"
+                        ),
+                    ));
+                }
+            },
+        };
+        touches[axis] = Touch { at_mm: at_mm.clone(), tool, rotary_deg: *rotary_deg, direction: *direction };
+    }
+    Ok(touches)
+}
+
+/// From where errors count, a sentence for each zero; none where it was touched at a place without error.
+#[must_use]
+pub fn said(datums: &[Datum]) -> Vec<Text> {
+    let touched = datums.iter().filter(|datum| datum.error_mm != [0.0; 3]);
+    let sentence = |Datum { name, error_mm, .. }: &Datum| {
+        let [x, y, z] = error_mm.map(|mm| mm * 1e3);
+        let off_um = (x * x + y * y + z * z).sqrt();
+        both!(
+            "counted from {name} as it was touched; in the measuring frame the part lies {off_um:.1} um off (X {x:.1}, Y {y:.1}, Z {z:.1})",
+            "отсчёт от {name}, найденного касанием; в системе измерений деталь смещена на {off_um:.1} мкм (X {x:.1}, Y {y:.1}, Z {z:.1})"
+        )
+    };
+    touched.map(sentence).collect()
+}

@@ -1,0 +1,156 @@
+//! Reads what a profile says of its zeros.
+
+use std::collections::BTreeMap;
+
+use diagnostic::{Diagnostic, Text, both};
+use toml::Spanned;
+use toolpath::AXIS_NAMES;
+
+use crate::error::{CONFLICT, KEY};
+use crate::load::Loader;
+use crate::number::{Finite, Length};
+use crate::zeros::{
+    Found, FoundOffset, OnePlace, Places, ToolThatTouched, TouchPlace, TouchedAt, TouchedBy, WorkOffset,
+    ZeroFound,
+};
+
+impl Loader<'_> {
+    /// Places of the zeros, and how each was found.
+    pub(crate) fn work_offsets(
+        &mut self,
+        written: &BTreeMap<String, Spanned<WorkOffset>>,
+        has_rotary: [bool; 3],
+    ) -> (Vec<(String, [f64; 3])>, Vec<(String, ZeroFound)>) {
+        let (mut offsets, mut found) = (Vec::new(), Vec::new());
+        for (name, offset) in written {
+            if !name.strip_prefix('G').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) {
+                let message = both!("`{name}` is no work offset", "`{name}` — не смещение нуля");
+                let help = both!(
+                    "write the word that selects it, like G54 or \"G54.1 P2\"",
+                    "напишите слово, которым его выбирают, например G54 или \"G54.1 P2\""
+                );
+                let diagnostic = Diagnostic::error(KEY, message).help(help);
+                self.refuse(offset, diagnostic, both!("of this entry", "в этой записи"));
+            }
+            let place = match offset.get_ref() {
+                WorkOffset::Place(place) => place,
+                WorkOffset::Found(FoundOffset { at, zero, touched_at }) => {
+                    let places =
+                        touched_at.as_ref().map(|places| self.touched_at(offset, places, has_rotary));
+                    if let (Some(Found::True), Some(_)) = (zero, &places) {
+                        self.contradicts(
+                            offset,
+                            both!("`{name}` is both true and touched", "`{name}` и точное, и найдено касанием"),
+                            both!(
+                                "remove `touched_at` where it was found through a compensation or by an instrument, else write zero = \"touched\"",
+                                "уберите `touched_at`, если нуль найден через компенсацию или прибором, иначе напишите zero = \"touched\""
+                            ),
+                        );
+                    }
+                    let found_so = zero.or(places.as_ref().map(|_| Found::Touched));
+                    found.push((name.clone(), ZeroFound { found: found_so, touched_at: places }));
+                    at
+                }
+            };
+            offsets.push((name.clone(), place.map(|Finite(v)| v)));
+        }
+        (offsets, found)
+    }
+
+    fn contradicts(&mut self, at: &Spanned<WorkOffset>, message: Text, help: Text) {
+        let diagnostic = Diagnostic::error(CONFLICT, message).help(help);
+        self.refuse(at, diagnostic, both!("of this entry", "в этой записи"));
+    }
+
+    fn touched_at(
+        &mut self,
+        entry: &Spanned<WorkOffset>,
+        written: &TouchedAt,
+        has_rotary: [bool; 3],
+    ) -> [TouchPlace; 3] {
+        let (all, own) = written.parts();
+        [0, 1, 2].map(|axis| {
+            let letter = AXIS_NAMES[axis];
+            let twice = own[axis].is_some_and(|own| own.at.is_some()) && all.at.is_some();
+            if twice {
+                self.contradicts(
+                    entry,
+                    both!("{letter} was touched at two places", "{letter} касались в двух местах"),
+                    both!(
+                        "keep `at` for all axes, or X, Y and Z with places of their own",
+                        "оставьте `at` для всех осей или X, Y и Z со своими местами"
+                    ),
+                );
+            }
+            self.touch_place(entry, own[axis].unwrap_or(&all), &all, has_rotary)
+        })
+    }
+
+    /// A place of an axis; what it leaves out is as for all.
+    fn touch_place(
+        &mut self,
+        entry: &Spanned<WorkOffset>,
+        own: &OnePlace,
+        all: &OnePlace,
+        has_rotary: [bool; 3],
+    ) -> TouchPlace {
+        let mut rotary_deg = [0.0; 3];
+        for (letter, Finite(degrees)) in all.rotary_deg.iter().chain(&own.rotary_deg) {
+            match "ABC".find(letter.as_str()).filter(|axis| letter.len() == 1 && has_rotary[*axis]) {
+                Some(axis) => rotary_deg[axis] = *degrees,
+                None => self.contradicts(
+                    entry,
+                    both!(
+                        "touched with {letter} at an angle, and the machine has no such axis",
+                        "касание при повороте {letter}, а такой оси у станка нет"
+                    ),
+                    both!("name rotary axes of `chain`", "называйте поворотные оси из `chain`"),
+                ),
+            }
+        }
+        let direction = own.direction.or(all.direction).unwrap_or(0);
+        if !(-1..=1).contains(&direction) {
+            self.contradicts(
+                entry,
+                both!("the direction of touching is {direction}", "направление касания — {direction}"),
+                both!(
+                    "write 1 where the axis came upwards, -1 where downwards",
+                    "напишите 1, если ось шла в плюс, -1 — если в минус"
+                ),
+            );
+        }
+        let tool =
+            own.tool.as_ref().or(all.tool.as_ref()).and_then(|tool| self.tool_that_touched(entry, tool));
+        let at_mm = match own.at.or(all.at) {
+            None => Vec::new(),
+            Some(Places::One(place)) => vec![place],
+            Some(Places::Two(places)) => places.to_vec(),
+        };
+        let at_mm = at_mm.into_iter().map(|place| place.map(|Finite(v)| v)).collect();
+        TouchPlace { at_mm, tool, rotary_deg, direction }
+    }
+
+    fn tool_that_touched(
+        &mut self,
+        entry: &Spanned<WorkOffset>,
+        written: &ToolThatTouched,
+    ) -> Option<TouchedBy> {
+        match written {
+            ToolThatTouched::Length(Length::Number(Finite(mm))) => Some(TouchedBy::Vector([0.0, 0.0, -mm])),
+            ToolThatTouched::Length(Length::Vector(vector)) => {
+                Some(TouchedBy::Vector(vector.map(|Finite(v)| v)))
+            }
+            ToolThatTouched::Name(name) => {
+                let number = name.strip_prefix('H').and_then(|digits| digits.parse().ok());
+                if number.is_none() {
+                    self.contradicts(
+                        entry,
+                        both!("touched with `{name}`, which is no H number", "касание инструментом `{name}`, а это не номер H"),
+                        both!("write tool = \"H1\", a length in mm, or a vector [x, y, z] from the gauge point to the tip", "напишите tool = \"H1\", длину в мм или вектор [x, y, z] от базовой точки до вершины"),
+                    );
+                }
+                number.map(TouchedBy::Length)
+            }
+        }
+    }
+}
