@@ -40,7 +40,7 @@ impl Environment<'_> {
 
 /// Whose the axis words of the block are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Owner {
+pub enum Owner {
     /// The motion code or cycle in force.
     Motion,
     /// G4: a time.
