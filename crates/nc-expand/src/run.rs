@@ -37,8 +37,8 @@ pub(crate) struct Run<'a, 'e> {
     pub(crate) frames: Vec<Frame>,
     /// Running `repeat` loops of the running program: head and turns left.
     pub(crate) repeats: Vec<(u32, u64)>,
-    /// Running `FOR` loops: head and last value.
-    counts: Vec<(u32, f64)>,
+    /// Running `FOR` loops of the running program: head and last value.
+    pub(crate) counts: Vec<(u32, f64)>,
     pub(crate) at: Place,
     pub(crate) previous: Option<Place>,
     steps: u64,
