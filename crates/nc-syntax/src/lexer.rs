@@ -3,8 +3,8 @@
 use crate::dialect::{Colon, Command, MCode, Macros, Paren, Semicolon};
 use crate::number::{common_number, end_of_garbage, number, skip_spaces};
 use crate::value::{
-    angle_name, assigned, brackets, expression, flat_comment, is_flow_word, is_function, is_siemens_word,
-    nested_comment, o_statement,
+    angle_name, assigned, brackets, expression, flat_comment, is_flow_word, is_function, is_short_flow_word,
+    is_siemens_word, nested_comment, o_statement,
 };
 use crate::{Dialect, Invalid, Item, ItemKind, Number, Span, Value};
 
@@ -28,6 +28,8 @@ pub(crate) struct Lexer<'d> {
     siemens: bool,
     /// Statements are Okuma's.
     okuma: bool,
+    /// Statements are those of custom macro B, of which two letters suffice.
+    fanuc: bool,
 }
 
 /// What may stand between items: white space, and what punches, serial lines and DOS left in files.
@@ -78,6 +80,7 @@ impl<'d> Lexer<'d> {
             copies_blocks: dialect.turning.is_none() && !dialect.flow.called && !dialect.flow.return_by_m,
             siemens: dialect.flow.macros == Macros::Siemens,
             okuma: dialect.flow.macros == Macros::Okuma,
+            fanuc: dialect.flow.macros == Macros::Fanuc,
         }
     }
 
@@ -295,7 +298,7 @@ impl<'d> Lexer<'d> {
     fn letters(&self, line: &[u8], at: usize) -> Option<(ItemKind, usize)> {
         let run = letters(&line[at..]);
         let name = &line[at..at + run];
-        if is_flow_word(name) {
+        if is_flow_word(name) || (self.fanuc && is_short_flow_word(name)) {
             return Some(self.flow(line, at, at + run));
         }
         if line.get(at + run) == Some(&b'=')
