@@ -238,7 +238,7 @@ pub(crate) fn apply<'d>(
     Ok(demand)
 }
 
-/// True where P may be another code's than a work offset's: G4, G10, a cycle, an arc of several turns or
+/// True where P may be another code's than a work offset's: G4, G10, G64, a cycle, an arc of several turns or
 /// an M code.
 fn takes_p(
     env: &Environment<'_>,
@@ -251,7 +251,9 @@ fn takes_p(
     let curve = matches!(motion, MotionMode::Curve(..));
     let arc = matches!(motion, MotionMode::Arc(..));
     let cycle = wanted.cycle.is_some() || (state.cycle.is_some() && wanted.motion.is_none());
+    let own = words.codes.iter().any(|row| row.entry.action == Action::PassWithP);
     demand.owner != Owner::Motion
+        || own
         || cycle
         || curve
         || !words.m_codes.is_empty()
@@ -570,7 +572,10 @@ fn set<'d>(
         Action::FeedInverseTime => state.feed_mode = FeedMode::InverseTime,
         Action::FeedPerMinute => state.feed_mode = FeedMode::PerMinute,
         Action::FeedPerRevolution => state.feed_mode = FeedMode::PerRevolution,
-        Action::Pass { takes_words: false } | Action::PolarOff | Action::Refuse { .. } => {}
+        Action::Pass { takes_words: false }
+        | Action::PassWithP
+        | Action::PolarOff
+        | Action::Refuse { .. } => {}
         // Switched behind the tool length.
         Action::Tip(_) => {}
         // Asked below whether there is anything that it may end.

@@ -388,6 +388,11 @@ impl<'d> Lexer<'d> {
     fn other(&self, line: &[u8], at: usize) -> (ItemKind, usize) {
         let byte = line[at];
         if self.skip == Some(byte)
+            && let Some(end) = self.slash_arguments(line, at)
+        {
+            return (ItemKind::Comment, end);
+        }
+        if self.skip == Some(byte)
             && self.copies_blocks
             && let Some(end) = self.switches_only(line, at)
         {
@@ -423,6 +428,25 @@ impl<'d> Lexer<'d> {
             }
             _ => (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at)),
         }
+    }
+
+    /// `M94/1/2`: where the arguments of an M code that has them end.
+    fn slash_arguments(&self, line: &[u8], at: usize) -> Option<usize> {
+        let is_digit = |byte: &u8| byte.is_ascii_digit();
+        let digits = line[..at].iter().rev().take_while(|byte| is_digit(byte)).count();
+        let (before, number) = line[..at].split_at(at - digits);
+        let number = std::str::from_utf8(number).ok()?.parse().ok()?;
+        let row = self.m_codes.binary_search_by_key(&number, |row| row.number).ok()?;
+        if !before.last().is_some_and(|byte| byte.eq_ignore_ascii_case(&b'M'))
+            || !self.m_codes[row].slash_arguments
+        {
+            return None;
+        }
+        let mut end = at;
+        while line.get(end) == Some(&b'/') && line.get(end + 1).is_some_and(is_digit) {
+            end += 1 + line[end + 1..].iter().take_while(|byte| is_digit(byte)).count();
+        }
+        (end > at).then_some(end)
     }
 
     /// `X10. /M8`: a mark in mid-block skips what follows it. Where that is M codes alone which move nothing, and which
