@@ -20,8 +20,12 @@ fn dialect(system: &str) -> Dialect {
 }
 
 fn expanded<'a>(dialect: &Dialect, text: &'a str) -> Result<Expanded<'a>, Refusal> {
-    let environment =
-        Environment { variables: &[], read_external: &common::nothing, limits: Limits::default() };
+    let environment = Environment {
+        variables: &[],
+        read_external: &common::nothing,
+        setup: &common::setup(dialect),
+        limits: Limits::default(),
+    };
     expand(text.as_bytes(), dialect, &environment)
 }
 
@@ -472,7 +476,7 @@ fn what_is_not_certain_is_refused() {
     // Whether X is a diameter must be said.
     let mut unsaid = dialect("A");
     unsaid.turning.as_mut().unwrap().diameters = None;
-    assert_eq!(refused(&unsaid, "G90 X50. Z-30.\n").0, 143);
+    assert_eq!(refused(&unsaid, "G90 X50. Z-30.\n").0, 250);
 }
 
 #[test]

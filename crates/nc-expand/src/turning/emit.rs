@@ -4,7 +4,7 @@ use diagnostic::both;
 use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Item, ItemKind, Span, Value};
 
-use super::state::millionths;
+use super::state::{may_stand_beside, millionths};
 use super::{AXES, Fault, MILLION, Spot, Writer};
 use crate::output::{From, Style, word};
 use crate::shorthand::{Words, from, shown};
@@ -37,6 +37,16 @@ impl Moves {
     /// Moves from a place, for a block that is written already.
     pub(super) const fn new(from: From, at: Spot) -> Self {
         Self { from, at, before: Vec::new(), behind: Vec::new(), last: None }
+    }
+
+    /// Takes what the control executes behind the last move, for moves that come later.
+    pub(super) fn take_behind(&mut self) -> Vec<u8> {
+        std::mem::take(&mut self.behind)
+    }
+
+    /// The same moves with words that the control executes behind the last of them.
+    pub(super) fn with_behind(self, behind: Vec<u8>) -> Self {
+        Self { behind, ..self }
     }
 
     pub(super) const fn at(&self) -> Spot {
@@ -162,17 +172,7 @@ fn setting(words: &Words<'_, '_>, span: Span) -> Result<bool, Fault> {
     let action = words.actions().find(|(_, other)| *other == span).map(|(action, _)| action);
     match action {
         Some(Action::Turning(_)) => Ok(false),
-        Some(
-            Action::FeedPerMinute
-            | Action::FeedPerRevolution
-            | Action::Absolute
-            | Action::Incremental
-            | Action::ReturnInitial
-            | Action::ReturnR
-            | Action::Plane(_)
-            | Action::CompensationOff
-            | Action::Pass { takes_words: false },
-        ) => Ok(true),
+        Some(action) if may_stand_beside(action) => Ok(true),
         _ => Err(words.cycle_fault(
             span,
             both!("another code beside a cycle", "другая функция рядом с циклом"),
