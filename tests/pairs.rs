@@ -26,13 +26,17 @@ fn arguments(folder: &Path, kind: &str) -> Vec<String> {
     };
     let mill = |dialect: &str, program: &str| {
         let profile = profile(folder, "stan_s500", ("[correction]\n", &format!("{program}[correction]\n")));
-        let offsets = ["--work-offset", "G54=140,100,20", "--work-offset", "G55=150,105,21"];
+        let offsets = ["--work-offset", "G54=140,100,20", "--work-offset", "G55=150,105,19"];
         let all = ["-m", &profile, "-d", dialect];
         all.into_iter().chain(offsets).map(str::to_owned).collect()
     };
     match kind {
         "fanuc-lathe-a" => lathe("A"),
         "fanuc-lathe-b" => lathe("B"),
+        "sinumerik-turn" => {
+            let profile = profile(folder, "generic_lathe", ("g_code_system = \"A\"\n", ""));
+            ["-m", &profile, "-d", kind].map(str::to_owned).to_vec()
+        }
         "sinumerik" => {
             let include =
                 root().join("tests/corpus/pairs/sinumerik").to_str().expect("a plain path").to_owned();
@@ -46,7 +50,7 @@ fn arguments(folder: &Path, kind: &str) -> Vec<String> {
 fn a_program_is_what_it_is_written_out_by_hand() {
     let pairs = root().join("tests/corpus/pairs");
     let (mut count, mut failed) = (0, Vec::new());
-    for kind in ["fanuc", "sinumerik", "fanuc-lathe-a", "fanuc-lathe-b"] {
+    for kind in ["fanuc", "sinumerik", "sinumerik-turn", "fanuc-lathe-a", "fanuc-lathe-b"] {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let arguments = arguments(folder.path(), kind);
         let with = |first: &[&str]| {

