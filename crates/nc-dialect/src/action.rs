@@ -6,7 +6,7 @@ use nc_syntax::dialect::{
 };
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 116] = [
+pub const ACTION_NAMES: [&str; 117] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -123,6 +123,7 @@ pub const ACTION_NAMES: [&str; 116] = [
     "pass",
     "pass-with-words",
     "pass-with-p",
+    "contour-tolerance",
 ];
 
 /// The action of a name, for a code: a work offset is called what its code is called.
@@ -245,6 +246,7 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "pass" => Action::Pass { takes_words: false },
         "pass-with-words" => Action::Pass { takes_words: true },
         "pass-with-p" => Action::PassWithP,
+        "contour-tolerance" => Action::ContourTolerance,
         _ => return None,
     })
 }

@@ -230,6 +230,7 @@ fn note(action: &Action) -> String {
             "the angles by the profile's `branch` and `turn`; X, Y and Z unknown afterwards".to_owned()
         }
         Action::Pass { takes_words: true } => "its words are arguments, not positions".to_owned(),
+        Action::ContourTolerance => "refused where its second argument may switch TRAORI".to_owned(),
         Action::PassWithP => "its P is its own".to_owned(),
         Action::Pass { takes_words: false } => String::new(),
         other => action_name(other).replace('-', " "),

@@ -216,6 +216,8 @@ pub enum Action {
     /// CYCLE800: a tilted working plane by its arguments, to which the rotary axes turn; without any it ends the plane. What
     /// else of the frame it ends is not certain.
     Swivel,
+    /// CYCLE832: how far the path may be left; its second argument may switch TRAORI too.
+    ContourTolerance,
     /// G500: no work offset but the base frame, `G500` in the profile.
     BaseFrame,
     /// Calls of cycles and what else is written out before anything else, or refused.
@@ -321,6 +323,7 @@ impl Action {
             self,
             Self::Pass { takes_words: false }
                 | Self::PassWithP
+                | Self::ContourTolerance
                 | Self::DwellP
                 | Self::Compensation(_)
                 | Self::CompensationOff
