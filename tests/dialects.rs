@@ -63,8 +63,12 @@ impl Program {
         let folder = path.parent().and_then(Path::file_name).expect("a folder").to_string_lossy();
         let file = path.file_name().expect("a name").to_string_lossy();
         let nothing = |_: &str| Err(std::io::Error::from(std::io::ErrorKind::NotFound));
-        let environment =
-            nc_expand::Environment { variables: &[], read_external: &nothing, limits: Limits::default() };
+        let environment = nc_expand::Environment {
+            variables: &[],
+            read_external: &nothing,
+            setup,
+            limits: Limits::default(),
+        };
         let (flat, refused) = match nc_expand::expand(&text, dialect, &environment) {
             Ok(expanded) => (Some(expanded.text().to_vec()), None),
             Err(refusal) => {

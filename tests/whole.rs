@@ -63,6 +63,7 @@ mod on_a_terminal;
 mod one_block;
 mod options;
 mod orientation;
+mod pairs;
 mod points;
 mod profile_new;
 mod real_machines;

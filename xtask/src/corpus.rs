@@ -241,7 +241,9 @@ fn plain_program(text: &[u8], folder: &Path, ways: &[String], plain: &Path) -> a
     let variables: Vec<Preset> = ways.iter().filter_map(|way| Preset::parse(way)).collect();
     let dialect = nc_dialect::builtin("linuxcnc").context("a shipped dialect")?;
     let read = |name: &str| std::fs::read(folder.join(name));
-    let environment = Environment { variables: &variables, read_external: &read, limits: Limits::default() };
+    let setup = nc_program::Setup::default();
+    let environment =
+        Environment { variables: &variables, read_external: &read, setup: &setup, limits: Limits::default() };
     Ok(match expand(text, dialect, &environment) {
         Ok(expanded) => {
             std::fs::write(plain, expanded.text())?;

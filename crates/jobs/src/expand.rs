@@ -27,8 +27,12 @@ fn expanded_with<'a>(
     settings: &Settings,
     read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
 ) -> Result<Expanded<'a>, Failure> {
-    let environment =
-        Environment { variables: settings.flow.presets(), read_external: read, limits: settings.flow.limits };
+    let environment = Environment {
+        variables: settings.flow.presets(),
+        read_external: read,
+        setup: &settings.setup,
+        limits: settings.flow.limits,
+    };
     nc_expand::expand(text, &settings.dialect, &environment).map_err(|refusal| match refusal.file {
         None => Failure::refused(name, text, refusal.diagnostics),
         Some((name, text)) => Failure::refused(&name, &text, refusal.diagnostics),

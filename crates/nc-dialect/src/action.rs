@@ -6,7 +6,7 @@ use nc_syntax::dialect::{
 };
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 115] = [
+pub const ACTION_NAMES: [&str; 117] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -122,6 +122,8 @@ pub const ACTION_NAMES: [&str; 115] = [
     "corner-chamfer-length",
     "pass",
     "pass-with-words",
+    "pass-with-p",
+    "contour-tolerance",
 ];
 
 /// The action of a name, for a code: a work offset is called what its code is called.
@@ -243,6 +245,8 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "corner-chamfer-length" => Action::Called(Called::Corner(CornerForm::ChamferLength)),
         "pass" => Action::Pass { takes_words: false },
         "pass-with-words" => Action::Pass { takes_words: true },
+        "pass-with-p" => Action::PassWithP,
+        "contour-tolerance" => Action::ContourTolerance,
         _ => return None,
     })
 }

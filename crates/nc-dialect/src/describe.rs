@@ -144,6 +144,9 @@ fn of_m_code(entry: &MCode) -> (Treatment, String) {
         );
     }
     let mut what = Vec::new();
+    if entry.slash_arguments {
+        what.push("its arguments stand behind slashes".to_owned());
+    }
     if entry.after_motion {
         what.push("executed after the motion of its block".to_owned());
     }
@@ -227,6 +230,8 @@ fn note(action: &Action) -> String {
             "the angles by the profile's `branch` and `turn`; X, Y and Z unknown afterwards".to_owned()
         }
         Action::Pass { takes_words: true } => "its words are arguments, not positions".to_owned(),
+        Action::ContourTolerance => "refused where its second argument may switch TRAORI".to_owned(),
+        Action::PassWithP => "its P is its own".to_owned(),
         Action::Pass { takes_words: false } => String::new(),
         other => action_name(other).replace('-', " "),
     }

@@ -391,6 +391,7 @@ fn m_code(number: u16, key: &Spanned<String>, row: &MRow) -> Result<MCode, Diagn
         after_motion: row.after_motion,
         loses_position,
         ends_program: row.ends_program,
+        slash_arguments: row.slash_arguments,
         changes_tool: row.changes_tool,
         switches: row.switches.as_deref().map(russian::text),
         tip: None,

@@ -376,6 +376,8 @@ pub(crate) struct MRow {
     #[serde(default)]
     pub(crate) ends_program: bool,
     #[serde(default)]
+    pub(crate) slash_arguments: bool,
+    #[serde(default)]
     pub(crate) changes_tool: bool,
     pub(crate) switches: Option<String>,
     pub(crate) refuse: Option<String>,

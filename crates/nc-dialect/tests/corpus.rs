@@ -8,6 +8,7 @@ use std::path::Path;
 
 use nc_dialect::{builtin, builtin_names};
 use nc_expand::{Environment, Limits, expand};
+use nc_program::Setup;
 use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Dialect, ItemKind, Reader, Value, looks_like_program};
 
@@ -32,10 +33,23 @@ fn programs(dialect: &str, folder: &str) -> BTreeMap<String, Vec<u8>> {
     entries.map(read).collect()
 }
 
+/// Work offsets and tools for every program of the corpus.
+fn setup() -> Setup {
+    let named = (54..60).map(|code| format!("G{code}")).chain(["G500".to_owned()]);
+    let numbered = (1..100).flat_map(|number| [format!("G15H{number}"), format!("G54.1P{number}")]);
+    Setup {
+        work_offsets: named.chain(numbered).map(|name| (name, [0.0; 3])).collect(),
+        tools: (1..100).map(|number| (number, [0.0; 3])).collect(),
+        ..Setup::default()
+    }
+}
+
 /// The first message that reading or the tables decide, once program flow is executed.
 fn verdict(text: &[u8], dialect: &Dialect) -> Option<u16> {
     let nothing = |_: &str| Err(std::io::Error::from(std::io::ErrorKind::NotFound));
-    let environment = Environment { variables: &[], read_external: &nothing, limits: Limits::default() };
+    let setup = setup();
+    let environment =
+        Environment { variables: &[], read_external: &nothing, setup: &setup, limits: Limits::default() };
     let expanded = match expand(text, dialect, &environment) {
         Ok(expanded) => expanded,
         Err(refusal) => return Some(refusal.diagnostics[0].code.0),

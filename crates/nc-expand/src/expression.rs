@@ -176,6 +176,14 @@ impl<'t, 'n> Parser<'t, 'n> {
         }
     }
 
+    /// Takes a flow word of custom macro B, of which two letters suffice.
+    pub(crate) fn short_word(&mut self, word: &[u8]) -> bool {
+        self.peek();
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        let run = rest.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
+        (2..word.len()).contains(&run) && self.word(&word[..run]) || self.word(word)
+    }
+
     /// Takes a word of letters, if it is next.
     pub(crate) fn word(&mut self, word: &[u8]) -> bool {
         self.peek();

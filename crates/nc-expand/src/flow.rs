@@ -38,18 +38,18 @@ pub(crate) fn skip_word(parser: &mut Parser<'_, '_>) -> Result<(), Text> {
 pub(crate) fn fanuc_flow(parser: &mut Parser<'_, '_>) -> Result<Control, Text> {
     if parser.word(b"IF") {
         let condition = parser.bracketed()?;
-        if parser.word(b"GOTO") {
+        if parser.short_word(b"GOTO") {
             return Ok(Control::IfGoto(condition, parser.operand()?));
         }
-        if parser.word(b"THEN") {
+        if parser.short_word(b"THEN") {
             return Ok(Control::IfThen(condition, vec![assignment(parser)?]));
         }
         return Err(both!("GOTO or THEN was expected", "ожидалось GOTO или THEN"));
     }
-    if parser.word(b"GOTO") {
+    if parser.short_word(b"GOTO") {
         return Ok(Control::Goto(parser.operand()?));
     }
-    if parser.word(b"WHILE") {
+    if parser.short_word(b"WHILE") {
         let condition = Some(parser.bracketed()?);
         if !parser.word(b"DO") {
             return Err(both!("DO was expected", "ожидалось DO"));
@@ -59,7 +59,7 @@ pub(crate) fn fanuc_flow(parser: &mut Parser<'_, '_>) -> Result<Control, Text> {
     if parser.word(b"DO") {
         return Ok(Control::While { condition: None, number: loop_number(parser)?, end: 0 });
     }
-    if parser.word(b"END") {
+    if parser.short_word(b"END") {
         return Ok(Control::EndWhile { number: loop_number(parser)?, start: 0 });
     }
     for word in [&b"DPRNT"[..], b"BPRNT", b"POPEN", b"PCLOS"] {

@@ -23,7 +23,9 @@ pub(crate) struct Frame {
     pub(crate) kind: CallKind,
     /// The caller's variables, where the called program has its own.
     saved: Option<Saved>,
+    /// The caller's loops.
     repeats: Vec<(u32, u64)>,
+    counts: Vec<(u32, f64)>,
     /// Section of the caller.
     section: u32,
 }
@@ -143,6 +145,7 @@ impl<'a> Run<'a, '_> {
             frame.left -= 1;
             self.at = frame.start;
             self.repeats.clear();
+            self.counts.clear();
             self.announce(frame.kind, frame.passes - frame.left, Some(frame.passes), frame.back);
             self.frames.push(frame);
             return false;
@@ -155,7 +158,7 @@ impl<'a> Run<'a, '_> {
         if let Some(saved) = frame.saved {
             self.store.leave(saved);
         }
-        self.repeats = frame.repeats;
+        (self.repeats, self.counts) = (frame.repeats, frame.counts);
         self.at = frame.back;
         true
     }
@@ -179,7 +182,7 @@ impl<'a> Run<'a, '_> {
         }
         let back = self.at;
         let saved = arguments.map(|arguments| self.store.enter(arguments));
-        let repeats = std::mem::take(&mut self.repeats);
+        let (repeats, counts) = (std::mem::take(&mut self.repeats), std::mem::take(&mut self.counts));
         let count = self.calls.entry((start.file, start.statement)).or_insert(0);
         *count += 1;
         let (number, of) = match kind {
@@ -187,7 +190,17 @@ impl<'a> Run<'a, '_> {
             CallKind::Name(_) | CallKind::Routine(..) => (*count, None),
         };
         self.announce(kind, number, of, caller);
-        self.frames.push(Frame { back, start, left: passes - 1, passes, kind, saved, repeats, section });
+        self.frames.push(Frame {
+            back,
+            start,
+            left: passes - 1,
+            passes,
+            kind,
+            saved,
+            repeats,
+            counts,
+            section,
+        });
         self.at = start;
         Ok(())
     }

@@ -30,6 +30,8 @@
 //! empty. A value that is unknown may be assigned and passed on; only its use in a word or a condition is
 //! refused, naming the variable it came from.
 
+#[cfg(test)]
+mod agreement;
 mod call;
 mod called;
 pub mod codes;
@@ -38,6 +40,7 @@ mod expression;
 mod faults;
 mod flow;
 mod jump;
+mod known;
 mod o_word;
 mod okuma;
 mod output;
@@ -57,10 +60,11 @@ use std::io;
 use std::ops::Range;
 
 use diagnostic::Diagnostic;
+use nc_program::Setup;
 use nc_syntax::dialect::{Dialect, Macros};
 use nc_syntax::{Block, ItemKind, Reader};
 
-use output::Segment;
+use output::{Segment, Written};
 pub use variables::Preset;
 
 /// Where work ends that would not.
@@ -86,6 +90,8 @@ pub struct Environment<'e> {
     pub variables: &'e [Preset],
     /// Reads a subprogram's file by its name, which holds no folder.
     pub read_external: &'e dyn Fn(&str) -> io::Result<Vec<u8>>,
+    /// Against what the plain program will be read: where its shorthand starts, the one reader of programs says.
+    pub setup: &'e Setup,
     /// Where work ends that would not.
     pub limits: Limits,
 }
@@ -110,6 +116,9 @@ pub struct Expanded<'a> {
     /// From there to the program without corners, angles of a lathe's drawing, polar words and called cycles, step by step.
     shorthand: Vec<Vec<Segment>>,
     warnings: Vec<Diagnostic>,
+    /// What each step took for granted: of the flow first, then of each shorthand.
+    #[cfg(test)]
+    beliefs: Vec<Vec<agreement::Belief>>,
     /// Bytes of the program without flow that are contours of cycles.
     routines: Vec<Range<u64>>,
 }
@@ -180,6 +189,14 @@ impl Expanded<'_> {
         place
     }
 
+    /// Takes over what a step has written.
+    fn take(&mut self, written: Written) {
+        self.text = Cow::Owned(written.text);
+        self.shorthand.push(written.segments);
+        #[cfg(test)]
+        self.beliefs.push(written.beliefs);
+    }
+
     /// A program that cannot be written out, by what is wrong with its plain text.
     fn refusal(&self, fault: Diagnostic) -> Refusal {
         let settled = self.settle(vec![fault]);
@@ -221,20 +238,20 @@ pub fn expand<'a>(
         flow: None,
         shorthand: Vec::new(),
         warnings: Vec::new(),
+        #[cfg(test)]
+        beliefs: vec![Vec::new()],
         routines: Vec::new(),
     };
+    let setup = environment.setup;
     let mut expanded = if work.flow { run::run(text, dialect, environment)? } else { plain };
     if work.shorthand || (work.flow && Work::of(&expanded.text, dialect).shorthand) {
         if dialect.turning.is_some() {
-            let drawn = turning::draw(&expanded.text, dialect);
-            if let Some((text, segments)) = drawn.map_err(|fault| expanded.refusal(*fault))? {
-                expanded.text = Cow::Owned(text);
-                expanded.shorthand.push(segments);
+            let drawn = turning::draw(&expanded.text, dialect, setup);
+            if let Some(drawn) = drawn.map_err(|fault| expanded.refusal(*fault))? {
+                expanded.take(drawn);
             }
-            let written = turning::write_out(&expanded.text, dialect, &expanded.routines);
-            let (text, segments) = written.map_err(|fault| expanded.refusal(*fault))?;
-            expanded.text = Cow::Owned(text);
-            expanded.shorthand.push(segments);
+            let written = turning::write_out(&expanded.text, dialect, setup, &expanded.routines);
+            expanded.take(written.map_err(|fault| expanded.refusal(*fault))?);
             return Ok(expanded);
         }
         let steps: &[WriteOut] = if dialect.flow.called {
@@ -245,17 +262,15 @@ pub fn expand<'a>(
             &[shorthand::write_out]
         };
         for write_out in steps {
-            let written = write_out(&expanded.text, dialect);
-            let (text, segments) = written.map_err(|fault| expanded.refusal(*fault))?;
-            expanded.text = Cow::Owned(text);
-            expanded.shorthand.push(segments);
+            let written = write_out(&expanded.text, dialect, setup);
+            expanded.take(written.map_err(|fault| expanded.refusal(*fault))?);
         }
     }
     Ok(expanded)
 }
 
 /// Writes some kind of shorthand out: the plain text, and where each stretch of it comes from.
-type WriteOut = fn(&[u8], &Dialect) -> Result<(Vec<u8>, Vec<Segment>), Box<Diagnostic>>;
+type WriteOut = fn(&[u8], &Dialect, &Setup) -> Result<Written, Box<Diagnostic>>;
 
 /// True where a block computes, jumps, calls, or has shorthand to be written out: a program that has one is not plain.
 #[must_use]

@@ -25,6 +25,16 @@ pub(crate) struct Segment {
     pub(crate) exact: bool,
 }
 
+/// A text that one step has written.
+#[derive(Debug)]
+pub(crate) struct Written {
+    pub(crate) text: Vec<u8>,
+    /// Where each stretch of it comes from.
+    pub(crate) segments: Vec<Segment>,
+    #[cfg(test)]
+    pub(crate) beliefs: Vec<crate::agreement::Belief>,
+}
+
 /// Where a stretch comes from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct From {

@@ -9,12 +9,14 @@
 //! back to what is drilled less a clearance), rapid to the level. The numbers written have 6 decimals.
 
 use diagnostic::{Text, both};
+use nc_program::Setup;
 use nc_syntax::dialect::{Action, CycleCode};
 use nc_syntax::{Block, Dialect, ItemKind, Letters, Reader, Span, Value};
 
 use crate::codes;
-use crate::output::{Output, Segment};
-use crate::shorthand::{AXES, Fault, State, Words, from, number, shown};
+use crate::known::Rewriting;
+use crate::output::Written;
+use crate::shorthand::{AXES, Fault, Words, from, number, shown};
 
 /// Pecks of one hole; more are a wrong depth.
 const MOST_PECKS: f64 = 2_000.0;
@@ -30,15 +32,18 @@ pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
 }
 
 /// The program with its cycles written out, and where each stretch of it comes from.
-pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<Segment>), Fault> {
-    let (out, state) = (Output::new(dialect, text), State::initial(dialect));
-    let mut writer = Writer { dialect, out, state, level: None, cycle: None, open: false };
+pub(crate) fn write_out(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Written, Fault> {
+    let out = Rewriting::new(dialect, setup, text);
+    let mut writer = Writer { dialect, out, level: None, cycle: None, open: false };
     let mut reader = Reader::new(text, dialect);
     let mut block = Block::default();
-    while reader.next(&mut block) {
-        writer.block(&block)?;
+    let mut fault = None;
+    while fault.is_none() && reader.next(&mut block) {
+        fault = writer.block(&block).err();
+        #[cfg(test)]
+        writer.out.believe(writer.out.known.state().belief());
     }
-    Ok((writer.out.text, writer.out.segments))
+    writer.out.end(fault)
 }
 
 /// A cycle in force.
@@ -54,8 +59,7 @@ struct Cycle {
 
 struct Writer<'d> {
     dialect: &'d Dialect,
-    out: Output,
-    state: State,
+    out: Rewriting<'d>,
     /// G71.
     level: Option<f64>,
     cycle: Option<Cycle>,
@@ -80,6 +84,21 @@ impl Writer<'_> {
         });
         if begins {
             return self.begin(&words);
+        }
+        if ends && self.cycle.is_some() && words.skipped() {
+            return Err(self.refuse(
+                &words,
+                words.whole(),
+                both!(
+                    "a cycle that ends behind block delete",
+                    "цикл, который заканчивается в кадре с пропуском"
+                ),
+                both!(
+                    "what follows drills or not, by a switch",
+                    "дальше сверлят или нет, решает переключатель"
+                ),
+                both!("remove the `/`, or the block", "уберите `/` или кадр"),
+            ));
         }
         // A code between its holes would change what its numbers mean.
         let codes_between = words.actions().next().is_some();
@@ -108,13 +127,10 @@ impl Writer<'_> {
         }
         if let Some((_, span)) = words.actions().find(|(action, _)| **action == Action::ReturnLevel) {
             self.level = Some(self.level_of(&words, span)?);
-        } else {
-            self.state.codes(&words);
-            if words.actions().any(|(action, _)| moves_levels(action)) {
-                self.level = None;
-            }
+        } else if words.actions().any(|(action, _)| moves_levels(action)) {
+            self.level = None;
         }
-        self.out.copy(block.bytes, from(block));
+        self.out.block(block);
         Ok(())
     }
 
@@ -123,14 +139,16 @@ impl Writer<'_> {
     }
 
     fn length(&self, words: &Words<'_, '_>, letter: u8) -> Option<f64> {
-        words.number(letter).map(|(number, _)| self.dialect.numbers.length(number, self.state.inch).to_f64())
+        words
+            .number(letter)
+            .map(|(number, _)| self.dialect.numbers.length(number, self.out.known.state().inch).to_f64())
     }
 
     /// G71 Z.
     fn level_of(&self, words: &Words<'_, '_>, span: Span) -> Result<f64, Fault> {
         let alone = words.block.words().all(|word| matches!(word.letter, b'G' | b'N' | b'Z'))
             && words.actions().count() == 1
-            && self.state.absolute
+            && self.out.known.state().absolute
             && !words.skipped();
         match self.length(words, b'Z').filter(|_| alone) {
             Some(level) => Ok(level),
@@ -168,9 +186,11 @@ impl Writer<'_> {
                 }
             }
         }
-        let mut here = self.state.clone();
-        here.codes(words);
         let Some((kind, span)) = kind else { return Ok(()) };
+        let Some((here, _)) = self.out.known.codes(block) else {
+            self.out.block(block);
+            return Ok(());
+        };
         if !here.absolute || here.plane != [0, 1, 2] || words.skipped() {
             return refuse(
                 span,
@@ -242,7 +262,6 @@ impl Writer<'_> {
             head.push(b' ');
             head.extend_from_slice(block.text(span));
         }
-        self.state = here;
         self.hole(words, head)
     }
 
@@ -285,6 +304,8 @@ impl Writer<'_> {
             self.out.line(&line, source);
         }
         let feed = words.number(b'F').map(|(_, span)| words.block.text(span).to_vec());
+        let unit_mm = if self.out.known.state().inch { 25.4 } else { 1.0 };
+        let clearance = self.dialect.output.peck_clearance_mm / unit_mm;
         let mut line = |code: &[u8], level: f64, feed: Option<&Vec<u8>>| {
             let mut text = code.to_vec();
             number(&mut text, b'Z', level);
@@ -304,7 +325,6 @@ impl Writer<'_> {
                 break;
             }
             line(b"G0 ", near, None);
-            let clearance = self.dialect.output.peck_clearance_mm / if self.state.inch { 25.4 } else { 1.0 };
             line(b"G0 ", (reached + clearance).min(near), None);
         }
         line(b"G0 ", back, None);

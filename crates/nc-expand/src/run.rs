@@ -37,8 +37,8 @@ pub(crate) struct Run<'a, 'e> {
     pub(crate) frames: Vec<Frame>,
     /// Running `repeat` loops of the running program: head and turns left.
     pub(crate) repeats: Vec<(u32, u64)>,
-    /// Running `FOR` loops: head and last value.
-    counts: Vec<(u32, f64)>,
+    /// Running `FOR` loops of the running program: head and last value.
+    pub(crate) counts: Vec<(u32, f64)>,
     pub(crate) at: Place,
     pub(crate) previous: Option<Place>,
     steps: u64,
@@ -57,6 +57,8 @@ pub(crate) struct Run<'a, 'e> {
     first_kept: Option<(std::ops::Range<u64>, Variable)>,
     /// Bytes of the output that are contours of cycles.
     pub(crate) routines: Vec<std::ops::Range<u64>>,
+    #[cfg(test)]
+    beliefs: Vec<crate::agreement::Belief>,
 }
 
 /// Whether the program goes on.
@@ -104,6 +106,8 @@ pub(crate) fn run<'a>(
         first_output: None,
         first_kept: None,
         routines: Vec::new(),
+        #[cfg(test)]
+        beliefs: Vec::new(),
     };
     run.units(inch);
     match run.all() {
@@ -129,7 +133,10 @@ impl<'a> Run<'a, '_> {
                     }
                     return Ok(());
                 };
-                if self.step(&source, statement)? == Next::Ended {
+                let next = self.step(&source, statement)?;
+                #[cfg(test)]
+                self.beliefs.push(crate::agreement::Belief::of_flow(self.out.text.len() as u64, self.inch));
+                if next == Next::Ended {
                     return Ok(());
                 }
             }
@@ -540,6 +547,8 @@ impl<'a> Run<'a, '_> {
             flow: Some(segments),
             shorthand: Vec::new(),
             warnings,
+            #[cfg(test)]
+            beliefs: vec![self.beliefs],
             routines,
         }
     }

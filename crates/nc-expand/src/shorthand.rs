@@ -14,12 +14,14 @@
 //! The numbers written have 6 decimals; what that neglects is half a nanometre.
 
 use diagnostic::{Code, Diagnostic, Text, both};
-use nc_syntax::dialect::{Action, Called, CornerForm, GCode, PlaneCode};
+use nc_program::{Owner, Setup};
+use nc_syntax::dialect::{Action, Called, CornerForm, GCode};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Number, Reader, Span, Value};
 use units::math;
 
 use crate::codes;
-use crate::output::{From, Output, Segment, Style, word};
+use crate::known::{Known, Motion, Rewriting, State};
+use crate::output::{From, Style, Written, word};
 
 /// X, Y, Z.
 pub(crate) const AXES: [u8; 3] = *b"XYZ";
@@ -62,35 +64,12 @@ fn corner_form(command: &[u8], dialect: &Dialect) -> Option<CornerForm> {
     }
 }
 
-fn action(number: Number, dialect: &Dialect) -> Option<&Action> {
+pub(crate) fn action(number: Number, dialect: &Dialect) -> Option<&Action> {
     number.tenths().and_then(|tenths| dialect.code(GCode(tenths))).map(|entry| &entry.action)
 }
 
-/// The motion code in force.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Motion {
-    Rapid,
-    Line,
-    Arc,
-    Cycle,
-    None,
-}
-
-/// What has to be known of the program between two blocks; lengths in units of the program.
-#[derive(Clone)]
-pub(crate) struct State {
-    pub(crate) motion: Motion,
-    /// First and second axis of the plane, and its normal.
-    pub(crate) plane: [usize; 3],
-    pub(crate) absolute: bool,
-    pub(crate) inch: bool,
-    pub(crate) at: [Option<f64>; 3],
-    /// G16: radius and angle in degrees, once named.
-    polar: Option<[Option<f64>; 2]>,
-}
-
 /// A line that ends in a corner, waiting for the next one.
-struct Corner<'a> {
+struct Corner<'a, 'd> {
     block: Block<'a>,
     from: [f64; 2],
     to: [f64; 2],
@@ -99,6 +78,8 @@ struct Corner<'a> {
     place: Span,
     /// The arc of an earlier corner stands before it, so that it must say that it is a line.
     behind_corner: bool,
+    /// What is known behind it, its corner apart.
+    behind: Known<'d>,
 }
 
 /// Words and codes of a block.
@@ -117,7 +98,7 @@ impl Words<'_, '_> {
             _ => None,
         })
     }
-    fn length(&self, letter: u8, inch: bool) -> Option<f64> {
+    pub(crate) fn length(&self, letter: u8, inch: bool) -> Option<f64> {
         self.number(letter).map(|(number, _)| self.dialect.numbers.length(number, inch).to_f64())
     }
     pub(crate) fn actions(&self) -> impl Iterator<Item = (&Action, Span)> {
@@ -128,16 +109,8 @@ impl Words<'_, '_> {
             _ => None,
         })
     }
-    /// No command of the block moves the frame, or the axes by other words than the block's.
-    pub(crate) fn commands_keep_places(&self) -> bool {
-        self.block.items.iter().filter(|item| item.kind == ItemKind::BracketCommand).all(|item| {
-            let row = self.dialect.command(self.block.text(item.span));
-            row.and_then(|row| row.action.as_ref())
-                .is_none_or(|action| action.keeps_places() || matches!(action, Action::Called(_)))
-        })
-    }
     /// `,R5.`, `RND=5`
-    fn corner(&self) -> Option<&Item> {
+    pub(crate) fn corner(&self) -> Option<&Item> {
         self.block.items.iter().find(|item| self.is_corner(item))
     }
     fn is_corner(&self, item: &Item) -> bool {
@@ -185,161 +158,80 @@ impl Words<'_, '_> {
     }
 }
 
-impl State {
-    pub(crate) fn initial(dialect: &Dialect) -> Self {
-        let mut state = Self {
-            motion: Motion::None,
-            plane: [0, 1, 2],
-            absolute: true,
-            inch: false,
-            at: [None; 3],
-            polar: None,
-        };
-        for action in dialect.initial.iter().filter_map(|code| dialect.code(*code)).map(|row| &row.action) {
-            state.set(action);
-        }
-        state
-    }
-
-    /// Whose words the block has: true where they are the motion's.
-    pub(crate) fn set(&mut self, action: &Action) -> bool {
-        match action {
-            Action::Rapid => self.motion = Motion::Rapid,
-            Action::Line => self.motion = Motion::Line,
-            Action::ArcClockwise | Action::ArcCounterClockwise | Action::Curve(_) => {
-                self.motion = Motion::Arc
-            }
-            Action::Cycle(_) => self.motion = Motion::Cycle,
-            Action::CycleCancel => self.motion = Motion::None,
-            Action::Plane(plane) => {
-                self.plane = match plane {
-                    PlaneCode::Xy => [0, 1, 2],
-                    PlaneCode::Zx => [2, 0, 1],
-                    PlaneCode::Yz => [1, 2, 0],
-                }
-            }
-            Action::Inch | Action::Millimetre => {
-                let inch = *action == Action::Inch;
-                if self.inch != inch {
-                    (self.inch, self.at) = (inch, [None; 3]);
-                }
-            }
-            Action::Absolute => self.absolute = true,
-            Action::Incremental => self.absolute = false,
-            Action::PolarOff => self.polar = None,
-            Action::Dwell | Action::Pass { takes_words: true } => return false,
-            Action::PolarOn => {}
-            _ if action.keeps_places() => {}
-            // Whatever moves the frame, or the axes by rules of the control.
-            _ => {
-                self.at = [None; 3];
-                return false;
-            }
-        }
-        true
-    }
-
-    /// The codes of a block: true where its words are the motion's.
-    pub(crate) fn codes(&mut self, words: &Words<'_, '_>) -> bool {
-        let mut owned = true;
-        // G80 beside a motion ends the cycle first.
-        for cancels in [true, false] {
-            for (action, _) in words.actions().filter(|(a, _)| (**a == Action::CycleCancel) == cancels) {
-                owned &= self.set(action);
-            }
-        }
-        owned
-    }
-
-    /// After the block as it stands: true where its words are the motion's.
-    pub(crate) fn step(&mut self, words: &Words<'_, '_>) -> bool {
-        let owned = self.codes(words);
-        let machine = |number: Number| {
-            let row = number.integer().and_then(|m| words.dialect.m_code(u16::try_from(m).ok()?));
-            row.is_some_and(|row| row.loses_position != [false; 3])
-        };
-        let moved = words.block.words().any(|word| word.letter == b'M' && word.number().is_some_and(machine));
-        // A tool's edge shifts what its axes' places are called.
-        let edge = words.dialect.edge_in_d && words.number(b'D').is_some();
-        if moved || edge || words.skipped() || !words.commands_keep_places() {
-            self.at = [None; 3];
-        } else if owned {
-            for (axis, letter) in AXES.into_iter().enumerate() {
-                let Some(value) = words.length(letter, self.inch) else { continue };
-                self.at[axis] = match (self.motion, self.absolute) {
-                    // The axis along the hole comes back to a level.
-                    (Motion::Cycle, _) if axis == self.plane[2] => None,
-                    (_, true) => Some(value),
-                    (_, false) => self.at[axis].map(|at| at + value),
-                };
-            }
-        }
-        owned
-    }
-}
-
 /// The program with its shorthand written out, and where each stretch of it comes from.
-pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<Segment>), Fault> {
-    let mut writer = Writer { dialect, out: Output::new(dialect, text), state: State::initial(dialect) };
-    let mut reader = Reader::new(text, dialect);
-    let mut block = Block::default();
-    let mut corner: Option<Corner<'_>> = None;
-    let mut between: Vec<Block<'_>> = Vec::new();
-    while reader.next(&mut block) {
-        match corner.take() {
-            Some(waiting) if (Words { block: &block, dialect }).idle() => {
-                between.push(block.clone());
-                corner = Some(waiting);
-            }
-            Some(waiting) => corner = writer.next_line(&waiting, &mut between, &block)?,
-            None => corner = writer.block(&block)?,
-        }
-    }
-    match corner {
-        None => Ok((writer.out.text, writer.out.segments)),
-        Some(corner) => {
-            let words = Words { block: &corner.block, dialect };
-            Err(words.refuse(corner.place, NO_NEXT, both!("nothing follows", "дальше ничего нет"), POST_IT))
-        }
-    }
+pub(crate) fn write_out(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Written, Fault> {
+    let mut writer = Writer { dialect, out: Rewriting::new(dialect, setup, text), polar: None };
+    let fault = writer.all(text).err();
+    writer.out.end(fault)
 }
 
 const NO_NEXT: Text = Text::pair("a corner without a next line", "сопряжение без следующей прямой");
+const NO_CORNER: Text =
+    Text::pair("a corner that cannot be written out", "сопряжение, которое нельзя развернуть");
+const NOT_KNOWN: Text = Text::pair(
+    "where the line starts or ends is not known",
+    "неизвестно, где начинается или кончается прямая",
+);
 const POST_IT: Text =
     Text::pair("post roundings as arcs and chamfers as lines", "выводите скругления дугами, а фаски прямыми");
 
 struct Writer<'d> {
     dialect: &'d Dialect,
-    out: Output,
-    state: State,
+    out: Rewriting<'d>,
+    /// G16: radius and angle in degrees, once named.
+    polar: Option<[Option<f64>; 2]>,
 }
 
 impl<'d> Writer<'d> {
+    fn all(&mut self, text: &[u8]) -> Result<(), Fault> {
+        let dialect = self.dialect;
+        let mut reader = Reader::new(text, dialect);
+        let mut block = Block::default();
+        let mut corner: Option<Corner<'_, 'd>> = None;
+        let mut between: Vec<Block<'_>> = Vec::new();
+        while reader.next(&mut block) {
+            match corner.take() {
+                Some(waiting) if (Words { block: &block, dialect }).idle() => {
+                    between.push(block.clone());
+                    corner = Some(waiting);
+                }
+                Some(waiting) => corner = self.next_line(&waiting, &mut between, &block)?,
+                None => corner = self.block(&block)?,
+            }
+            #[cfg(test)]
+            self.out.believe(self.out.known.state().belief());
+        }
+        let Some(corner) = corner else { return Ok(()) };
+        let words = Words { block: &corner.block, dialect };
+        Err(words.refuse(corner.place, NO_NEXT, both!("nothing follows", "дальше ничего нет"), POST_IT))
+    }
+
     /// A block that follows no corner.
-    fn block<'a>(&mut self, block: &Block<'a>) -> Result<Option<Corner<'a>>, Fault> {
+    fn block<'a>(&mut self, block: &Block<'a>) -> Result<Option<Corner<'a, 'd>>, Fault> {
         let words = Words { block, dialect: self.dialect };
         if words.corner().is_some() {
-            let before = self.state.at;
-            return self.corner(block, before).map(Some);
+            let known = self.out.known.clone();
+            let [first, second, _] = known.state().plane;
+            let start = [first, second].map(|axis| known.state().at[axis]);
+            return self.corner(block, start, known).map(Some);
         }
         let rotates = words.actions().find(|(action, _)| **action == Action::RotationOn);
         if let Some((_, span)) = rotates.filter(|_| turns_about_the_tool(block, self.dialect)) {
             return self.rotation(&words, span).map(|()| None);
         }
         let turns_on = words.actions().find(|(action, _)| **action == Action::PolarOn);
-        if self.state.polar.is_some() || turns_on.is_some() {
+        if self.polar.is_some() || turns_on.is_some() {
             self.polar(&words, turns_on.map(|(_, span)| span))?;
             return Ok(None);
         }
-        self.state.step(&words);
-        self.out.copy(block.bytes, from(block));
+        self.out.block(block);
         Ok(None)
     }
 
     /// A rotation about where the tool stands: the control would take the corrected place for it.
     fn rotation(&mut self, words: &Words<'_, '_>, span: Span) -> Result<(), Fault> {
-        let [first, second, _] = self.state.plane;
-        let [Some(u), Some(v)] = [self.state.at[first], self.state.at[second]] else {
+        let State { plane: [first, second, _], at, .. } = self.out.known.state();
+        let [Some(u), Some(v)] = [at[first], at[second]] else {
             return Err(words.refuse(
                 span,
                 both!("a rotation without its centre", "поворот без центра"),
@@ -351,7 +243,6 @@ impl<'d> Writer<'d> {
             ));
         };
         let block = words.block;
-        self.state.step(words);
         let mut centre = b" ".to_vec();
         self.point(&mut centre, [u, v]);
         let end = span.end as usize;
@@ -362,21 +253,23 @@ impl<'d> Writer<'d> {
     }
 
     /// A line with a corner from a place that is known, to be written once the next one is known.
-    fn corner<'a>(&mut self, block: &Block<'a>, before: [Option<f64>; 3]) -> Result<Corner<'a>, Fault> {
+    ///
+    /// `known`: what is known before it, the corner of another line apart.
+    fn corner<'a>(
+        &self,
+        block: &Block<'a>,
+        start: [Option<f64>; 2],
+        known: Known<'d>,
+    ) -> Result<Corner<'a, 'd>, Fault> {
         let words = Words { block, dialect: self.dialect };
         let Some(item) = words.corner() else {
             return Err(words.refuse(Span { start: 0, end: 0 }, NO_NEXT, Text::EMPTY, POST_IT));
         };
         let span = item.span;
-        let refuse = |label: Text| {
-            words.refuse(
-                span,
-                both!("a corner that cannot be written out", "сопряжение, которое нельзя развернуть"),
-                label,
-                POST_IT,
-            )
-        };
-        let Some((form, size)) = words.corner_size(item, self.state.inch) else {
+        let refuse = |label: Text| words.refuse(span, NO_CORNER, label, POST_IT);
+        let mut behind = known;
+        let here = behind.codes(block).map(|(state, _)| state);
+        let Some((form, size)) = words.corner_size(item, behind.state().inch) else {
             return Err(refuse(both!(
                 "only a rounding or a chamfer with a number can, one in a block",
                 "развернуть можно только скругление или фаску с числом, одно в кадре"
@@ -385,32 +278,41 @@ impl<'d> Writer<'d> {
         if block.items.iter().filter(|item| words.is_corner(item)).count() > 1 {
             return Err(refuse(both!("two corners in one block", "два сопряжения в одном кадре")));
         }
-        let [first, second, _] = self.state.plane;
-        self.state.step(&words);
-        self.plain_line(&words, span)?;
-        let [Some(u), Some(v)] = [before[first], before[second]] else {
-            return Err(refuse(both!(
-                "where the line starts is not known: name both axes of the plane before it, in G90",
-                "неизвестно, откуда начинается прямая: назовите до неё обе оси плоскости при G90"
-            )));
-        };
-        let to = [first, second].map(|axis| self.state.at[axis].unwrap_or(f64::NAN));
+        if let Some(here) = &here {
+            self.plain_line(&words, here, span)?;
+            let [Some(_), Some(_)] = start else {
+                return Err(refuse(both!(
+                    "where the line starts is not known: name both axes of the plane before it, in G90",
+                    "неизвестно, откуда начинается прямая: назовите до неё обе оси плоскости при G90"
+                )));
+            };
+        }
         if size <= 0.0 {
             return Err(refuse(both!("its size must be above zero", "размер должен быть больше нуля")));
         }
-        Ok(Corner { block: block.clone(), from: [u, v], to, form, size, place: span, behind_corner: false })
+        behind.block(block);
+        let (Some(here), None) = (here, behind.refused()) else {
+            return Err(behind.refused().unwrap_or_else(|| refuse(NOT_KNOWN)));
+        };
+        let target = here.target(&words);
+        let place = |[u, v]: [Option<f64>; 2]| Some([u?, v?]);
+        let ends = place(start).zip(place([target[here.plane[0]], target[here.plane[1]]]));
+        let Some((from, to)) = ends else { return Err(refuse(NOT_KNOWN)) };
+        Ok(Corner { block: block.clone(), from, to, form, size, place: span, behind_corner: false, behind })
     }
 
     /// Refuses what is no line of the plane in G90; `span` says where.
-    fn plain_line(&self, words: &Words<'_, '_>, span: Span) -> Result<(), Fault> {
-        let normal = AXES[self.state.plane[2]];
-        let others = words.actions().any(|(action, _)| !matches!(action, Action::Line | Action::Absolute));
-        let moves = self.state.plane[..2].iter().any(|axis| words.number(AXES[*axis]).is_some());
-        let label = if self.state.motion != Motion::Line {
+    fn plain_line(&self, words: &Words<'_, '_>, here: &State, span: Span) -> Result<(), Fault> {
+        let normal = AXES[here.plane[2]];
+        let command = |item: &Item| item.kind == ItemKind::BracketCommand && !words.is_corner(item);
+        let others = words.block.items.iter().any(command)
+            || words.actions().any(|(action, _)| !matches!(action, Action::Line | Action::Absolute));
+        let moves = here.plane[..2].iter().any(|axis| words.number(AXES[*axis]).is_some());
+        let label = if here.motion != Motion::Line {
             both!("G1 was expected on both sides of a corner", "по обе стороны сопряжения ожидалось G1")
-        } else if !self.state.absolute {
+        } else if !here.absolute {
             both!("under G91; write G90", "при G91; напишите G90")
-        } else if self.state.polar.is_some() {
+        } else if self.polar.is_some() {
             both!("under G16; write the points in X and Y", "при G16; напишите точки в X и Y")
         } else if words.skipped() {
             both!("behind block delete there are two corners", "в кадре с пропуском сопряжений два")
@@ -426,48 +328,45 @@ impl<'d> Writer<'d> {
         } else {
             return Ok(());
         };
-        Err(words.refuse(
-            span,
-            both!("a corner that cannot be written out", "сопряжение, которое нельзя развернуть"),
-            label,
-            POST_IT,
-        ))
+        Err(words.refuse(span, NO_CORNER, label, POST_IT))
     }
 
     /// Writes the line with the corner, what lies between, the corner, and this line.
     fn next_line<'a>(
         &mut self,
-        corner: &Corner<'_>,
+        corner: &Corner<'_, 'd>,
         between: &mut Vec<Block<'_>>,
         block: &Block<'a>,
-    ) -> Result<Option<Corner<'a>>, Fault> {
+    ) -> Result<Option<Corner<'a, 'd>>, Fault> {
         let words = Words { block, dialect: self.dialect };
         let at = Words { block: &corner.block, dialect: self.dialect };
-        let before = self.state.at;
         let further = words.corner().is_some();
-        self.state.step(&words);
         let whole = block.items.first().map_or(Span { start: 0, end: 0 }, |item| item.span);
-        self.plain_line(&words, words.corner().map_or(whole, |item| item.span))?;
-        let [first, second, _] = self.state.plane;
-        let next = [first, second].map(|axis| self.state.at[axis].unwrap_or(f64::NAN));
+        let whole = words.corner().map_or(whole, |item| item.span);
+        let Some((here, _)) = corner.behind.codes(block) else {
+            let mut behind = corner.behind.clone();
+            behind.block(block);
+            return Err(behind
+                .refused()
+                .unwrap_or_else(|| words.refuse(whole, NO_CORNER, NOT_KNOWN, POST_IT)));
+        };
+        self.plain_line(&words, &here, whole)?;
+        let [first, second, _] = here.plane;
+        let target = here.target(&words);
+        let next = [(first, 0), (second, 1)].map(|(axis, k)| target[axis].unwrap_or(corner.to[k]));
         let shape = Shape::of(corner.from, corner.to, next, corner.form, corner.size);
         let Some(shape) = shape else {
             let label = both!(
                 "the lines are too short for it, or go straight on or back",
                 "прямые для него слишком коротки или идут прямо вперёд или назад"
             );
-            return Err(at.refuse(
-                corner.place,
-                both!("a corner that cannot be written out", "сопряжение, которое нельзя развернуть"),
-                label,
-                POST_IT,
-            ));
+            return Err(at.refuse(corner.place, NO_CORNER, label, POST_IT));
         };
         let mut line = if corner.behind_corner { b"G1 ".to_vec() } else { Vec::new() };
         self.point(&mut line, shape.from);
         self.rewritten(&corner.block, &line);
         for block in between.drain(..) {
-            self.out.copy(block.bytes, from(&block));
+            self.out.block(&block);
         }
         let round = corner.form == CornerForm::Round;
         let mut line: Vec<u8> = match (round, shape.left) {
@@ -485,11 +384,9 @@ impl<'d> Writer<'d> {
         self.out.line(&line, from(&corner.block));
         if further {
             // The next line starts where this corner ends.
-            let mut start = before;
-            (start[first], start[second]) = (Some(rounded(shape.to[0])), Some(rounded(shape.to[1])));
-            let mut waiting = self.corner(block, start)?;
-            (waiting.to, waiting.behind_corner) = (next, true);
-            return Ok(Some(waiting));
+            let start = shape.to.map(|value| Some(rounded(value)));
+            let waiting = self.corner(block, start, corner.behind.clone())?;
+            return Ok(Some(Corner { behind_corner: true, ..waiting }));
         }
         let mut line = b"G1 ".to_vec();
         self.point(&mut line, next);
@@ -507,37 +404,35 @@ impl<'d> Writer<'d> {
                 both!("write the points in X and Y, G15 in force", "напишите точки в X и Y, при G15"),
             )
         };
-        let plane = self.state.plane;
+        let plane = self.out.known.state().plane;
         let axis_word =
             |axes: &[usize]| axes.iter().find_map(|axis| words.number(AXES[*axis])).map(|(_, span)| span);
-        let mut owned = true;
-        let mut off = false;
-        for (action, span) in words.actions() {
-            off |= *action == Action::PolarOff;
-            match action {
+        let off = words.actions().any(|(action, _)| *action == Action::PolarOff);
+        let switches = on.is_some() || off;
+        let differs = words.actions().find(|(action, _)| {
+            matches!(
+                action,
                 Action::Reference | Action::Probe | Action::Inch | Action::Millimetre | Action::Plane(_)
-                    if self.state.polar.is_some() =>
-                {
-                    return Err(refuse(
-                        span,
-                        both!(
-                            "what its words mean under G16 differs from control to control",
-                            "что значат её слова при G16, у стоек по-разному"
-                        ),
-                    ));
-                }
-                _ => {}
-            }
-            owned &= self.state.clone().set(action);
+            )
+        });
+        const DIFFERS: Text = Text::pair(
+            "what its words mean under G16 differs from control to control",
+            "что значат её слова при G16, у стоек по-разному",
+        );
+        if let (Some((_, span)), true) = (differs, self.polar.is_some()) {
+            return Err(refuse(span, DIFFERS));
         }
-        if on.is_some() && self.state.polar.is_none() {
-            self.state.polar = Some([None; 2]);
+        if switches && words.skipped() {
+            return Err(refuse(
+                whole(words.block),
+                both!(
+                    "behind block delete: two programs in one",
+                    "в кадре с пропуском: две программы в одной"
+                ),
+            ));
         }
-        let plane_word =
-            axis_word(&plane[..2]).or_else(|| axis_word(&[0, 1, 2]).filter(|_| on.is_some() || off));
-        let (held, at) = (self.state.polar, self.state.at);
-        self.state.step(words);
-        if let (Some(span), true) = (plane_word, on.is_some() || off) {
+        let plane_word = axis_word(&plane[..2]).or_else(|| axis_word(&[0, 1, 2]).filter(|_| switches));
+        if let (Some(span), true) = (plane_word, switches) {
             return Err(refuse(
                 span,
                 both!(
@@ -546,17 +441,27 @@ impl<'d> Writer<'d> {
                 ),
             ));
         }
-        if self.state.plane != plane && on.is_none() && !off {
-            return Err(refuse(
-                whole(words.block),
-                both!("the plane changes under G16", "при G16 меняется плоскость"),
-            ));
+        if switches {
+            let held = self.polar.unwrap_or_default();
+            self.polar = (!off).then_some(held);
         }
-        let (Some(span), Some(held), true) = (plane_word, held, owned) else {
+        let (Some(span), Some(held)) = (plane_word, self.polar) else {
             self.unswitched(words, on);
             return Ok(());
         };
-        if words.skipped() || !self.state.absolute {
+        let Some((here, owner)) = self.out.known.codes(words.block) else {
+            self.out.block(words.block);
+            return Ok(());
+        };
+        match owner {
+            Owner::Motion | Owner::DwellP => {}
+            Owner::Dwell | Owner::DwellBySetting | Owner::Arguments => {
+                self.out.block(words.block);
+                return Ok(());
+            }
+            _ => return Err(refuse(span, DIFFERS)),
+        }
+        if words.skipped() || !here.absolute {
             return Err(refuse(
                 span,
                 both!(
@@ -565,16 +470,15 @@ impl<'d> Writer<'d> {
                 ),
             ));
         }
-        if self.state.motion == Motion::None {
+        let radius_of_arc = words.number(b'R').is_some();
+        if here.motion == Motion::None {
             return Err(refuse(span, both!("no motion code is in force", "функция движения не действует")));
         }
-        if self.state.motion == Motion::Arc && b"IJK".iter().any(|letter| words.number(*letter).is_some()) {
+        let centred = b"IJK".iter().any(|letter| words.number(*letter).is_some());
+        if here.motion == Motion::Arc && (centred || !radius_of_arc) {
             return Err(refuse(span, both!("an arc under G16 takes R", "дуга при G16 принимает R")));
         }
-        if self.state.motion == Motion::Arc && words.number(b'R').is_none() {
-            return Err(refuse(span, both!("an arc under G16 takes R", "дуга при G16 принимает R")));
-        }
-        let radius = words.length(AXES[plane[0]], self.state.inch).or(held[0]);
+        let radius = words.length(AXES[plane[0]], here.inch).or(held[0]);
         let angle = words.length(AXES[plane[1]], false).or(held[1]);
         let (Some(radius), Some(angle)) = (radius, angle) else {
             return Err(refuse(
@@ -588,17 +492,10 @@ impl<'d> Writer<'d> {
         if radius < 0.0 {
             return Err(refuse(span, both!("a radius below zero", "радиус меньше нуля")));
         }
-        self.state.polar = Some([Some(radius), Some(angle)]);
+        self.polar = Some([Some(radius), Some(angle)]);
         let (sin, cos) = math::sin_cos_deg(angle);
-        let point = [radius * cos, radius * sin];
-        self.state.at = at;
-        (self.state.at[plane[0]], self.state.at[plane[1]]) =
-            (Some(rounded(point[0])), Some(rounded(point[1])));
-        if let Some(value) = words.length(AXES[plane[2]], self.state.inch) {
-            self.state.at[plane[2]] = (self.state.motion != Motion::Cycle).then_some(value);
-        }
         let mut line = Vec::new();
-        self.point(&mut line, point);
+        self.point(&mut line, [radius * cos, radius * sin]);
         self.rewritten(words.block, &line);
         Ok(())
     }
@@ -606,7 +503,7 @@ impl<'d> Writer<'d> {
     /// The block without its G16, which the output is not under.
     fn unswitched(&mut self, words: &Words<'_, '_>, on: Option<Span>) {
         match on {
-            None => self.out.copy(words.block.bytes, from(words.block)),
+            None => self.out.block(words.block),
             Some(span) => {
                 let block = words.block;
                 self.out.comment(shown(block), from(block));
@@ -620,7 +517,7 @@ impl<'d> Writer<'d> {
 
     /// First and second axis' words.
     fn point(&self, line: &mut Vec<u8>, point: [f64; 2]) {
-        let [first, second, _] = self.state.plane;
+        let [first, second, _] = self.out.known.state().plane;
         let mut both = [(first, point[0]), (second, point[1])];
         both.sort_by_key(|(axis, _)| *axis);
         for (at, (axis, value)) in both.into_iter().enumerate() {
@@ -635,7 +532,7 @@ impl<'d> Writer<'d> {
     /// where `words` has one, its motion code.
     fn rewritten(&mut self, block: &Block<'_>, words: &[u8]) {
         self.out.comment(shown(block), from(block));
-        let [first, second, _] = self.state.plane;
+        let [first, second, _] = self.out.known.state().plane;
         let replaces_motion = words.starts_with(b"G");
         let of_block = Words { block, dialect: self.dialect };
         let taken = |item: &Item| match item.kind {

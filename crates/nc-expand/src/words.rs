@@ -88,6 +88,9 @@ impl Run<'_, '_> {
             b'M' | b'N' | b'O' | b'T' | b'H' | b'D' | b'L' => Style::Whole,
             b'K' if cycle && near => Style::Whole,
             b'P' | b'S' if near && value.round() == value => Style::Whole,
+            // Pecks and angles of lathes count increments: a point would make millimetres of them.
+            b'Q' if fanuc && self.dialect.turning.is_some() && near => Style::Whole,
+            b'Q' if fanuc && self.dialect.turning.is_some() => return Err(faults::no_code(letter, value)),
             b'P' | b'S' if fanuc => return Err(faults::no_code(letter, value)),
             _ => Style::Decimals(if fanuc || self.dialect.labels { 6 } else { 9 }),
         };

@@ -21,8 +21,12 @@ fn written(program: &str, diameters: Option<bool>) -> Result<Vec<String>, String
 
 fn written_in(program: &str, dialect: &Dialect) -> Result<Vec<String>, String> {
     let text = format!("G0 X60. Z2.\n{program}");
-    let environment =
-        Environment { variables: &[], read_external: &common::nothing, limits: Limits::default() };
+    let environment = Environment {
+        variables: &[],
+        read_external: &common::nothing,
+        setup: &common::setup(dialect),
+        limits: Limits::default(),
+    };
     match expand(text.as_bytes(), dialect, &environment) {
         Ok(expanded) => {
             let flat = String::from_utf8(expanded.text().to_vec()).expect("text");
@@ -130,7 +134,7 @@ fn what_is_not_certain_is_refused() {
         assert_eq!(written(program, Some(true)), Err(why.to_owned()), "{program}");
     }
     let unsaid = written("G1 X20. F0.2\nZ-10. ,R2.\nX30.\n", None);
-    assert_eq!(unsaid, Err("142 whether X is a diameter or a radius is not said".to_owned()));
+    assert_eq!(unsaid, Err("250 half of what is written, or all of it?".to_owned()));
 }
 
 /// Parameter 3405.4 takes the comma away; R of arcs and of cycles stays what it is.

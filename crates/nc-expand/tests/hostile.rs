@@ -11,8 +11,13 @@ const SOON: Duration = Duration::from_secs(60);
 
 /// The code of a refused program, which must come soon.
 fn refusal(dialect: &str, text: &str) -> u16 {
-    let environment =
-        Environment { variables: &[], read_external: &common::nothing, limits: Limits::default() };
+    let setup = common::setup(nc_dialect::builtin(dialect).expect("shipped"));
+    let environment = Environment {
+        variables: &[],
+        read_external: &common::nothing,
+        setup: &setup,
+        limits: Limits::default(),
+    };
     let start = Instant::now();
     let result = expand(text.as_bytes(), nc_dialect::builtin(dialect).expect("shipped"), &environment);
     let took = start.elapsed();
@@ -76,6 +81,7 @@ fn a_long_program_with_one_call_is_no_bomb() {
     let environment = Environment {
         variables: &[],
         read_external: &common::nothing,
+        setup: &common::setup(nc_dialect::builtin("fanuc").expect("shipped")),
         limits: Limits { steps: 10, ..Limits::default() },
     };
     let plain = expand(text.as_bytes(), nc_dialect::builtin("fanuc").unwrap(), &environment).unwrap();

@@ -195,7 +195,9 @@ fn called_samples_move_as_the_interpreter_moves() {
         .map(|text| Preset::parse(&text).expect("a preset"))
         .collect();
     let read = |name: &str| std::fs::read(work.path().join(name));
-    let environment = Environment { variables: &known, read_external: &read, limits: Limits::default() };
+    let setup = common::setup(dialect);
+    let environment =
+        Environment { variables: &known, read_external: &read, setup: &setup, limits: Limits::default() };
     let (mut compared, mut moving, mut refused, mut wrong) = (0, 0, 0, Vec::new());
     for path in &samples {
         let name = path.file_stem().expect("a name").to_string_lossy().to_lowercase();
@@ -258,7 +260,9 @@ fn expanded_samples_move_as_the_interpreter_moves() {
         let text = std::fs::read(path).expect("readable");
         let folder = path.parent().expect("in a folder");
         let read = |name: &str| std::fs::read(folder.join(name));
-        let environment = Environment { variables: &zero, read_external: &read, limits: Limits::default() };
+        let setup = common::setup(dialect);
+        let environment =
+            Environment { variables: &zero, read_external: &read, setup: &setup, limits: Limits::default() };
         let name = path.strip_prefix(SAMPLES).expect("a sample").display().to_string();
         match expand(&text, dialect, &environment) {
             Err(refusal) => refused.push(format!("{name}: {}", refusal.diagnostics[0])),

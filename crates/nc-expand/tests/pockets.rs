@@ -15,9 +15,14 @@ fn dialect() -> Dialect {
 }
 
 fn lines(program: &str) -> Result<Vec<String>, (u16, String)> {
-    let environment =
-        Environment { variables: &[], read_external: &common::nothing, limits: Limits::default() };
-    let expanded = expand(program.as_bytes(), &dialect(), &environment).map_err(|refusal| {
+    let dialect = dialect();
+    let environment = Environment {
+        variables: &[],
+        read_external: &common::nothing,
+        setup: &common::setup(&dialect),
+        limits: Limits::default(),
+    };
+    let expanded = expand(program.as_bytes(), &dialect, &environment).map_err(|refusal| {
         let first = &refusal.diagnostics[0];
         (first.code.0, first.to_string())
     })?;

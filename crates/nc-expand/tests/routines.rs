@@ -78,8 +78,12 @@ fn read(out: &Path) -> Vec<Move> {
 fn written_out(text: &str) -> Result<String, Refusal> {
     let mut dialect = nc_dialect::builtin("linuxcnc-lathe").expect("shipped").clone();
     dialect.turning.as_mut().expect("a lathe").diameters = Some(false);
-    let environment =
-        Environment { variables: &[], read_external: &common::nothing, limits: Limits::default() };
+    let environment = Environment {
+        variables: &[],
+        read_external: &common::nothing,
+        setup: &common::setup(&dialect),
+        limits: Limits::default(),
+    };
     expand(text.as_bytes(), &dialect, &environment)
         .map(|expanded| String::from_utf8(expanded.text().to_vec()).expect("text"))
 }

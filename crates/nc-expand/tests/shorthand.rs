@@ -81,7 +81,12 @@ fn what_is_not_certain_is_refused() {
         "G1 X40. Z50. ,R5.\nY40.\n",
         "G91 G1 X40. ,R5.\nY40.\n",
         "G54\nG1 X40. ,R5.\nY40.\n",
-        "G20\nG1 X4. ,R.5\nY4.\n",
+        "G92 X0\nG1 X4. ,R.5\nY4.\n",
+        "G91 G28 Z0 Y0\nG90 G1 X40. ,R5.\nY40.\n",
+        "G53 G0 Y0\nG1 X40. ,R5.\nY40.\n",
+        "G16\nG0 X10. Y30.\nG52 X5.\n",
+        "G16\nG0 X10. Y30.\nG53 G0 X5.\n",
+        "G16\nG0 X10. Y30.\n/G15\n",
         "G1 X40. ,A30.\nY40.\n",
         // The second corner starts where the first one ends.
         "G1 X40. ,R5.\nY20. ,R6.\nX10.\n",
@@ -100,6 +105,42 @@ fn what_is_not_certain_is_refused() {
     }
 }
 
+/// What the one reader knows for certain starts a corner, whatever was before it.
+#[test]
+fn a_corner_starts_where_the_tool_stands() {
+    let corner = "G80 G90\nG1 Y40. Z30. F300.\nG1 X90. ,R5.\nY80.\n";
+    let cycle = "G91 G99 G81 X10. Y0. Z-12. R-38.";
+    let counted = flat(&format!("{cycle} K5 F100.\n{corner}"));
+    let one_by_one = flat(&format!("{cycle} F100.\nX10.\nX10.\nX10.\nX10.\n{corner}"));
+    let none = flat(&format!("{cycle} K0 F100.\n{corner}"));
+    assert!(counted.contains(&"G1 X85. Y40.".to_owned()), "{counted:?}");
+    assert_eq!(counted[1..], one_by_one[5..]);
+    assert!(none.contains(&"G1 X85. Y40.".to_owned()), "{none:?}");
+    // From X60 and from X10 the corner is another where the line does not run along an axis.
+    let oblique = "G80 G90\nG0 Z60.\nG1 Z30. F300.\nG1 Y40. ,R5.\nX100.\nG0 Z60.\n";
+    let [five, no] = ["K5", "K0"].map(|count| flat(&format!("{cycle} {count} F100.\n{oblique}")));
+    assert!(five.contains(&"G1 X60. Y35.".to_owned()), "{five:?}");
+    assert!(no.contains(&"G1 X10. Y35.".to_owned()), "{no:?}");
+    assert!(
+        flat(&format!("{cycle} K5 F100.\nG80 G90\nG68 R30.\n")).contains(&"G68 X60. Y10. R30.".to_owned())
+    );
+    assert_eq!(flat("G20\nG1 X4. ,R.5\nY4.\n")[1], "G1 X3.5 Y0.393701");
+    // Polar words stay polar beside codes that set something.
+    assert_eq!(flat("G16\nG55 G0 X10. Y90.\n")[0], "G55 G0 X0. Y10.");
+    assert_eq!(flat("G16\nG43 H1 G0 X10. Y90. Z50.\n")[0], "G43 H1 G0 X0. Y10. Z50.");
+    assert_eq!(flat("G16\nG0 X10. Y90.\nG4 X1.\n")[1], "G4 X1.");
+}
+
+/// A program that is refused anyway says why, and not what follows from that.
+#[test]
+fn a_block_that_is_refused_is_named_before_what_hangs_on_it() {
+    let text = format!("{START}G999 X20.\nG1 X40. ,R5.\nX80.\n");
+    let refusal = common::expanded("fanuc", &text, &[], &[]).expect_err("refused");
+    let first = &refusal.diagnostics[0];
+    let span = first.span.clone().expect("a place");
+    assert_eq!((first.code.0, &text[span.start as usize..span.end as usize]), (207, "G999"));
+}
+
 #[test]
 fn a_rotation_without_its_centre_is_given_the_tools_place() {
     // The control would take the corrected place for it.
@@ -110,7 +151,7 @@ fn a_rotation_without_its_centre_is_given_the_tools_place() {
     assert_eq!(flat("G68 X1. Y2. R30.\n"), ["G68 X1. Y2. R30."]);
     let haas = common::flat("haas", &format!("{START}G68 R30.\n"), &[], &[]);
     assert!(haas.ends_with("G68 R30.\n"), "{haas}");
-    for program in ["G55\nG68 R30.\n", "M6 T2\nG68 R30.\n", "G43 H1\nG68 R30.\n"] {
+    for program in ["G55\nG68 R30.\n", "M6 T2\nG68 R30.\n", "G92 X5.\nG68 R30.\n"] {
         let text = format!("{START}{program}");
         let refusal = common::expanded("fanuc", &text, &[], &[]).expect_err("refused");
         assert_eq!(refusal.diagnostics[0].code.0, 142, "{program}");

@@ -20,8 +20,12 @@ fn dialect(system: &str) -> Dialect {
 }
 
 fn expanded<'a>(dialect: &Dialect, text: &'a str) -> Result<Expanded<'a>, Refusal> {
-    let environment =
-        Environment { variables: &[], read_external: &common::nothing, limits: Limits::default() };
+    let environment = Environment {
+        variables: &[],
+        read_external: &common::nothing,
+        setup: &common::setup(dialect),
+        limits: Limits::default(),
+    };
     expand(text.as_bytes(), dialect, &environment)
 }
 
@@ -72,7 +76,7 @@ fn words_of_a_pass_hold_and_tapers_are_radii() {
     // Increments under G91 of system B, in the moves too.
     assert_eq!(
         lines(&dialect("B"), "G91 G77 X-10. Z-32. F0.2\n"),
-        ["G91 F0.2 G0 X-10.", "G1 Z-32.", "G1 X10.", "G0 Z32."]
+        ["F0.2 G0 X50. Z2.", "G1 Z-30.", "G1 X60.", "G0 X60. Z2.", "G91"]
     );
 }
 
@@ -472,7 +476,7 @@ fn what_is_not_certain_is_refused() {
     // Whether X is a diameter must be said.
     let mut unsaid = dialect("A");
     unsaid.turning.as_mut().unwrap().diameters = None;
-    assert_eq!(refused(&unsaid, "G90 X50. Z-30.\n").0, 143);
+    assert_eq!(refused(&unsaid, "G90 X50. Z-30.\n").0, 250);
 }
 
 #[test]

@@ -181,6 +181,23 @@ impl<'d> Interpreter<'d> {
         &self.modal
     }
 
+    /// What the codes of a block make of the state before anything moves, and whose its axis words are then.
+    ///
+    /// For who writes a block anew by what it will mean; the state stays as it is.
+    ///
+    /// # Errors
+    /// Its codes are refused, whatever its words are.
+    pub fn settings(&self, block: &Block<'_>) -> Result<(Modal, Owner), Box<Diagnostic>> {
+        let mut words = Words::new(block, self.env.dialect);
+        words.read()?;
+        let mut state = self.modal.clone();
+        if self.env.dialect.turning.is_some() {
+            turning::read(&mut words, &mut state)?;
+        }
+        let demand = settings::apply(&self.env, &words, &self.modal, &mut state)?;
+        Ok((state, demand.owner))
+    }
+
     /// What is not whole where the program's text ends here, and its line.
     #[must_use]
     pub fn unfinished(&self) -> Option<(Diagnostic, u64)> {

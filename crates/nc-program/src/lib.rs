@@ -72,4 +72,5 @@ pub use interpreter::{Context, Interpreter, Step};
 pub use modal::{Compensation, Modal, ToolLength, WorkOffset};
 pub use offset::Offset;
 pub use plain::{PlainEnd, PlainFeeds};
+pub use settings::Owner;
 pub use setup::{AfterChange, BetweenVectors, Setup, TipControl};

@@ -77,7 +77,7 @@ pub(crate) fn disturb(
     // Beside G96 of a lathe it limits the spindle's speed.
     let by_speed =
         env.dialect.turning.is_some() && words.codes.iter().any(|code| code.entry.code == GCode(960));
-    if words.has(Letters::of(b"D")) && !by_radius && !by_speed {
+    if words.has(Letters::of(b"D")) && !by_radius && !by_speed && !same_edge(env, before, state) {
         forget(words, state, ALL, Why::ToolOffset);
     }
 }
@@ -136,6 +136,16 @@ fn transformed(words: &Words<'_, '_, '_>, before: &Modal, state: &mut Modal) {
     }
 }
 
+/// The edge that the program has chosen before is in force behind the block as well: choosing it again changes nothing.
+fn same_edge(env: &Environment<'_>, before: &Modal, state: &Modal) -> bool {
+    env.dialect.edge_in_d
+        && before.stated.tool_length
+        && before.tool_length == state.tool_length
+        && before.tool_loaded == state.tool_loaded
+        && !before.edge_unsaid
+        && !state.edge_unsaid
+}
+
 /// Codes of the tool length: some controls move its axes at once, others with their next words.
 fn length(
     env: &Environment<'_>,
@@ -155,8 +165,9 @@ fn length(
         (turning.offset_in_t && words.has(Letters::of(b"T")))
             || (turning.offset_in_d && words.has(Letters::of(b"DT")))
     });
-    let by_edge =
-        env.dialect.edge_in_d && (words.has(Letters::of(b"D")) || before.edge_unsaid != state.edge_unsaid);
+    let by_edge = env.dialect.edge_in_d
+        && (words.has(Letters::of(b"D")) || before.edge_unsaid != state.edge_unsaid)
+        && !same_edge(env, before, state);
     let by_tool = by_turret || by_edge;
     let says = says || by_tool;
     if !says && !words.has(Letters::of(b"H")) {

@@ -3,7 +3,7 @@
 use diagnostic::{Entry, both};
 use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
 use nc_syntax::{Dialect, Span};
-use toolpath::Plane;
+use toolpath::{Kinematics, Plane};
 
 use crate::codes;
 use crate::modal::{
@@ -40,7 +40,7 @@ impl Environment<'_> {
 
 /// Whose the axis words of the block are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Owner {
+pub enum Owner {
     /// The motion code or cycle in force.
     Motion,
     /// G4: a time.
@@ -201,6 +201,22 @@ pub(crate) fn apply<'d>(
                     "отмените перед этим систему координат: TRANS отдельным кадром"
                 )));
         }
+        if *action == Action::ContourTolerance && may_switch_tip(&words.text(span), before) {
+            let message = both!(
+                "{} may switch TRAORI by its second argument",
+                "{} может переключать TRAORI вторым аргументом",
+                words.text(span)
+            );
+            let label = both!(
+                "its third digit from the right is a transformation, and 0 ends the one in force",
+                "третья справа цифра — трансформация, а 0 отменяет действующую"
+            );
+            let help = both!(
+                "write the tolerance alone, as in CYCLE832(0.01)",
+                "напишите только допуск, например CYCLE832(0.01)"
+            );
+            return Err(words.refuse(codes::COMMAND, message, span, label).help(help));
+        }
         if let Action::Refuse { reason, help } = action {
             let message = both!("{} is refused: {reason}", "{} не принимается: {reason:#}", words.text(span));
             return Err(words
@@ -238,7 +254,16 @@ pub(crate) fn apply<'d>(
     Ok(demand)
 }
 
-/// True where P may be another code's than a work offset's: G4, G10, a cycle, an arc of several turns or
+/// CYCLE832: the digit of hundreds of its second argument chooses a transformation on the 840D (Programming Manual Cycles); later
+/// controls do not read it, and write names there (`_ORI_FINISH`).
+fn may_switch_tip(call: &str, before: &Modal) -> bool {
+    let second = swivel::arguments(call).get(1).map_or("", |argument| argument.trim()).to_owned();
+    let named = second.is_empty() || second.starts_with('_');
+    let chooses_none = second.parse::<u32>().is_ok_and(|digits| digits / 100 % 10 == 0);
+    !named && !(chooses_none && before.kinematics == Kinematics::Axes)
+}
+
+/// True where P may be another code's than a work offset's: G4, G10, G64, a cycle, an arc of several turns or
 /// an M code.
 fn takes_p(
     env: &Environment<'_>,
@@ -251,7 +276,9 @@ fn takes_p(
     let curve = matches!(motion, MotionMode::Curve(..));
     let arc = matches!(motion, MotionMode::Arc(..));
     let cycle = wanted.cycle.is_some() || (state.cycle.is_some() && wanted.motion.is_none());
+    let own = words.codes.iter().any(|row| row.entry.action == Action::PassWithP);
     demand.owner != Owner::Motion
+        || own
         || cycle
         || curve
         || !words.m_codes.is_empty()
@@ -570,7 +597,11 @@ fn set<'d>(
         Action::FeedInverseTime => state.feed_mode = FeedMode::InverseTime,
         Action::FeedPerMinute => state.feed_mode = FeedMode::PerMinute,
         Action::FeedPerRevolution => state.feed_mode = FeedMode::PerRevolution,
-        Action::Pass { takes_words: false } | Action::PolarOff | Action::Refuse { .. } => {}
+        Action::Pass { takes_words: false }
+        | Action::PassWithP
+        | Action::ContourTolerance
+        | Action::PolarOff
+        | Action::Refuse { .. } => {}
         // Switched behind the tool length.
         Action::Tip(_) => {}
         // Asked below whether there is anything that it may end.

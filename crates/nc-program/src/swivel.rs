@@ -34,7 +34,7 @@ const WAY_BACK: usize = 14;
 const DISPLAY: usize = 15;
 
 /// What stands in the brackets, by argument; none without brackets or with empty ones.
-fn arguments(text: &str) -> Vec<&str> {
+pub(crate) fn arguments(text: &str) -> Vec<&str> {
     let inside = text.split_once('(').map_or("", |(_, rest)| rest.strip_suffix(')').unwrap_or(rest));
     if inside.trim().is_empty() {
         return Vec::new();

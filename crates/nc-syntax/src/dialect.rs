@@ -216,6 +216,8 @@ pub enum Action {
     /// CYCLE800: a tilted working plane by its arguments, to which the rotary axes turn; without any it ends the plane. What
     /// else of the frame it ends is not certain.
     Swivel,
+    /// CYCLE832: how far the path may be left; its second argument may switch TRAORI too.
+    ContourTolerance,
     /// G500: no work offset but the base frame, `G500` in the profile.
     BaseFrame,
     /// Calls of cycles and what else is written out before anything else, or refused.
@@ -287,6 +289,8 @@ pub enum Action {
         /// Axis words of the block belong to this code.
         takes_words: bool,
     },
+    /// G64: no axis moves and no frame changes, and P of its block is its own.
+    PassWithP,
     /// G7, DIAMON: X words are diameters.
     DiameterOn,
     /// G8, DIAMOF: X words are radii.
@@ -318,6 +322,8 @@ impl Action {
         matches!(
             self,
             Self::Pass { takes_words: false }
+                | Self::PassWithP
+                | Self::ContourTolerance
                 | Self::DwellP
                 | Self::Compensation(_)
                 | Self::CompensationOff
@@ -706,6 +712,8 @@ pub struct MCode {
     pub loses_position: [bool; 3],
     /// The program ends here.
     pub ends_program: bool,
+    /// `M94/1`: what stands behind a slash is its argument, and no mark of block delete.
+    pub slash_arguments: bool,
     /// A tool change: where the axes stand afterwards may be known of the machine.
     pub changes_tool: bool,
     /// What it switches on some machines (kinematics, a mirror, the workpiece's place): refused unless the machine
@@ -726,6 +734,7 @@ impl MCode {
             after_motion: false,
             loses_position: [false; 3],
             ends_program: false,
+            slash_arguments: false,
             changes_tool: false,
             switches: None,
             tip: None,

@@ -3,8 +3,8 @@
 use crate::dialect::{Colon, Command, MCode, Macros, Paren, Semicolon};
 use crate::number::{common_number, end_of_garbage, number, skip_spaces};
 use crate::value::{
-    angle_name, assigned, brackets, expression, flat_comment, is_flow_word, is_function, is_siemens_word,
-    nested_comment, o_statement,
+    angle_name, assigned, brackets, expression, flat_comment, is_flow_word, is_function, is_short_flow_word,
+    is_siemens_word, nested_comment, o_statement,
 };
 use crate::{Dialect, Invalid, Item, ItemKind, Number, Span, Value};
 
@@ -28,6 +28,8 @@ pub(crate) struct Lexer<'d> {
     siemens: bool,
     /// Statements are Okuma's.
     okuma: bool,
+    /// Statements are those of custom macro B, of which two letters suffice.
+    fanuc: bool,
 }
 
 /// What may stand between items: white space, and what punches, serial lines and DOS left in files.
@@ -78,6 +80,7 @@ impl<'d> Lexer<'d> {
             copies_blocks: dialect.turning.is_none() && !dialect.flow.called && !dialect.flow.return_by_m,
             siemens: dialect.flow.macros == Macros::Siemens,
             okuma: dialect.flow.macros == Macros::Okuma,
+            fanuc: dialect.flow.macros == Macros::Fanuc,
         }
     }
 
@@ -295,7 +298,7 @@ impl<'d> Lexer<'d> {
     fn letters(&self, line: &[u8], at: usize) -> Option<(ItemKind, usize)> {
         let run = letters(&line[at..]);
         let name = &line[at..at + run];
-        if is_flow_word(name) {
+        if is_flow_word(name) || (self.fanuc && is_short_flow_word(name)) {
             return Some(self.flow(line, at, at + run));
         }
         if line.get(at + run) == Some(&b'=')
@@ -385,6 +388,11 @@ impl<'d> Lexer<'d> {
     fn other(&self, line: &[u8], at: usize) -> (ItemKind, usize) {
         let byte = line[at];
         if self.skip == Some(byte)
+            && let Some(end) = self.slash_arguments(line, at)
+        {
+            return (ItemKind::Comment, end);
+        }
+        if self.skip == Some(byte)
             && self.copies_blocks
             && let Some(end) = self.switches_only(line, at)
         {
@@ -420,6 +428,25 @@ impl<'d> Lexer<'d> {
             }
             _ => (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at)),
         }
+    }
+
+    /// `M94/1/2`: where the arguments of an M code that has them end.
+    fn slash_arguments(&self, line: &[u8], at: usize) -> Option<usize> {
+        let is_digit = |byte: &u8| byte.is_ascii_digit();
+        let digits = line[..at].iter().rev().take_while(|byte| is_digit(byte)).count();
+        let (before, number) = line[..at].split_at(at - digits);
+        let number = std::str::from_utf8(number).ok()?.parse().ok()?;
+        let row = self.m_codes.binary_search_by_key(&number, |row| row.number).ok()?;
+        if !before.last().is_some_and(|byte| byte.eq_ignore_ascii_case(&b'M'))
+            || !self.m_codes[row].slash_arguments
+        {
+            return None;
+        }
+        let mut end = at;
+        while line.get(end) == Some(&b'/') && line.get(end + 1).is_some_and(is_digit) {
+            end += 1 + line[end + 1..].iter().take_while(|byte| is_digit(byte)).count();
+        }
+        (end > at).then_some(end)
     }
 
     /// `X10. /M8`: a mark in mid-block skips what follows it. Where that is M codes alone which move nothing, and which

@@ -43,8 +43,18 @@ pub(crate) fn number(bytes: &[u8], at: usize, spaces_inside: bool) -> (Result<Nu
     let (mut mantissa, mut digits, mut overflow) = (0_u64, 0_usize, false);
     // Digits that had been read when the point came.
     let mut point = None;
+    // The first decimal that was left out rounds up: beyond 15 digits no control holds any.
+    let mut rounds_up = None;
     loop {
         match bytes.get(next) {
+            Some(byte @ b'0'..=b'9')
+                if point.is_some_and(|before| {
+                    mantissa >= MANTISSA_LIMIT / 10 || digits - before >= MOST_DECIMALS
+                }) =>
+            {
+                rounds_up.get_or_insert(*byte >= b'5');
+                next += 1;
+            }
             Some(byte @ b'0'..=b'9') => {
                 overflow |= mantissa >= MANTISSA_LIMIT;
                 mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
@@ -69,8 +79,12 @@ pub(crate) fn number(bytes: &[u8], at: usize, spaces_inside: bool) -> (Result<Nu
     if digits == 0 || glued(bytes, next) {
         return (Err(Invalid::Number), end_of_garbage(bytes, next));
     }
-    let decimals = point.map_or(0, |before| digits - before);
-    if overflow || mantissa >= MANTISSA_LIMIT || decimals > MOST_DECIMALS {
+    let mut decimals = point.map_or(0, |before| digits - before);
+    mantissa += u64::from(rounds_up == Some(true));
+    if mantissa == MANTISSA_LIMIT && decimals > 0 {
+        (mantissa, decimals) = (mantissa / 10, decimals - 1);
+    }
+    if overflow || mantissa >= MANTISSA_LIMIT {
         return (Err(Invalid::TooManyDigits), next);
     }
     let magnitude = mantissa as i64;
@@ -194,11 +208,17 @@ mod tests {
     fn fifteen_digits_and_no_more() {
         assert_eq!(read("999999999999999", false), Some((999_999_999_999_999, 0, 15)));
         assert_eq!(read("0000000000000000000000000000000.5", false), Some((5, 1, 33)));
+        // Decimals that no control holds are rounded, once.
+        assert_eq!(read("70.59035532994923", false), Some((705_903_553_299_492, 13, 17)));
+        assert_eq!(read("0.1234567890123456", false), Some((123_456_789_012_346, 15, 18)));
+        assert_eq!(read("0.99999999999999999", false), Some((100_000_000_000_000, 14, 19)));
+        assert_eq!(read("0.00000000000000000000001", false), Some((0, 22, 25)));
+        assert_eq!(read("999999999999999.9", false), None);
         for text in [
             "1000000000000000",
-            "0.1234567890123456",
+            "1000000000000000.5",
             "99999999999999999999999999999999",
-            "0.00000000000000000000001",
+            "9999999999999999.9",
         ] {
             assert_eq!(number(text.as_bytes(), 0, false).0, Err(Invalid::TooManyDigits), "{text}");
         }

@@ -93,6 +93,13 @@ pub(crate) fn is_flow_word(name: &[u8]) -> bool {
     FLOW.iter().any(|word| word.as_bytes().eq_ignore_ascii_case(name))
 }
 
+/// True for what custom macro B takes for the start of a flow word: its first letters, two at least.
+pub(crate) fn is_short_flow_word(name: &[u8]) -> bool {
+    let starts =
+        |word: &str| word.len() > name.len() && word.as_bytes()[..name.len()].eq_ignore_ascii_case(name);
+    name.len() > 1 && ["WHILE", "GOTO", "THEN", "END"].into_iter().any(starts)
+}
+
 /// Words that start a statement of Siemens' language.
 const SIEMENS: [&str; 17] = [
     "DEF", "ELSE", "ENDFOR", "ENDIF", "ENDLOOP", "ENDWHILE", "FOR", "GOTO", "GOTOB", "GOTOF", "IF", "LOOP",

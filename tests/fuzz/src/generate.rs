@@ -4,25 +4,16 @@ use std::fmt::Write;
 
 use arbitrary::Unstructured;
 
+#[path = "mixed.rs"]
+mod mixed;
+
+#[cfg_attr(not(test), expect(unused_imports, reason = "asked for by the test of agreement"))]
+pub use mixed::shorthand;
+
 /// A program for a dialect; every choice comes from `bytes`, and they decide how long it gets.
 #[must_use]
 pub fn program(bytes: &[u8], dialect: &str) -> String {
-    let mut writer = Writer {
-        chance: Unstructured::new(bytes),
-        dialect: dialect.to_owned(),
-        text: String::new(),
-        subprograms: String::new(),
-        at: [0; 3],
-        incremental: false,
-        plane: 17,
-        inch: false,
-        points: true,
-        spaces: true,
-        numbered: false,
-        skip: "",
-        blocks: 0,
-        labels: 0,
-    };
+    let mut writer = Writer::new(bytes, dialect);
     writer.opening();
     while !writer.chance.is_empty() && writer.blocks < 60 {
         writer.part();
@@ -52,7 +43,26 @@ struct Writer<'a> {
     labels: usize,
 }
 
-impl Writer<'_> {
+impl<'a> Writer<'a> {
+    fn new(bytes: &'a [u8], dialect: &str) -> Self {
+        Self {
+            chance: Unstructured::new(bytes),
+            dialect: dialect.to_owned(),
+            text: String::new(),
+            subprograms: String::new(),
+            at: [0; 3],
+            incremental: false,
+            plane: 17,
+            inch: false,
+            points: true,
+            spaces: true,
+            numbered: false,
+            skip: "",
+            blocks: 0,
+            labels: 0,
+        }
+    }
+
     fn one_in(&mut self, n: u8) -> bool {
         self.chance.arbitrary::<u8>().is_ok_and(|byte| byte % n == 1)
     }

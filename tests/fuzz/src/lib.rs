@@ -37,7 +37,7 @@ pub fn parse(bytes: &[u8]) {
     let setup = Setup { start_mm: [Some(0.0); 3], ..Setup::default() };
     blocks(bytes, name, &setup);
     let nothing = |_: &str| Err(std::io::Error::from(std::io::ErrorKind::NotFound));
-    let environment = Environment { variables: &[], read_external: &nothing, limits: LIMITS };
+    let environment = Environment { variables: &[], read_external: &nothing, setup: &setup, limits: LIMITS };
     if let Ok(plain) = expand(bytes, dialect, &environment)
         && plain.changed()
     {

@@ -12,14 +12,15 @@ use diagnostic::{Text, both};
 use nc_syntax::dialect::Action;
 use units::math;
 
-use crate::shorthand::{AXES, Motion, State, Words, number};
+use crate::known::{Motion, State};
+use crate::shorthand::{AXES, Words, number};
 
 /// Radii and ways below this are none, in units of the program.
 const NOTHING: f64 = 1e-6;
 
 /// The words that an arc's angle stands for, each with a blank before it.
 ///
-/// * `state` – before the block
+/// * `state` – before the block moves, its codes executed
 /// * `words` – the block without `AR=`
 /// * `degrees` – the angle
 ///
@@ -32,8 +33,7 @@ pub(super) fn words(state: &State, words: &Words<'_, '_>, degrees: f64) -> Resul
             "ожидался угол от 0 до 360 градусов"
         ));
     }
-    let mut behind = state.clone();
-    if !behind.codes(words) || behind.motion != Motion::Arc {
+    if state.motion != Motion::Arc {
         return Err(both!("G2 or G3 was expected in the same block", "в том же кадре ожидалось G2 или G3"));
     }
     let clockwise = words.actions().any(|(action, _)| *action == Action::ArcClockwise);
@@ -41,7 +41,7 @@ pub(super) fn words(state: &State, words: &Words<'_, '_>, degrees: f64) -> Resul
     if clockwise == counter {
         return Err(both!("G2 or G3 was expected in the same block", "в том же кадре ожидалось G2 или G3"));
     }
-    let [u, v, _] = behind.plane;
+    let [u, v, _] = state.plane;
     let (Some(a), Some(b)) = (state.at[u], state.at[v]) else {
         return Err(both!(
             "where the arc starts is not known: name both axes of the plane before it, in G90",
@@ -57,8 +57,8 @@ pub(super) fn words(state: &State, words: &Words<'_, '_>, degrees: f64) -> Resul
     };
     match (has([AXES[u], AXES[v]]), has(centres)) {
         (ends, [false, false]) if ends != [false, false] => {
-            behind.step(words);
-            let [Some(end_a), Some(end_b)] = [behind.at[u], behind.at[v]] else {
+            let end = state.target(words);
+            let [Some(end_a), Some(end_b)] = [end[u], end[v]] else {
                 return Err(both!("where the arc ends is not known", "неизвестно, где кончается дуга"));
             };
             let way = [end_a - a, end_b - b];
@@ -84,7 +84,7 @@ pub(super) fn words(state: &State, words: &Words<'_, '_>, degrees: f64) -> Resul
                 a + centre[0] - cos * centre[0] + sin * centre[1],
                 b + centre[1] - sin * centre[0] - cos * centre[1],
             ];
-            let from = if behind.absolute { [0.0; 2] } else { [a, b] };
+            let from = if state.absolute { [0.0; 2] } else { [a, b] };
             word(AXES[u], end[0] - from[0]);
             word(AXES[v], end[1] - from[1]);
         }

@@ -1,21 +1,27 @@
 //! `X=AC()`, `X=IC()`, `TURN=` and `AR=` in a block, written out.
 
 use diagnostic::{Text, both};
+use nc_program::Owner;
 use nc_syntax::dialect::{Action, Called};
 use nc_syntax::{Block, ItemKind, Reader, Span, Value};
 use units::math;
 
 use super::{Fault, Writer, angle, arguments, called, dimension, names_axes};
 use crate::codes;
-use crate::shorthand::{AXES, Motion, State, Words, from, number, shown};
+use crate::known::{Motion, State};
+use crate::shorthand::{AXES, Words, from, number, shown};
 
 impl Writer<'_> {
     /// `X=AC()`, `X=IC()` and `TURN=` in a block.
     pub(super) fn dimensions(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
         let block = words.block;
-        let start = self.state.at;
-        let mut here = self.state.clone();
-        let owned = here.codes(words);
+        let start = self.state().at;
+        let Some((here, owner)) = self.out.known.codes(block) else {
+            // Its own codes are refused, before its words are asked for.
+            self.out.block(block);
+            return Ok(());
+        };
+        let owned = matches!(owner, Owner::Motion | Owner::DwellP);
         let refuse = |span: Span, label: Text| {
             words.fault(
                 codes::CALLED_CYCLE,
@@ -117,13 +123,20 @@ impl Writer<'_> {
             if turns.is_some() {
                 return Err(refuse(span, both!("beside TURN", "рядом с TURN")));
             }
-            let line = angle::words(&self.state, &plain_words, degrees)
-                .map_err(|label| refuse_angle(words, span, label))?;
+            let line = if owned {
+                angle::words(&here, &plain_words, degrees)
+            } else {
+                Err(both!(
+                    "beside a code that owns the words of its block",
+                    "рядом с функцией, которой принадлежат слова кадра"
+                ))
+            };
+            let line = line.map_err(|label| refuse_angle(words, span, label))?;
             return self.arc_by_angle(words, &text, &line, start);
         }
-        let moves = self.state.step(&plain_words) && names_axes(&plain_words);
+        let moves = owned && names_axes(&plain_words);
         match turns {
-            Some((count, span)) if count > 0 => self.helix(words, &plain_words, start, count, span)?,
+            Some((count, span)) if count > 0 => self.helix(words, &plain_words, &here, count, span)?,
             _ => self.out.write(&text, from(block)),
         }
         self.behind(words, moves, start)
@@ -142,11 +155,6 @@ impl Writer<'_> {
         let end = text[..stop].trim_ascii_end().len();
         let text = [&text[..end], more, &text[end..]].concat();
         self.out.comment(shown(words.block), from(words.block));
-        let mut reader = Reader::new(&text, self.dialect);
-        let mut block = Block::default();
-        if reader.next(&mut block) {
-            self.state.step(&Words { block: &block, dialect: self.dialect });
-        }
         self.out.write(&text, from(words.block));
         self.behind(words, true, start)
     }
@@ -156,7 +164,7 @@ impl Writer<'_> {
         &mut self,
         words: &Words<'_, '_>,
         plain: &Words<'_, '_>,
-        start: [Option<f64>; 3],
+        here: &State,
         count: u32,
         span: Span,
     ) -> Result<(), Fault> {
@@ -169,10 +177,10 @@ impl Writer<'_> {
                 both!("let the CAM write each turn", "выводите из CAM каждый оборот"),
             )
         };
-        if self.state.motion != Motion::Arc {
+        if here.motion != Motion::Arc {
             return Err(refuse(both!("G2 or G3 was expected", "ожидалось G2 или G3")));
         }
-        if !self.state.absolute {
+        if !here.absolute {
             return Err(refuse(both!("under G91; write G90", "при G91; напишите G90")));
         }
         if plain.number(b'M').is_some()
@@ -188,15 +196,16 @@ impl Writer<'_> {
                 "рядом с функциями M, радиусом или командами"
             )));
         }
-        let [u, v, n] = self.state.plane;
+        let [u, v, n] = here.plane;
         let centre_letters = [b"IJK"[u], b"IJK"[v]];
-        let (Some(a), Some(b), Some(h)) = (start[u], start[v], start[n]) else {
+        let (Some(a), Some(b), Some(h)) = (here.at[u], here.at[v], here.at[n]) else {
             return Err(refuse(both!(
                 "where the helix starts is not known: name X, Y and Z before it, in G90",
                 "неизвестно, откуда начинается винтовая линия: назовите до неё X, Y и Z при G90"
             )));
         };
-        let end = [u, v, n].map(|axis| self.state.at[axis].unwrap_or(f64::NAN));
+        let target = here.target(plain);
+        let end = [u, v, n].map(|axis| target[axis].unwrap_or(f64::NAN));
         let centre = centre_letters
             .map(|letter| plain.number(letter).map_or(0.0, |(value, _)| value.decimal.to_f64()));
         let clockwise = words.actions().any(|(action, _)| *action == Action::ArcClockwise);

@@ -1,12 +1,14 @@
 //! The moves of a hole where the axes stand, and what a cycle leaves in force.
 
 use diagnostic::both;
+use nc_program::Owner;
 use nc_syntax::dialect::Action;
 
 use super::hole::{Hole, Move};
 use super::{Fault, Writer, names_axes};
 use crate::codes;
-use crate::shorthand::{AXES, Motion, Words, from, number, rounded};
+use crate::known::{Motion, State};
+use crate::shorthand::{AXES, Words, from, number};
 
 impl Writer<'_> {
     /// Feed and spindle behind a cycle that leaves them open: what the block says of them, or that it had to.
@@ -17,12 +19,14 @@ impl Writer<'_> {
             let code = word.number().filter(|_| word.letter == b'M').and_then(|number| number.integer());
             matches!(code, Some(3..=5))
         });
-        let mut here = self.state.clone();
-        let moves = here.codes(words) && names_axes(words);
-        if moves && matches!(here.motion, Motion::Line | Motion::Arc) {
-            self.needs(words, true, true)?;
+        match self.out.known.codes(words.block) {
+            Some((here, Owner::Motion | Owner::DwellP))
+                if names_axes(words) && matches!(here.motion, Motion::Line | Motion::Arc) =>
+            {
+                self.needs(words, true, true)
+            }
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     /// Refuses a cut at a feed or with a spindle that a cycle left open.
@@ -51,7 +55,8 @@ impl Writer<'_> {
 
     /// The moves of a hole where the axes stand.
     pub(super) fn drill(&mut self, words: &Words<'_, '_>, hole: &Hole) -> Result<(), Fault> {
-        if !self.state.absolute {
+        let State { absolute, plane, at: hole_at, .. } = self.state();
+        if !absolute {
             return Err(words.fault(
                 codes::CALLED_CYCLE,
                 words.whole(),
@@ -63,10 +68,8 @@ impl Writer<'_> {
         self.needs(words, hole.takes_feed, !hole.leaves_spindle)?;
         self.unsaid.feed |= hole.leaves_feed;
         self.unsaid.spindle |= hole.leaves_spindle;
-        let plane = self.state.plane;
         let axis = plane[2];
         let (source, letter) = (from(words.block), AXES[axis]);
-        let hole_at = self.state.at;
         for step in &hole.moves {
             let mut line = Vec::new();
             match *step {
@@ -95,18 +98,17 @@ impl Writer<'_> {
                         let at = self.place(words, axis)? + by;
                         line.push(b' ');
                         number(&mut line, AXES[axis], at);
-                        self.state.at[axis] = Some(rounded(at));
                     }
                 }
                 Move::Over(to) => {
                     line.extend_from_slice(b"G0");
-                    for axis in plane[..2].iter().filter(|axis| self.state.at[**axis] != hole_at[**axis]) {
+                    let here = self.state().at;
+                    for axis in plane[..2].iter().filter(|axis| here[**axis] != hole_at[**axis]) {
                         line.push(b' ');
                         number(&mut line, AXES[*axis], hole_at[*axis].unwrap_or(f64::NAN));
                     }
                     line.push(b' ');
                     number(&mut line, letter, to);
-                    (self.state.at, self.state.at[axis]) = (hole_at, None);
                 }
                 Move::Dwell(time) => {
                     line.extend_from_slice(b"G4 ");
@@ -114,16 +116,13 @@ impl Writer<'_> {
                 }
             }
             self.out.line(&line, source);
-            if let Move::Rapid(to) | Move::Feed(to) | Move::FeedAt(to, _) | Move::Over(to) = *step {
-                self.state.at[axis] = Some(rounded(to));
-            }
         }
         Ok(())
     }
 
     /// Where an axis stands.
     fn place(&self, words: &Words<'_, '_>, axis: usize) -> Result<f64, Fault> {
-        self.state.at[axis].ok_or_else(|| {
+        self.state().at[axis].ok_or_else(|| {
             words.fault(
                 codes::CALLED_CYCLE,
                 words.whole(),
@@ -135,8 +134,8 @@ impl Writer<'_> {
     }
 
     /// The motion code that was in force before a cycle.
-    pub(super) fn restore(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
-        match self.state.motion {
+    pub(super) fn restore(&mut self, words: &Words<'_, '_>, before: Motion) -> Result<(), Fault> {
+        match before {
             Motion::Rapid | Motion::None => Ok(()),
             Motion::Line => {
                 self.out.line(b"G1", from(words.block));

@@ -22,12 +22,14 @@ mod hole;
 mod pattern;
 
 use diagnostic::{Diagnostic, both};
+use nc_program::{Owner, Setup};
 use nc_syntax::dialect::{Action, Called};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value};
 
 use crate::codes;
-use crate::output::{Output, Segment};
-use crate::shorthand::{AXES, State, Words, from, number, rounded, shown};
+use crate::known::{Rewriting, State};
+use crate::output::Written;
+use crate::shorthand::{AXES, Words, from, number, shown};
 use crate::siemens;
 use arguments::Arguments;
 pub(crate) use arguments::number as plain_number;
@@ -56,6 +58,11 @@ fn called(block: &Block<'_>, dialect: &Dialect, item: &Item) -> Option<Called> {
     }
 }
 
+/// True for `X=AC(…)` and its like.
+pub(crate) fn is_dimension(letter: u8, text: &[u8]) -> bool {
+    dimension(letter, text).is_some()
+}
+
 /// What is in the brackets of `X=AC(…)` or `X=IC(…)`, and whether it is an increment.
 fn dimension(letter: u8, text: &[u8]) -> Option<(&str, bool)> {
     let (name, inside) = siemens::function_of(text).filter(|_| b"XYZIJK".contains(&letter))?;
@@ -68,21 +75,26 @@ fn dimension(letter: u8, text: &[u8]) -> Option<(&str, bool)> {
 }
 
 /// The program with its names written out, and where each stretch of it comes from.
-pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<Segment>), Fault> {
-    let (out, state) = (Output::new(dialect, text), State::initial(dialect));
-    let mut writer = Writer { dialect, out, state, modal: None, unsaid: Unsaid::default() };
+pub(crate) fn write_out(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Written, Fault> {
+    let out = Rewriting::new(dialect, setup, text);
+    let mut writer = Writer { dialect, out, modal: None, unsaid: Unsaid::default() };
     let mut reader = Reader::new(text, dialect);
     let mut block = Block::default();
-    while reader.next(&mut block) {
-        writer.block(&block)?;
+    let mut fault = None;
+    while fault.is_none() && reader.next(&mut block) {
+        fault = writer.block(&block).err();
+        // Behind a line with a corner it is the place that it names, from which dimensions count.
+        #[cfg(test)]
+        if (Words { block: &block, dialect }).corner().is_none() {
+            writer.out.believe(writer.out.known.state().belief());
+        }
     }
-    Ok((writer.out.text, writer.out.segments))
+    writer.out.end(fault)
 }
 
 struct Writer<'d> {
     dialect: &'d Dialect,
-    out: Output,
-    state: State,
+    out: Rewriting<'d>,
     /// The cycle of MCALL.
     modal: Option<Hole>,
     unsaid: Unsaid,
@@ -100,9 +112,9 @@ impl Writer<'_> {
         let words = Words { block, dialect: self.dialect };
         self.said(&words)?;
         if !needed(block, self.dialect) {
-            let before = self.state.at;
-            let moves = self.state.step(&words) && names_axes(&words);
-            self.out.copy(block.bytes, from(block));
+            let before = self.state().at;
+            let moves = self.moves(block);
+            self.out.block(block);
             return self.behind(&words, moves, before);
         }
         if words.skipped() {
@@ -179,22 +191,21 @@ impl Writer<'_> {
                     pattern::circle(&words, &call)?
                 };
                 self.out.comment(&comment, from(block));
+                let motion = self.state().motion;
                 for place in places {
                     let mut line = b"G0 ".to_vec();
                     self.point(&mut line, place);
                     self.out.line(&line, from(block));
-                    for (axis, value) in self.state.plane.into_iter().zip(place) {
-                        self.state.at[axis] = Some(rounded(value));
-                    }
                     self.drill(&words, &hole)?;
                 }
-                self.restore(&words)?;
+                self.restore(&words, motion)?;
             }
             [(cycle, span)] if self.drills(*cycle) => {
                 let hole = self.hole(&words, *cycle, *span)?;
                 self.out.comment(&comment, from(block));
+                let motion = self.state().motion;
                 self.drill(&words, &hole)?;
-                self.restore(&words)?;
+                self.restore(&words, motion)?;
             }
             [.., (_, span)] => {
                 return Err(words.fault(
@@ -223,8 +234,20 @@ impl Writer<'_> {
 
     fn hole(&self, words: &Words<'_, '_>, cycle: Called, span: Span) -> Result<Hole, Fault> {
         let call = Arguments::read(words, span)?;
-        let unit_mm = if self.state.inch { 25.4 } else { 1.0 };
-        Hole::read(words, cycle, &call, unit_mm, self.state.plane[2])
+        let State { inch, plane, .. } = self.state();
+        Hole::read(words, cycle, &call, if inch { 25.4 } else { 1.0 }, plane[2])
+    }
+
+    /// Behind what is written.
+    fn state(&self) -> State {
+        self.out.known.state()
+    }
+
+    /// True where the block has words of a motion.
+    fn moves(&self, block: &Block<'_>) -> bool {
+        let words = Words { block, dialect: self.dialect };
+        let owner = self.out.known.codes(block).map(|(_, owner)| owner);
+        matches!(owner, Some(Owner::Motion | Owner::DwellP)) && names_axes(&words)
     }
 
     /// A call stands in a block of its own.
@@ -253,7 +276,7 @@ impl Writer<'_> {
     /// * `before` – where the axes stood
     fn behind(&mut self, at: &Words<'_, '_>, moves: bool, before: [Option<f64>; 3]) -> Result<(), Fault> {
         let Some(hole) = self.modal.clone() else { return Ok(()) };
-        if !moves && self.state.at == before {
+        if !moves && self.state().at == before {
             return Ok(());
         }
         if at.skipped() {
@@ -265,7 +288,8 @@ impl Writer<'_> {
                 both!("remove the `/`, or the block", "уберите `/` или кадр"),
             ));
         }
-        if !moves || !self.plane_known() {
+        let State { motion, plane, at: places, .. } = self.state();
+        if !moves || plane[..2].iter().any(|axis| places[*axis].is_none()) {
             return Err(at.fault(
                 codes::CALLED_CYCLE,
                 at.whole(),
@@ -281,15 +305,11 @@ impl Writer<'_> {
             ));
         }
         self.drill(at, &hole)?;
-        self.restore(at)
-    }
-
-    fn plane_known(&self) -> bool {
-        self.state.plane[..2].iter().all(|axis| self.state.at[*axis].is_some())
+        self.restore(at, motion)
     }
 
     fn point(&self, line: &mut Vec<u8>, place: [f64; 2]) {
-        let [u, v, _] = self.state.plane;
+        let [u, v, _] = self.state().plane;
         number(line, AXES[u], place[0]);
         line.push(b' ');
         number(line, AXES[v], place[1]);

@@ -5,6 +5,7 @@ use units::math;
 
 use super::arguments::Arguments;
 use super::{Fault, Writer};
+use crate::known::State;
 use crate::shorthand::Words;
 
 /// Holes of one pattern; more are a wrong count.
@@ -23,8 +24,8 @@ impl Writer<'_> {
             [call.or_zero(0) + along * cos, call.or_zero(1) + along * sin]
         };
         let mut places: Vec<[f64; 2]> = (0..count).map(at).collect();
-        let [u, v, _] = self.state.plane;
-        let (Some(a), Some(b)) = (self.state.at[u], self.state.at[v]) else {
+        let State { plane: [u, v, _], at: stands, .. } = self.state();
+        let (Some(a), Some(b)) = (stands[u], stands[v]) else {
             return Err(call.fault(
                 words,
                 both!("HOLES1 from a place that is not known", "HOLES1 из неизвестного положения"),

@@ -8,23 +8,26 @@
 //! A cycle leaves the tool where it stood: so does the contour behind a roughing cycle, whose blocks the control passes over.
 
 use diagnostic::{Text, both};
+use nc_program::modal::Distance;
+use nc_program::{Owner, Setup};
 use nc_syntax::dialect::CornerForm;
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value};
 use units::math;
 
 use super::contour::Point;
-use super::state::{Motion, State};
-use super::{AXES, Fault, MILLION, Spot, Written, cycle_of};
+use super::state::{Motion, State, may_stand_beside};
+use super::{AXES, Fault, MILLION, Spot, cycle_of};
 use crate::codes;
-use crate::output::{Output, Style, word};
+use crate::known::{Known, Rewriting};
+use crate::output::{Style, Written, word};
 use crate::shorthand::{Shape, Words, from, shown};
 
 /// Two lines whose directions differ by less have no certain crossing, rad.
 const PARALLEL_RAD: f64 = 1e-3;
 
 /// The program with its drawing words written out; `None` where it has none.
-pub(super) fn write_out(text: &[u8], dialect: &Dialect) -> Result<Option<Written>, Fault> {
+pub(super) fn write_out(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Option<Written>, Fault> {
     let Some(turning) = &dialect.turning else { return Ok(None) };
     let (mut reader, mut block, mut blocks) = (Reader::new(text, dialect), Block::default(), Vec::new());
     while reader.next(&mut block) {
@@ -33,19 +36,28 @@ pub(super) fn write_out(text: &[u8], dialect: &Dialect) -> Result<Option<Written
     if !dialect.flow.corner_words || !blocks.iter().any(|block| may_draw(block, turning)) {
         return Ok(None);
     }
+    let out = Rewriting::new(dialect, setup, text);
     let mut drawing = Drawing {
         dialect,
         blocks: &blocks,
-        out: Output::new(dialect, text),
-        state: State::initial(dialect, turning),
+        state: State::initial(turning, &out.known),
+        out,
         contour: None,
+        unsure: [false; 2],
         plain: turning.cycles.plain_drawing,
     };
-    let mut at = 0;
-    while at < blocks.len() {
-        at = drawing.block(at)?;
+    let (mut at, mut fault) = (0, None);
+    while fault.is_none() && at < blocks.len() {
+        match drawing.block(at) {
+            Ok(next) => at = next,
+            Err(refused) => fault = Some(refused),
+        }
+        #[cfg(test)]
+        if drawing.contour.is_none() {
+            drawing.out.believe(drawing.state.belief());
+        }
     }
-    Ok(Some((drawing.out.text, drawing.out.segments)))
+    drawing.out.end(fault).map(Some)
 }
 
 /// True where a block may have words of a drawing: a line's it has, what R of other blocks is their codes say.
@@ -63,20 +75,21 @@ fn drawn(item: &Item, plain: bool) -> Option<(u8, Value)> {
 }
 
 /// The blocks of a contour that follow.
-#[derive(Clone, Copy)]
-struct Ahead {
+struct Ahead<'b> {
     /// N of the last one.
     last: i64,
-    /// Where the tool stands behind it.
-    stands: [Option<i64>; 2],
+    /// What is known behind it: what was before it, since the control passes over its blocks.
+    behind: Known<'b>,
 }
 
 struct Drawing<'b, 'a> {
     dialect: &'b Dialect,
     blocks: &'b [Block<'a>],
-    out: Output,
+    out: Rewriting<'b>,
     state: State,
-    contour: Option<Ahead>,
+    contour: Option<Ahead<'b>>,
+    /// X and Z that a cycle left where its parameters say, until they are named.
+    unsure: [bool; 2],
     /// A, C and R of lines need no comma.
     plain: bool,
 }
@@ -98,6 +111,8 @@ struct Line {
     /// It leads to where its line meets the next one.
     open: bool,
     corner: Option<Corner>,
+    /// G90 is in force.
+    absolute: bool,
 }
 
 impl<'b, 'a> Drawing<'b, 'a> {
@@ -112,7 +127,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
             return self.lines(at, first);
         }
         self.step(&words);
-        self.out.copy(words.block.bytes, from(words.block));
+        self.leave_contour(&words);
         Ok(at + 1)
     }
 
@@ -137,42 +152,108 @@ impl<'b, 'a> Drawing<'b, 'a> {
         (behind_a_comma || is_line()).then_some(first.span)
     }
 
-    /// After a block as it stands.
+    /// A block that is written as it stands.
     fn step(&mut self, words: &Words<'_, '_>) {
-        let stood = self.state.at;
         let repeats = matches!(self.state.motion, Motion::Pass(_)) && !self.state.owns_motion(words);
         // A pass without a place is none, and may stand beside a work offset.
         let is_idle = |cycle: TurningCycle| cycle == TurningCycle::TurnPass && !self.state.moves(words);
         let cycle = cycle_of(words).filter(|(cycle, _)| !is_idle(*cycle));
-        self.state.step(words);
-        if let Some((cycle, _)) = cycle {
-            self.state.at = stood;
-            let passes =
-                matches!(cycle, TurningCycle::TurnPass | TurningCycle::ThreadPass | TurningCycle::FacePass);
-            self.state.motion = if passes { Motion::Pass(cycle) } else { Motion::Unknown };
-            let roughs = matches!(
-                cycle,
-                TurningCycle::RoughTurn | TurningCycle::RoughFace | TurningCycle::RoughPattern
-            );
-            let last = words.number(b'Q').and_then(|(number, _)| number.integer());
-            self.contour = last.filter(|_| roughs).map(|last| Ahead { last, stands: stood });
-        } else if repeats {
-            self.state.at = stood;
+        if cycle.is_none() && !repeats {
+            let codes = self.out.known.codes(words.block);
+            if matches!(codes, Some((here, Owner::Motion)) if here.absolute) && !words.skipped() {
+                let named = AXES.map(|letter| words.number(letter).is_some());
+                self.unsure = [0, 1].map(|axis| self.unsure[axis] && !named[axis]);
+            }
+            self.out.block(words.block);
+            self.state.step(words);
+            return self.follow();
         }
-        self.leave_contour(words);
+        self.out.unread(words.block);
+        let beside: Vec<&[u8]> = words
+            .actions()
+            .filter(|(action, _)| may_stand_beside(action))
+            .map(|(_, span)| words.block.text(span))
+            .collect();
+        self.out.known.written(&beside.join(&b' '), from(words.block));
+        self.state.settings(words);
+        let Some((cycle, _)) = cycle else { return self.follow() };
+        self.left_by(cycle, words);
+        let passes =
+            matches!(cycle, TurningCycle::TurnPass | TurningCycle::ThreadPass | TurningCycle::FacePass);
+        self.state.motion = if passes { Motion::Pass(cycle) } else { Motion::Unknown };
+        let roughs =
+            matches!(cycle, TurningCycle::RoughTurn | TurningCycle::RoughFace | TurningCycle::RoughPattern);
+        let last = words.number(b'Q').and_then(|(number, _)| number.integer());
+        self.contour = last.filter(|_| roughs).map(|last| Ahead { last, behind: self.out.known.clone() });
+        self.follow();
+    }
+
+    /// Where a cycle leaves the tool: where it stood, but for holes, behind which it stands on their axis, with G99 of systems B
+    /// and C at R. A contour that G70 makes leaves its G90 or G91.
+    fn left_by(&mut self, cycle: TurningCycle, words: &Words<'_, '_>) {
+        match cycle {
+            TurningCycle::DrillFace | TurningCycle::BoreFace => {
+                self.unsure[1] |= self.state.returns_to_r;
+                let (stands, target) = (self.state.at[0], self.state.target(words)[0]);
+                let way = target.zip(if self.state.absolute { Some(0) } else { stands });
+                let Some((to, from_place)) = way else { return self.unsure[0] = true };
+                let mut text = b"G0 ".to_vec();
+                let _ = word(&mut text, b'X', (to - from_place) as f64 / MILLION, Style::Decimals(6));
+                self.unsure[0] &= !self.state.absolute;
+                self.out.known.written(&text, from(words.block));
+            }
+            TurningCycle::Finish => {
+                let numbered = |letter: u8| words.number(letter).and_then(|(number, _)| number.integer());
+                let (first, last) = (numbered(b'P'), numbered(b'Q'));
+                let n = |block: &Block<'_>| {
+                    let words = Words { block, dialect: self.dialect };
+                    words.number(b'N').and_then(|(number, _)| number.integer())
+                };
+                let place = |wanted: Option<i64>| self.blocks.iter().position(|block| n(block) == wanted);
+                let (Some(first), Some(last)) = (place(first), place(last)) else { return };
+                for block in self.blocks.get(first..=last).unwrap_or_default() {
+                    let words = Words { block, dialect: self.dialect };
+                    for (action, span) in words.actions() {
+                        if matches!(action, Action::Absolute | Action::Incremental) {
+                            self.out.known.written(block.text(span), from(block));
+                        }
+                    }
+                }
+            }
+            TurningCycle::ThreadPasses if self.thread_has_other_words() => self.unsure = [true; 2],
+            TurningCycle::FinishRoutine
+            | TurningCycle::RoughTurnRoutine(_)
+            | TurningCycle::RoughFaceRoutine(_) => self.unsure = [true; 2],
+            _ => {}
+        }
+    }
+
+    /// LinuxCNC's G76, which ends at Z.
+    fn thread_has_other_words(&self) -> bool {
+        self.dialect.turning.as_ref().is_some_and(|turning| turning.thread_lead == b'K')
+    }
+
+    /// Takes over what is known behind what was written.
+    fn follow(&mut self) {
+        self.state.follow(self.out.known.modal());
+        let refused = self.out.known.refused().is_some();
+        for (place, unsure) in self.state.at.iter_mut().zip(self.unsure) {
+            *place = place.filter(|_| !unsure && !refused);
+        }
     }
 
     fn leave_contour(&mut self, words: &Words<'_, '_>) {
         if self.ends_contour(words)
             && let Some(ahead) = self.contour.take()
         {
-            self.state.at = ahead.stands;
+            self.out.known = ahead.behind;
+            self.follow();
         }
     }
 
     fn ends_contour(&self, words: &Words<'_, '_>) -> bool {
         let number = words.number(b'N').and_then(|(number, _)| number.integer());
-        self.contour.is_some_and(|ahead| number == Some(ahead.last))
+        self.contour.as_ref().is_some_and(|ahead| number == Some(ahead.last))
     }
 
     fn scale(&self) -> [f64; 2] {
@@ -252,7 +333,22 @@ impl<'b, 'a> Drawing<'b, 'a> {
                 break;
             }
         }
+        // A contour's lines stay increments: its G91 must not outlive it.
+        let increments = self.contour.is_none() && lines.iter().any(|line| !line.absolute);
+        if increments {
+            if self.out.known.modal().distance == Distance::Incremental {
+                self.out.line(b"G90", from(words.block));
+            }
+            for line in &mut lines {
+                line.absolute = true;
+            }
+        }
+        let ends_incremental = !self.state.absolute;
         self.write(start, &lines, first, at)?;
+        if increments && ends_incremental {
+            self.out.line(b"G91", from(&self.blocks[at - 1]));
+        }
+        self.follow();
         let last = self.words(at - 1);
         self.leave_contour(&last);
         Ok(at)
@@ -324,7 +420,8 @@ impl<'b, 'a> Drawing<'b, 'a> {
             return refuse(both!("where it leads is not known", "неизвестно, куда она ведёт"));
         };
         let place = self.plane([x, z]);
-        let line = |to: Point, open: bool| Ok(Line { block, to, angle_rad, open, corner });
+        let absolute = self.state.absolute;
+        let line = |to: Point, open: bool| Ok(Line { block, to, angle_rad, open, corner, absolute });
         if open_before {
             return match (angle_rad, named) {
                 (Some(_), [true, true]) if !increments => line(place, false),
@@ -368,12 +465,13 @@ impl<'b, 'a> Drawing<'b, 'a> {
         for index in first..behind {
             let block = &self.blocks[index];
             let Some((line, next)) = lines_ahead.next_if(|(line, _)| line.block == index) else {
-                self.out.copy(block.bytes, from(block));
+                self.out.block(block);
                 continue;
             };
             let words = self.words(index);
+            let behind = |stands: Point| if line.absolute { None } else { Some(self.spot(stands)) };
             let (Some(corner), Some(next)) = (line.corner, next) else {
-                self.replaced(block, line.to, says_line);
+                self.replaced(block, behind(stands), line.to, says_line);
                 (stands, says_line) = (line.to, false);
                 continue;
             };
@@ -392,7 +490,8 @@ impl<'b, 'a> Drawing<'b, 'a> {
                 ));
             };
             let [begins, ends, centre] = [shape.from, shape.to, shape.centre].map(turn);
-            self.replaced(block, begins, says_line);
+            let (from_stands, from_begins) = (behind(stands), behind(begins));
+            self.replaced(block, from_stands, begins, says_line);
             let mut text = if !corner.round {
                 b"G1".to_vec()
             } else if shape.left {
@@ -400,7 +499,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
             } else {
                 b"G2".to_vec()
             };
-            self.place(&mut text, ends);
+            self.place(&mut text, from_begins, ends);
             if corner.round {
                 let here = self.plane(self.spot(begins));
                 for (letter, k) in [(b'I', 0), (b'K', 1)] {
@@ -411,32 +510,35 @@ impl<'b, 'a> Drawing<'b, 'a> {
             self.out.line(&text, from(block));
             (stands, says_line) = (ends, true);
         }
-        self.state.at = self.spot(stands).map(Some);
         Ok(())
     }
 
-    fn place(&self, text: &mut Vec<u8>, point: Point) {
-        let spot = self.spot(point);
+    /// The words of a place: under G91 counted from another.
+    fn place(&self, text: &mut Vec<u8>, counted_from: Option<Spot>, to: Point) {
+        let (to, zero) = (self.spot(to), counted_from.unwrap_or_default());
         for axis in 0..2 {
             text.push(b' ');
-            let _ = word(text, AXES[axis], spot[axis] as f64 / MILLION, Style::Decimals(6));
+            let _ = word(text, AXES[axis], (to[axis] - zero[axis]) as f64 / MILLION, Style::Decimals(6));
         }
     }
 
     /// The block as a comment, then the block with a place instead of its own words.
-    fn replaced(&mut self, block: &Block<'_>, to: Point, says_line: bool) {
+    fn replaced(&mut self, block: &Block<'_>, counted_from: Option<Spot>, to: Point, says_line: bool) {
         self.out.comment(shown(block), from(block));
         let own = |item: &&Item| match item.kind {
             _ if drawn(item, self.plain).is_some() => true,
             ItemKind::Word { letter: b'X' | b'Z' | b'U' | b'W', .. } => true,
             ItemKind::Word { letter: b'G', value: Value::Number(_) } => {
                 let words = Words { block, dialect: self.dialect };
-                words.actions().any(|(action, span)| span == item.span && *action == Action::Line)
+                let own = |action: &Action| {
+                    *action == Action::Line || (counted_from.is_none() && *action == Action::Incremental)
+                };
+                words.actions().any(|(action, span)| span == item.span && own(action))
             }
             _ => false,
         };
-        let is_line =
-            block.items.iter().any(|item| own(&item) && block.text(item.span)[0].eq_ignore_ascii_case(&b'G'));
+        let of_block = Words { block, dialect: self.dialect };
+        let is_line = of_block.actions().any(|(action, _)| *action == Action::Line);
         let kept: Vec<&[u8]> =
             block.items.iter().filter(|item| !own(item)).map(|item| block.text(item.span)).collect();
         let (number, rest): (Vec<&[u8]>, Vec<&[u8]>) =
@@ -448,7 +550,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
             }
             text.extend_from_slice(b"G1");
         }
-        self.place(&mut text, to);
+        self.place(&mut text, counted_from, to);
         let mut text = text.trim_ascii().to_vec();
         for part in rest {
             text.push(b' ');

@@ -43,7 +43,6 @@ impl Writer<'_, '_> {
     /// G83.
     pub(super) fn drill(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
-        self.state.set_return(&words);
         let start = self.standing(&words, span)?;
         let hole = self.hole(&words, span, start)?;
         let peck = self.state.depth(&words, b'Q').map_or(hole.deep, i64::abs);
@@ -84,7 +83,6 @@ impl Writer<'_, '_> {
     /// G85.
     pub(super) fn bore(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
-        self.state.set_return(&words);
         let start = self.standing(&words, span)?;
         let hole = self.hole(&words, span, start)?;
         let Some(percent) = self.turning.cycles.bore_return_percent else {

@@ -1,10 +1,11 @@
 //! Blocks out: what a cycle's block sets, then its moves.
 
 use diagnostic::both;
+use nc_program::modal::Distance;
 use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Item, ItemKind, Span, Value};
 
-use super::state::millionths;
+use super::state::{may_stand_beside, millionths};
 use super::{AXES, Fault, MILLION, Spot, Writer};
 use crate::output::{From, Style, word};
 use crate::shorthand::{Words, from, shown};
@@ -29,6 +30,8 @@ pub(super) struct Moves {
     before: Vec<u8>,
     /// Words that the control executes behind its motion, for the last one.
     behind: Vec<u8>,
+    /// G91 of the block, which holds behind it; the moves are written as places.
+    incremental: Vec<u8>,
     /// The move that was made last: its code and words, without what stands around them.
     last: Option<(Vec<u8>, From)>,
 }
@@ -36,7 +39,17 @@ pub(super) struct Moves {
 impl Moves {
     /// Moves from a place, for a block that is written already.
     pub(super) const fn new(from: From, at: Spot) -> Self {
-        Self { from, at, before: Vec::new(), behind: Vec::new(), last: None }
+        Self { from, at, before: Vec::new(), behind: Vec::new(), incremental: Vec::new(), last: None }
+    }
+
+    /// Takes what the control executes behind the last move, for moves that come later.
+    pub(super) fn take_behind(&mut self) -> Vec<u8> {
+        std::mem::take(&mut self.behind)
+    }
+
+    /// The same moves with words that the control executes behind the last of them.
+    pub(super) fn with_behind(self, behind: Vec<u8>) -> Self {
+        Self { behind, ..self }
     }
 
     pub(super) const fn at(&self) -> Spot {
@@ -48,7 +61,15 @@ impl<'b> Writer<'b, '_> {
     /// Begins the moves of a block's cycle: the block as a comment; of its words `own` are the cycle's.
     pub(super) fn begin(&mut self, words: &Words<'_, '_>, at: Spot, own: &[u8]) -> Result<Moves, Fault> {
         let block = words.block;
-        let (mut before, mut behind) = (Vec::new(), Vec::new());
+        let (mut before, mut behind, mut incremental) = (Vec::new(), Vec::new(), Vec::new());
+        let increments = words.actions().find(|(action, _)| **action == Action::Incremental);
+        if let Some((_, span)) = increments {
+            incremental = block.text(span).to_vec();
+            if self.out.known.modal().distance == Distance::Incremental {
+                before = self.row(&Action::Absolute);
+            }
+            self.state.absolute = true;
+        }
         for item in &block.items {
             match item.kind {
                 ItemKind::Word { letter, value: Value::Number(number) } if own.contains(&letter) => {
@@ -62,7 +83,8 @@ impl<'b> Writer<'b, '_> {
                     }
                 }
                 ItemKind::Word { letter: b'G', value: Value::Number(_) } => {
-                    if setting(words, item.span)? {
+                    let taken = increments.is_some_and(|(_, span)| span == item.span);
+                    if setting(words, item.span)? && !taken {
                         push(&mut before, block, item.span);
                     }
                 }
@@ -77,7 +99,7 @@ impl<'b> Writer<'b, '_> {
             }
         }
         self.out.comment(shown(block), from(block));
-        Ok(Moves { before, behind, ..Moves::new(from(block), at) })
+        Ok(Moves { before, behind, incremental, ..Moves::new(from(block), at) })
     }
 
     /// A move to a place. Axes that a feed leaves where they are get no word; a rapid names both, so that both are corrected
@@ -117,6 +139,9 @@ impl<'b> Writer<'b, '_> {
             (!idle).then(|| (Vec::new(), moves.from))
         });
         self.line(&mut moves, last, true);
+        if !moves.incremental.is_empty() {
+            self.out.line(&moves.incremental, moves.from);
+        }
         self.state.stands_at(moves.at);
     }
 
@@ -145,7 +170,12 @@ impl<'b> Writer<'b, '_> {
             Code::CounterClockwise => Action::ArcCounterClockwise,
             Code::Thread => Action::Thread,
         };
-        let row = self.dialect.codes.iter().find(|row| row.action == action);
+        self.row(&action)
+    }
+
+    /// The dialect's code for what is done.
+    fn row(&self, action: &Action) -> Vec<u8> {
+        let row = self.dialect.codes.iter().find(|row| row.action == *action);
         row.map_or_else(Vec::new, |row| row.code.to_string().into_bytes())
     }
 }
@@ -162,17 +192,7 @@ fn setting(words: &Words<'_, '_>, span: Span) -> Result<bool, Fault> {
     let action = words.actions().find(|(_, other)| *other == span).map(|(action, _)| action);
     match action {
         Some(Action::Turning(_)) => Ok(false),
-        Some(
-            Action::FeedPerMinute
-            | Action::FeedPerRevolution
-            | Action::Absolute
-            | Action::Incremental
-            | Action::ReturnInitial
-            | Action::ReturnR
-            | Action::Plane(_)
-            | Action::CompensationOff
-            | Action::Pass { takes_words: false },
-        ) => Ok(true),
+        Some(action) if may_stand_beside(action) => Ok(true),
         _ => Err(words.cycle_fault(
             span,
             both!("another code beside a cycle", "другая функция рядом с циклом"),

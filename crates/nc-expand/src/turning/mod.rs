@@ -34,19 +34,18 @@ mod threads;
 use std::ops::Range;
 
 use diagnostic::{Diagnostic, Text, both};
+use nc_program::Setup;
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
 use nc_syntax::{Block, Dialect, Reader, Span};
 
 use crate::codes;
-use crate::output::{Output, Segment};
-use crate::shorthand::{Words, from};
+use crate::known::Rewriting;
+use crate::output::Written;
+use crate::shorthand::Words;
 use pass::Pass;
 use state::{Motion, State};
 
 type Fault = Box<Diagnostic>;
-
-/// A text, and where each stretch of it comes from.
-type Written = (Vec<u8>, Vec<Segment>);
 
 /// X word and Z, in millionths of the unit.
 type Spot = [i64; 2];
@@ -74,15 +73,21 @@ fn cycle_of(words: &Words<'_, '_>) -> Option<(TurningCycle, Span)> {
 }
 
 /// The program with its corners and angles written out, where it has some.
-pub(crate) fn draw(text: &[u8], dialect: &Dialect) -> Result<Option<Written>, Fault> {
-    drawing::write_out(text, dialect)
+pub(crate) fn draw(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Option<Written>, Fault> {
+    drawing::write_out(text, dialect, setup)
 }
 
 /// The program with its cycles written out, and where each stretch of it comes from.
 ///
 /// `routines`: bytes that hold the contours of cycles, each behind the block of its cycle.
-pub(crate) fn write_out(text: &[u8], dialect: &Dialect, routines: &[Range<u64>]) -> Result<Written, Fault> {
-    let Some(turning) = &dialect.turning else { return Ok((text.to_vec(), Vec::new())) };
+pub(crate) fn write_out(
+    text: &[u8],
+    dialect: &Dialect,
+    setup: &Setup,
+    routines: &[Range<u64>],
+) -> Result<Written, Fault> {
+    let out = Rewriting::new(dialect, setup, text);
+    let Some(turning) = &dialect.turning else { return out.end(None) };
     let mut blocks = Vec::new();
     let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
     while reader.next(&mut block) {
@@ -92,19 +97,26 @@ pub(crate) fn write_out(text: &[u8], dialect: &Dialect, routines: &[Range<u64>])
         dialect,
         turning,
         blocks: &blocks,
-        out: Output::new(dialect, text),
-        state: State::initial(dialect, turning),
+        state: State::initial(turning, &out.known),
+        out,
         pass: None,
         passed: false,
         routines,
         first_blocks: rough::FirstBlocks::default(),
         unsure_feed: false,
     };
-    let mut at = 0;
-    while at < blocks.len() {
-        at = writer.block(at)?;
+    let (mut at, mut fault) = (0, None);
+    while fault.is_none() && at < blocks.len() {
+        match writer.block(at) {
+            Ok(next) => at = next,
+            Err(refused) => fault = Some(refused),
+        }
+        // Within a block or a cycle it is counted on, behind it nobody but the one reader says.
+        writer.state.follow(writer.out.known.modal());
+        #[cfg(test)]
+        writer.out.believe(writer.state.belief());
     }
-    Ok((writer.out.text, writer.out.segments))
+    writer.out.end(fault)
 }
 
 /// Writes the program block by block.
@@ -112,7 +124,7 @@ struct Writer<'b, 'a> {
     dialect: &'b Dialect,
     turning: &'b Turning,
     blocks: &'b [Block<'a>],
-    out: Output,
+    out: Rewriting<'b>,
     state: State,
     /// The single pass in force.
     pass: Option<Pass>,
@@ -166,6 +178,7 @@ impl<'b, 'a> Writer<'b, 'a> {
                 ),
             ));
         }
+        self.state.settings(&words);
         match cycle {
             TurningCycle::TurnPass | TurningCycle::ThreadPass | TurningCycle::FacePass => {
                 self.first_pass(at, cycle, span)?;
@@ -230,7 +243,7 @@ impl<'b, 'a> Writer<'b, 'a> {
         if !matches!(self.state.motion, Motion::Pass(_)) {
             self.pass = None;
         }
-        self.out.copy(words.block.bytes, from(words.block));
+        self.out.block(words.block);
         Ok(())
     }
 

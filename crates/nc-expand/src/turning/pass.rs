@@ -139,14 +139,7 @@ impl Writer<'_, '_> {
                 ),
             ));
         }
-        // G90 and G91 of systems B and C hold for the words of their own block.
-        for (action, _) in words.actions() {
-            match action {
-                Action::Absolute => self.state.absolute = true,
-                Action::Incremental => self.state.absolute = false,
-                _ => {}
-            }
-        }
+        self.state.settings(&words);
         self.state.stands_at(pass.start);
         let target = self.state.target(&words);
         let letters = [(b'X', b'U'), (b'Z', b'W')];

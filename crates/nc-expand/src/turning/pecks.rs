@@ -36,10 +36,8 @@ impl Writer<'_, '_> {
                     ),
                 ));
             };
-            let (standing, known) = (self.state.at.map(Option::unwrap_or_default), self.state.at);
-            let moves = self.begin(&words, standing, b"R")?;
+            let moves = self.begin(&words, [0; 2], b"R")?;
             self.end(moves);
-            self.state.at = known;
             self.first_blocks.peck_return[down] = Some(back.abs());
             return Ok(());
         }

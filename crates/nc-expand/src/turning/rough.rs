@@ -188,11 +188,9 @@ impl Writer<'_, '_> {
                 ),
             ));
         }
-        let at = self.state.at.map(Option::unwrap_or_default);
-        let known = self.state.at;
-        let moves = self.begin(words, at, b"UWR")?;
+        let moves = self.begin(words, [0; 2], b"UWR")?;
         self.end(moves);
-        (self.state.at, self.first_blocks) = (known, set);
+        self.first_blocks = set;
         Ok(())
     }
 
@@ -406,7 +404,9 @@ impl Writer<'_, '_> {
                 both!("write F in this block, or in the contour", "напишите F в этом кадре или в контуре"),
             ));
         }
-        let moves = self.begin(&words, start, b"PQUW")?;
+        let mut moves = self.begin(&words, start, b"PQUW")?;
+        // The cycle's block is done when the tool is back.
+        let behind = moves.take_behind();
         self.unsure_feed &= words.number(b'F').is_none();
         self.end(moves);
         for index in contour.first..=contour.last {
@@ -414,6 +414,7 @@ impl Writer<'_, '_> {
             self.unsure_feed &= block.number(b'F').is_none();
             self.state.step(&block);
             self.copy_without_number(&block);
+            self.state.follow(self.out.known.modal());
         }
         if self.state.compensated {
             return Err(self.words(contour.last).contour_fault(
@@ -425,8 +426,8 @@ impl Writer<'_, '_> {
                 ),
             ));
         }
-        let end = self.state.at.map(Option::unwrap_or_default);
-        let mut back = Moves::new(from(words.block), end);
+        let end = self.standing(&self.words(contour.last), span)?;
+        let mut back = Moves::new(from(words.block), end).with_behind(behind);
         self.go(&mut back, Code::Rapid, start);
         self.end(back);
         self.state.motion = Motion::Unknown;

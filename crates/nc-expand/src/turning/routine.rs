@@ -140,7 +140,7 @@ impl Writer<'_, '_> {
             if block.acts() {
                 self.out.comment(shown(block), from(block));
             } else {
-                self.out.copy(block.bytes, from(block));
+                self.out.block(block);
             }
         }
         Ok(blocks.end)

@@ -1,10 +1,14 @@
 //! What has to be known of a lathe's program between two blocks.
 
-use nc_syntax::dialect::{Action, Dialect, PlaneCode, Turning, TurningCycle};
-use nc_syntax::{ItemKind, Number};
+use nc_program::Compensation;
+use nc_program::modal::{ArcCentres, Distance, FeedMode, Modal, MotionMode, ReturnLevel, Units, XWords};
+use nc_syntax::Number;
+use nc_syntax::dialect::{Action, Turning, TurningCycle};
+use toolpath::Plane;
 use units::decimal::Decimal;
 
-use super::{AXES, Spot};
+use super::{AXES, MILLION, Spot};
+use crate::known::{Known, places};
 use crate::shorthand::Words;
 
 /// The motion code in force.
@@ -45,17 +49,16 @@ pub(super) struct State {
     pub(super) feed: Option<Number>,
     /// U and W are increments.
     increments: bool,
-    /// T brings in another offset.
-    offset_in_t: bool,
 }
 
 impl State {
-    pub(super) fn initial(dialect: &Dialect, turning: &Turning) -> Self {
+    /// At the start of a program.
+    pub(super) fn initial(turning: &Turning, known: &Known<'_>) -> Self {
         let mut state = Self {
             motion: Motion::Unknown,
             absolute: true,
             inch: false,
-            diameters: turning.diameters,
+            diameters: None,
             at: [None; 2],
             compensated: false,
             in_zx: false,
@@ -64,98 +67,85 @@ impl State {
             centres_absolute: false,
             feed: None,
             increments: turning.increments,
-            offset_in_t: turning.offset_in_t,
         };
-        for row in dialect.initial.iter().filter_map(|code| dialect.code(*code)) {
-            state.set(&row.action, false);
-        }
+        state.follow(known.modal());
+        state.motion = match known.modal().motion {
+            MotionMode::Rapid(_) => Motion::Rapid,
+            MotionMode::Line(_) => Motion::Line,
+            _ => Motion::Unknown,
+        };
         state
     }
 
-    /// What a code sets; false where the words of its block are no places of this frame.
-    fn set(&mut self, action: &Action, with_places: bool) -> bool {
+    /// Takes over what the one reader knows; motion code and feed apart, which cycles have a part in.
+    pub(super) fn follow(&mut self, modal: &Modal) {
+        let [x, _, z] = places(modal);
+        self.at = [x, z].map(|place| place.and_then(|place| within(units::decimal::round(place * MILLION))));
+        self.diameters = match modal.x_words {
+            XWords::Diameter => Some(true),
+            XWords::Radius => Some(false),
+            XWords::DiameterOfAbsolute | XWords::Unstated => None,
+        };
+        self.absolute = modal.distance == Distance::Absolute;
+        self.inch = modal.units == Units::Inch;
+        self.compensated = modal.compensation != Compensation::Off;
+        self.in_zx = modal.plane == Plane::Zx;
+        self.returns_to_r = modal.return_level == ReturnLevel::R;
+        self.inverse_time = modal.feed_mode == FeedMode::InverseTime;
+        self.centres_absolute = modal.arc_centres == ArcCentres::Absolute;
+    }
+
+    /// What a code sets of what cycles and contours ask for within a block, or ahead of the one reader; false where the words of
+    /// its block are no places.
+    fn set(&mut self, action: &Action) -> bool {
         match action {
             Action::Rapid => self.motion = Motion::Rapid,
             Action::Line => self.motion = Motion::Line,
             Action::ArcClockwise => self.motion = Motion::Clockwise,
             Action::ArcCounterClockwise => self.motion = Motion::CounterClockwise,
             Action::Thread => self.motion = Motion::Thread,
-            Action::Inch | Action::Millimetre => {
-                let inch = *action == Action::Inch;
-                if self.inch != inch {
-                    (self.inch, self.at) = (inch, [None; 2]);
-                }
-            }
-            Action::DiameterOn | Action::DiameterOff | Action::DiameterOfAbsolute => {
-                let diameters = match action {
-                    Action::DiameterOn => Some(true),
-                    Action::DiameterOff => Some(false),
-                    _ => None,
-                };
-                if self.diameters != diameters || diameters.is_none() {
-                    (self.diameters, self.at) = (diameters, [None; 2]);
-                }
-            }
             Action::Absolute => self.absolute = true,
             Action::Incremental => self.absolute = false,
             Action::Compensation(_) => self.compensated = true,
             Action::CompensationOff => self.compensated = false,
+            Action::ReturnInitial => self.returns_to_r = false,
+            Action::ReturnR => self.returns_to_r = true,
             Action::Dwell
             | Action::DwellBySetting
             | Action::SpeedLimit
-            | Action::Pass { takes_words: true } => {
-                return false;
-            }
-            // With S alone it moves nothing.
-            Action::LimitOrPreset if !with_places => return false,
-            // The words of its block are places from its zero already.
-            Action::WorkOffset(_) | Action::WorkOffsetNumbered => self.moves_frame(),
-            Action::Plane(plane) => self.in_zx = *plane == PlaneCode::Zx,
-            Action::FeedInverseTime => self.inverse_time = true,
-            Action::FeedPerMinute | Action::FeedPerRevolution => self.inverse_time = false,
-            Action::ReturnInitial => self.returns_to_r = false,
-            Action::ReturnR => self.returns_to_r = true,
-            Action::ArcCentresAbsolute => self.centres_absolute = true,
-            Action::ArcCentresIncremental => self.centres_absolute = false,
+            | Action::LimitOrPreset
+            | Action::Turning(_)
+            | Action::Pass { takes_words: true } => return false,
             _ if action.keeps_places() => {}
-            // Whatever moves the frame, or the axes by rules of the control; a single pass ends with it.
+            // Whatever moves the frame, or the axes by rules of the control, ends a single pass.
             _ => {
-                self.moves_frame();
-                return false;
+                if matches!(self.motion, Motion::Pass(_)) {
+                    self.motion = Motion::Unknown;
+                }
+                return matches!(
+                    action,
+                    Action::WorkOffset(_) | Action::WorkOffsetNumbered | Action::Plane(_)
+                );
             }
         }
         true
     }
 
-    fn moves_frame(&mut self) {
-        self.at = [None; 2];
-        if matches!(self.motion, Motion::Pass(_)) {
-            self.motion = Motion::Unknown;
+    /// The codes that may stand beside a cycle, and hold for its block.
+    pub(super) fn settings(&mut self, words: &Words<'_, '_>) {
+        for (action, _) in words.actions().filter(|(action, _)| may_stand_beside(action)) {
+            self.set(action);
         }
     }
 
-    /// After the block as it stands.
+    /// After the block as it stands, as far as nothing but lines and arcs is concerned.
     pub(super) fn step(&mut self, words: &Words<'_, '_>) {
-        let with_places = self.moves(words);
         let mut owned = true;
         for (action, _) in words.actions() {
-            owned &= self.set(action, with_places);
+            owned &= self.set(action);
         }
-        if owned && let Some((feed, _)) = words.number(b'F') {
-            self.feed = Some(feed);
-        }
-        let row = |number: Number| words.dialect.m_code(u16::try_from(number.integer()?).ok()?);
-        let loses = words.block.items.iter().any(|item| match item.kind {
-            ItemKind::Word { letter: b'M', value: nc_syntax::Value::Number(number) } => {
-                row(number).is_some_and(|row| row.loses_position != [false; 3])
-            }
-            _ => false,
-        });
-        let offset = self.offset_in_t && words.number(b'T').is_some();
-        if loses || offset || words.skipped() {
-            self.at = [None; 2];
-        }
-        if owned && !words.skipped() {
+        if owned {
+            self.feed = words.number(b'F').map(|(feed, _)| feed).or(self.feed);
             self.at = self.target(words);
         }
     }
@@ -164,7 +154,6 @@ impl State {
     pub(super) fn target(&self, words: &Words<'_, '_>) -> [Option<i64>; 2] {
         [0, 1].map(|axis| {
             let (own, increment) = (AXES[axis], b"UW"[axis]);
-            let within = |place: i64| Some(place).filter(|place| place.abs() <= MOST);
             if words.number(own).is_some() {
                 let value = self.length(words, own)?;
                 if self.absolute { Some(value) } else { within(self.at[axis]? + value) }
@@ -196,17 +185,6 @@ impl State {
         millionths(Decimal { mantissa, decimals: decimals + step })
     }
 
-    /// G98 and G99 of systems B and C in the block of a cycle.
-    pub(super) fn set_return(&mut self, words: &Words<'_, '_>) {
-        for (action, _) in words.actions() {
-            match action {
-                Action::ReturnInitial => self.returns_to_r = false,
-                Action::ReturnR => self.returns_to_r = true,
-                _ => {}
-            }
-        }
-    }
-
     /// True where the block names a place.
     pub(super) fn moves(&self, words: &Words<'_, '_>) -> bool {
         let letters: &[u8] = if self.increments { b"XZUW" } else { b"XZ" };
@@ -218,9 +196,21 @@ impl State {
         let mut state = Self { motion: Motion::Unknown, ..self.clone() };
         let mut owned = true;
         for (action, _) in words.actions() {
-            owned &= state.set(action, true);
+            owned &= state.set(action);
         }
         !owned || state.motion != Motion::Unknown
+    }
+
+    /// What it takes for granted, Y apart.
+    #[cfg(test)]
+    pub(super) fn belief(&self) -> crate::agreement::Belief {
+        let [x, z] = self.at.map(|place| place.map(|place| place as f64 / MILLION));
+        crate::agreement::Belief {
+            places: [x, None, z],
+            inch: Some(self.inch),
+            absolute: Some(self.absolute),
+            ..crate::agreement::Belief::NONE
+        }
     }
 
     pub(super) fn stands_at(&mut self, spot: Spot) {
@@ -230,6 +220,26 @@ impl State {
 
 /// Places and sizes up to 400 km, in millionths: the difference of two has 15 digits, which is what a word may have.
 const MOST: i64 = 400_000_000_000_000;
+
+fn within(place: i64) -> Option<i64> {
+    Some(place).filter(|place| place.unsigned_abs() <= MOST.unsigned_abs())
+}
+
+/// True for codes that set something for the block of a cycle and those behind it, and move nothing.
+pub(super) const fn may_stand_beside(action: &Action) -> bool {
+    matches!(
+        action,
+        Action::FeedPerMinute
+            | Action::FeedPerRevolution
+            | Action::Absolute
+            | Action::Incremental
+            | Action::ReturnInitial
+            | Action::ReturnR
+            | Action::Plane(_)
+            | Action::CompensationOff
+            | Action::Pass { takes_words: false }
+    )
+}
 
 /// A decimal number in millionths, finer digits rounded; `None` where it is no place of any machine.
 pub(super) fn millionths(Decimal { mantissa, decimals }: Decimal) -> Option<i64> {
@@ -241,5 +251,5 @@ pub(super) fn millionths(Decimal { mantissa, decimals }: Decimal) -> Option<i64>
         // Half a millionth is 0.013 um of an inch, far below the step of any control.
         Some((mantissa + mantissa.signum() * (power / 2)) / power)
     };
-    whole.filter(|whole| whole.unsigned_abs() <= MOST.unsigned_abs())
+    whole.and_then(within)
 }

@@ -251,10 +251,8 @@ impl Writer<'_, '_> {
                 ),
             ));
         };
-        let (standing, known) = (self.state.at.map(Option::unwrap_or_default), self.state.at);
-        let moves = self.begin(&words, standing, b"PQR")?;
+        let moves = self.begin(&words, [0; 2], b"PQR")?;
         self.end(moves);
-        self.state.at = known;
         self.first_blocks.thread = Some(Settings {
             finishing_passes: (digits / 10_000).max(1),
             chamfer_leads: (digits / 100 % 100) as f64 * 0.1,

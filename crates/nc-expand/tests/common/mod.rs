@@ -5,10 +5,25 @@
 use std::io;
 
 use nc_expand::{Environment, Expanded, Limits, Preset, Refusal, expand};
+use nc_program::Setup;
+use nc_syntax::Dialect;
 
 /// No file is there.
 pub(crate) fn nothing(_: &str) -> io::Result<Vec<u8>> {
     Err(io::Error::from(io::ErrorKind::NotFound))
+}
+
+/// Work offsets at zero, and tools without length.
+pub(crate) fn setup(dialect: &Dialect) -> Setup {
+    let named = (54..60).map(|code| format!("G{code}")).chain(["G500".to_owned()]);
+    let numbered = (1..100).flat_map(|number| [format!("G15H{number}"), format!("G54.1P{number}")]);
+    Setup {
+        work_offsets: named.chain(numbered).map(|name| (name, [0.0; 3])).collect(),
+        tools: (1..100).map(|number| (number, [0.0; 3])).collect(),
+        noses_mm: (1..100).map(|number| (number, 0.4)).collect(),
+        diameters: dialect.turning.as_ref().and_then(|turning| turning.diameters),
+        ..Setup::default()
+    }
 }
 
 /// Expands a program of a dialect with presets and files.
@@ -23,8 +38,14 @@ pub(crate) fn expanded<'a>(
         Some((_, text)) => Ok(text.as_bytes().to_vec()),
         None => nothing(name),
     };
-    let environment = Environment { variables: &variables, read_external: &read, limits: Limits::default() };
-    expand(text.as_bytes(), nc_dialect::builtin(dialect).expect("a dialect"), &environment)
+    let dialect = nc_dialect::builtin(dialect).expect("a dialect");
+    let environment = Environment {
+        variables: &variables,
+        read_external: &read,
+        setup: &setup(dialect),
+        limits: Limits::default(),
+    };
+    expand(text.as_bytes(), dialect, &environment)
 }
 
 /// The plain program's text.
