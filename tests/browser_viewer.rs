@@ -259,7 +259,7 @@ fn without_webgl_a_drawing_with_the_same_words_and_without_a_script_too() {
     // The drawing that needs no script.
     assert_eq!(page.matches("<figure class=\"still\"").count(), 1);
     assert!(
-        page.contains("As posted the tool leaves its path by up to 332\u{a0}\u{b5}m"),
+        page.contains("As posted the tool leaves its path by up to 180\u{a0}\u{b5}m"),
         "the heading is in the text"
     );
     let Some(mut browser) = Browser::start() else { return };
@@ -286,7 +286,7 @@ fn it_speaks_russian_where_asked() {
     let Some(mut browser) = Browser::start() else { return };
     let script = "const first = $('line').textContent + ' ' + $('real_most').textContent; $('en').click(); say([first, document.documentElement.lang, $('line').textContent]);";
     let found = act(&mut browser, &report, script);
-    assert_eq!(found, serde_json::json!(["Строка 22 до 332\u{a0}мкм", "en", "Line 22"]));
+    assert_eq!(found, serde_json::json!(["Строка 22 до 180\u{a0}мкм", "en", "Line 22"]));
 }
 
 #[test]

@@ -21,6 +21,7 @@ impl Part {
     fn profile(&self, more: &str) -> String {
         let folder = crate::common::root().join("tests/profiles");
         let text = std::fs::read_to_string(folder.join("corpus.toml")).expect("readable");
+        let text = text.replace("[program]\nzero", "# zero");
         let tables = text.replace("\"wavy_", &format!("\"{}/wavy_", folder.display()));
         let path = self.0.path().join("machine.toml");
         std::fs::write(&path, format!("{tables}\n{more}\n")).expect("written");
@@ -29,7 +30,10 @@ impl Part {
 
     fn run(&self, machine: &str, more: &[&str]) -> Output {
         let mut command = vpost();
-        command.arg(self.0.path().join("part.nc")).args(["-m", machine, "-d", "fanuc"]).args(more);
+        command
+            .arg(self.0.path().join("part.nc"))
+            .args(["-m", machine, "-d", "fanuc", "--zero", "true"])
+            .args(more);
         command.output().expect("the command starts")
     }
 }
