@@ -169,6 +169,7 @@ def profile(spec, control, folder, offsets, zero=None):
             lines.append('errors = "errors_%s.csv"' % k)
     lines += ["[squareness]"] + ["%s_urad = %r" % x for x in spec["squareness"].items()]
     lines += ["[tool]", "lengths_mm = { %s }" % ", ".join("%s = %r" % x for x in spec["lengths"].items())]
+    lines += ["radii_mm = { D1 = %r }" % spec["radius"]] if spec.get("radius_known") else []
     lines += ["[work_offsets_mm]"] + ["%s = %s" % x for x in offsets.items()]
     lines += ["[correction]", "tolerance_um = %r" % spec["tolerance"]]
     lines += ["[program]", 'zero = "%s"' % zero] if zero else []

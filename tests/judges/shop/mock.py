@@ -14,7 +14,7 @@ def touches(case, datum):
         one = said.get(k, {"at": datum.at, "tool": 0.0})
         tool = one["tool"]
         tool = case.spec["lengths"].get(tool, tool) if isinstance(tool, str) else tool
-        out.append((np.array(one["at"]), np.array([0.0, 0.0, -tool] if isinstance(tool, float) else tool)))
+        out.append((np.atleast_2d(one["at"]), np.array([0.0, 0.0, -tool] if isinstance(tool, float) else tool)))
     return out
 
 
@@ -23,7 +23,7 @@ def found(case, datum, angles=None, touched=None):
     if datum.zero == "true":
         return np.zeros(3)
     angles = datum.angles if angles is None else angles
-    return np.array([case.machine.error(q[None], angles, tool)[0][n] for n, (q, tool) in enumerate(touched or touches(case, datum))])
+    return np.array([case.machine.error(q, angles, tool)[:, n].mean() for n, (q, tool) in enumerate(touched or touches(case, datum))])
 
 
 def seen(case, datum, error, angles=None):
@@ -54,7 +54,7 @@ def angle_forgotten(case, datum, angles):
 
 
 def at_the_zero(case, datum, angles):
-    return seen(case, datum, found(case, datum, touched=[(np.array(datum.at), np.zeros(3))] * 3))
+    return seen(case, datum, found(case, datum, touched=[(np.array([datum.at]), np.zeros(3))] * 3))
 
 
 def tool_forgotten(case, datum, angles):

@@ -21,7 +21,7 @@ def words(**places):
 class Case:
     """`only`: "before" asks nothing that a command without zeros of two kinds lacks, and takes every zero as true."""
 
-    def __init__(self, seed, n, only=None):
+    def __init__(self, seed, n, only=None, silence="default"):
         rng = random.Random("shop %d %d" % (seed, n))
         self.number, self.dialect = n, rng.choice(DIALECTS)
         self.rotary, self.play = n % 3 == 2, n % 6 == 1
@@ -29,7 +29,7 @@ class Case:
         self.machine = machines.Machine(self.spec)
         self.ideal = machines.Machine(self.spec, perfect=True)
         self.tip_control = self.rotary and self.dialect == "fanuc" and rng.random() < 0.4
-        self.flags, self.offsets, self.ini, self.lines = [], {}, None, []
+        self.silence, self.flags, self.offsets, self.ini, self.lines = silence, [], {}, None, []
         self.zero = None if only else rng.choice((None, "touched", "true"))
         self.datums = {}
         for name in ("G54", "G55", "G56")[: rng.randint(1, 3)]:
@@ -53,7 +53,7 @@ class Case:
             angles.update({k: 0.0 for k in self.machine.head})
         wide = 60 if self.rotary else 140
         place = [round(rng.uniform(-wide, wide), 3) for _ in range(3)]
-        datum = touch.offset(rng, self.machine, name, kind, place, angles)
+        datum = touch.offset(rng, self.machine, name, kind, place, angles, self.silence)
         may_be_plain = only or (kind == "corner" and self.zero != "true") or (kind == "true" and self.zero == "true")
         datum.plain = rng.choice(("profile", "profile", "flag", "program")) if may_be_plain else None
         if datum.plain == "flag":
@@ -66,7 +66,7 @@ class Case:
 
     def write(self, rng):
         say = self.lines.append
-        say("G21 G17 G90 G94 G40 G49 G80 G54")
+        say("G21 G17 G90 G94 G40 G49 G80")
         for k, datum in enumerate(self.datums.values()):
             if datum.plain == "program":
                 say("G10 L2 P%d %s" % (int(datum.name[1:]) - 53, words(**dict(zip("xyz", datum.at)))))

@@ -5,8 +5,8 @@ import random
 import re
 import tempfile
 
-import judge
 import machine as machines
+import plumbing
 
 PROGRAM = "G21 G17 G90 G94 G40 G49 G54\nG0 X0. Y0.\nG43 H1 Z30.\nG0 Z2.\nG1 Z-1. F100\nX20. F300\nG0 Z30.\nM30\n"
 PLACE = "[10.0, 20.0, -5.0]"
@@ -31,7 +31,7 @@ def attempt(vpost, rotary, offset):
         folder = pathlib.Path(name)
         where = machines.profile(spec, "fanuc", folder, {"G54": offset})
         (folder / "in.nc").write_text(PROGRAM.replace("G0 X0.", "G0 A0. C0.\nG0 X0.", 1) if rotary else PROGRAM)
-        return judge.run(vpost, "correct", folder / "in.nc", "-m", where)
+        return plumbing.run(vpost, "correct", folder / "in.nc", "-m", where)
 
 
 def judged(vpost):

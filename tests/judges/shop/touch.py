@@ -17,6 +17,7 @@ class Datum:
         self.touched_at, self.angles, self.unsaid = None, {}, 0.0
         self.error = np.zeros(3)  # of the touches, along the machine's axes: real less perfect
         self.sideways = np.zeros(3)  # what the play at the touches adds to it
+        self.told = set()  # axes of which the profile says from which side they were touched
 
     def place(self, machine):
         """The zero on a perfect machine, in the workpiece."""
@@ -24,7 +25,8 @@ class Datum:
 
     def real(self, machine):
         """The physical zero in the workpiece, and, with play, where it lies for who does not know the touches' senses."""
-        found = [self.error + self.sideways] + ([self.error] if self.sideways.any() else [])
+        middle = [v if n in self.told else 0.0 for n, v in enumerate(self.sideways)]
+        found = [self.error + self.sideways] + ([self.error + middle] if (middle != self.sideways).any() else [])
         return [self.place(machine) + machine.in_workpiece(self.angles, e[None], vector=True)[0] for e in found]
 
     def said(self, plain):
@@ -61,6 +63,12 @@ def touch(machine, datum, axis, q, tool, sense):
     datum.sideways[axis] = -half * sense
 
 
+def untold(machine, datum, tool):
+    """Commands and tool vector of a touch of which the profile says nothing: at the zero, with the tool that silence means."""
+    length = machine.spec["lengths"].get(tool, 0.0)
+    return [datum.at[0], datum.at[1], round(datum.at[2] + length, 3)], [0.0, 0.0, -length]
+
+
 def face(rng, machine, datum, axis):
     """A face touched somewhere along itself; Z with a tool on the top, or on a setter whose height is known."""
     tool, said = probe(rng, machine.spec)
@@ -71,12 +79,15 @@ def face(rng, machine, datum, axis):
     tip[axis] = datum.at[axis] - sense * ball
     q = [round(v - t, 3) for v, t in zip(tip, tool)]
     touch(machine, datum, axis, q, tool, sense)
+    if "XYZ"[axis] in machine.spec["play"] and rng.random() < 0.5:
+        datum.told.add(axis)
+        return {"at": q, "tool": said, "direction": sense}
     return {"at": q, "tool": said}
 
 
-def bore(rng, machine, datum):
-    """The centre of a bore by four touches: X at first, then Y in the middle of these."""
-    tool, said = probe(rng, machine.spec)
+def bore(rng, machine, datum, walls):
+    """The centre of a bore by four touches: X at first, then Y in the middle of these. What the profile says: its middle, or walls."""
+    tool, tool_said = probe(rng, machine.spec)
     gap = rng.uniform(8, 30)
     depth = datum.at[2] - round(rng.uniform(2, 15), 3) - tool[2]
     centre = np.array([datum.at[0] - tool[0], datum.at[1] - tool[1], depth])
@@ -91,19 +102,23 @@ def bore(rng, machine, datum):
             q[axis] += true[axis] + sign * math.sqrt(gap**2 - aside**2) - tip[axis]
         return q[axis]
 
+    said, found = [], np.zeros(2)
     for axis in (0, 1):
-        centre[axis] = (meets(axis, -1) + meets(axis, 1)) / 2
+        ends = [meets(axis, sign) for sign in (-1, 1)]
+        centre[axis] = sum(ends) / 2
         datum.at[axis] = round(float(centre[axis] + tool[axis]), 3)
-    at = [round(float(v), 3) for v in centre]
-    # The profile has one place for the four touches: by what it says there the zero may be off.
-    said_error = machine.error(np.array([at]), datum.angles, tool)[0][:2]
+        said.append([[round(float(e if n == axis else v), 3) for n, v in enumerate(centre)] for e in ends])
+    middle = [round(float(v), 3) for v in centre]
+    for axis in (0, 1):
+        places = np.array(said[axis] if walls else [middle])
+        found[axis] = machine.error(places, datum.angles, tool)[:, axis].mean()
     datum.error[:2] = true - datum.at[:2]
-    datum.unsaid = float(np.linalg.norm(datum.error[:2] - said_error))
-    return {"at": at, "tool": said}
+    datum.unsaid = float(np.linalg.norm(datum.error[:2] - found))
+    return [{"at": said[axis] if walls else middle, "tool": tool_said} for axis in (0, 1)]
 
 
-def offset(rng, machine, name, kind, place, angles):
-    """Touches off one zero of that kind near a place (commands of the tip)."""
+def offset(rng, machine, name, kind, place, angles, silence):
+    """Touches off one zero of that kind near a place (commands of the tip). `silence`: the tool where the profile names none."""
     datum = Datum(name, place, kind)
     datum.angles = angles
     turned = {"rotary_deg": dict(angles)} if angles else {}
@@ -112,7 +127,7 @@ def offset(rng, machine, name, kind, place, angles):
         datum.zero, datum.angles = "true", {}
     elif kind == "corner":
         for axis in range(3):
-            touch(machine, datum, axis, datum.at, [0.0, 0.0, 0.0], senses[axis])
+            touch(machine, datum, axis, *untold(machine, datum, silence), senses[axis])
     elif kind == "one-place":
         tool = rng.choice(("H1", "H2"))
         vector = [0.0, 0.0, -machine.spec["lengths"][tool]]
@@ -121,12 +136,11 @@ def offset(rng, machine, name, kind, place, angles):
             touch(machine, datum, axis, q, vector, senses[axis])
         datum.touched_at = {"at": q, "tool": tool, **turned}
     elif kind == "bore":
-        there = bore(rng, machine, datum)
-        top = face(rng, machine, datum, 2)
-        datum.touched_at = {k: {**v, **turned} for k, v in (("X", there), ("Y", there), ("Z", top))}
+        there = bore(rng, machine, datum, rng.random() < 0.5)
+        datum.touched_at = {k: {**v, **turned} for k, v in zip("XYZ", [*there, face(rng, machine, datum, 2)])}
     else:
         axes = (0, 1, 2) if kind == "faces" else rng.choice(((0, 2), (2,), (0, 1)))
         datum.touched_at = {"XYZ"[n]: {**face(rng, machine, datum, n), **turned} for n in axes}
         for axis in {0, 1, 2} - set(axes):
-            touch(machine, datum, axis, datum.at, [0.0, 0.0, 0.0], senses[axis])
+            touch(machine, datum, axis, *untold(machine, datum, silence), senses[axis])
     return datum
