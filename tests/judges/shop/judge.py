@@ -90,7 +90,11 @@ def compare(case, text, said=0.0):
         largest = max(largest, off)
         if off > allowed:
             where = np.round(a[0].wanted[0], 3).tolist()
-            return "path: %.2f um off, limit %.2f, in %s (%s) from %s" % (off * 1e3, allowed * 1e3, a[0].offset, case.datums[a[0].offset].kind, where), off
+            return (
+                "path: %.2f um off, limit %.2f, in %s (%s) from %s"
+                % (off * 1e3, allowed * 1e3, a[0].offset, case.datums[a[0].offset].kind, where),
+                off,
+            )
     return None, largest
 
 
@@ -102,9 +106,11 @@ def uncorrected(case):
 
 def one(task):
     options, n = task
-    case = program.Case(options.seed, n, options.only, options.silence)
+    case = program.Case(options.seed, n, options.only)
     result, text, largest = plumbing.in_folder(options, n, lambda folder: judged(options, case, folder))
-    kinds = {d.kind + (" (%s)" % d.plain if d.plain else "") for d in case.datums.values()} | ({"tip control"} if case.tip_control else set())
+    kinds = {d.kind + (" (%s)" % d.plain if d.plain else "") for d in case.datums.values()} | (
+        {"tip control"} if case.tip_control else set()
+    )
     figures = {"uncorrected, largest of a program": uncorrected(case) * 1e3}
     if result == "right":
         figures["corrected and right, largest of a program"] = largest * 1e3
@@ -129,8 +135,9 @@ def judged(options, case, folder):
 
 def main():
     words = plumbing.arguments(__doc__.splitlines()[0])
-    words.add_argument("--only", choices=("before",), help="every zero true and nothing said of it, as commands took it that know no touched ones")
-    words.add_argument("--silence", choices=("default", "H1"), default="default", help="the tool of a touch of which the profile says nothing")
+    words.add_argument(
+        "--only", choices=("before",), help="every zero true and nothing said of it, as commands took it that know no touched ones"
+    )
     words.add_argument("--refusals", action="store_true")
     options = words.parse_args()
     if options.self_test:

@@ -163,7 +163,11 @@ def profile(spec, control, folder, offsets, zero=None):
             lines += ["%s_%s = %r" % (n, "um" if n[1] in "XYZ" else "urad", v) for n, v in r["location"].items()]
         if k in spec["tables"]:
             data = spec["tables"][k]
-            head = ["position_%s" % ("mm" if k in "XYZ" else "deg")] + ["E%s%s_um" % (x, k) for x in "XYZ"] + ["E%s%s_urad" % (x, k) for x in "ABC"]
+            head = (
+                ["position_%s" % ("mm" if k in "XYZ" else "deg")]
+                + ["E%s%s_um" % (x, k) for x in "XYZ"]
+                + ["E%s%s_urad" % (x, k) for x in "ABC"]
+            )
             rows = [",".join(head)] + [",".join(map(repr, [at] + row)) for at, row in zip(data["at"], data["rows"])]
             (folder / ("errors_%s.csv" % k)).write_text("\n".join(rows) + "\n")
             lines.append('errors = "errors_%s.csv"' % k)

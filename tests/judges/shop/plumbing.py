@@ -33,9 +33,9 @@ def short(errors):
 
 
 def microns(errors, code):
-    """The largest number of micrometres in a message of that code, in mm, or None where there is no such message."""
-    texts = re.findall(r"\[%s\](.*?)(?=\n\w+\[VP|\Z)" % code, errors, re.S)
-    return max([float(x.replace(",", ".")) * 1e-3 for t in texts for x in re.findall(r"([\d.]+) ?[µu]m", t)], default=0.0) if texts else None
+    """The largest number of micrometres in the first line of a message of that code, in mm: 0 if it says none, None without such a message."""
+    texts = re.findall(r"\[%s\](.*)" % code, errors)
+    return max([float(x) * 1e-3 for t in texts for x in re.findall(r"([\d.]+) ?[µu]m", t)], default=0.0) if texts else None
 
 
 def corrected(options, folder, words):

@@ -21,7 +21,7 @@ def words(**places):
 class Case:
     """`only`: "before" asks nothing that a command without zeros of two kinds lacks, and takes every zero as true."""
 
-    def __init__(self, seed, n, only=None, silence="default"):
+    def __init__(self, seed, n, only=None):
         rng = random.Random("shop %d %d" % (seed, n))
         self.number, self.dialect = n, rng.choice(DIALECTS)
         self.rotary, self.play = n % 3 == 2, n % 6 == 1
@@ -29,7 +29,7 @@ class Case:
         self.machine = machines.Machine(self.spec)
         self.ideal = machines.Machine(self.spec, perfect=True)
         self.tip_control = self.rotary and self.dialect == "fanuc" and rng.random() < 0.4
-        self.silence, self.flags, self.offsets, self.ini, self.lines = silence, [], {}, None, []
+        self.flags, self.offsets, self.ini, self.lines = [], {}, None, []
         self.zero = None if only else rng.choice((None, "touched", "true"))
         self.datums = {}
         for name in ("G54", "G55", "G56")[: rng.randint(1, 3)]:
@@ -49,11 +49,14 @@ class Case:
             kind = "true"
         angles = {}
         if kind in ("faces", "one-place", "bore") and self.machine.table and not self.tip_control and rng.random() < 0.5:
-            angles = {k: float(rng.choice((0, 90, 180, 270)) if k == "C" else rng.choice((0, 0, -20, 30))) for k in self.machine.table + self.machine.head}
+            angles = {
+                k: float(rng.choice((0, 90, 180, 270)) if k == "C" else rng.choice((0, 0, -20, 30)))
+                for k in self.machine.table + self.machine.head
+            }
             angles.update({k: 0.0 for k in self.machine.head})
         wide = 60 if self.rotary else 140
         place = [round(rng.uniform(-wide, wide), 3) for _ in range(3)]
-        datum = touch.offset(rng, self.machine, name, kind, place, angles, self.silence)
+        datum = touch.offset(rng, self.machine, name, kind, place, angles)
         may_be_plain = only or (kind == "corner" and self.zero != "true") or (kind == "true" and self.zero == "true")
         datum.plain = rng.choice(("profile", "profile", "flag", "program")) if may_be_plain else None
         if datum.plain == "flag":
@@ -92,7 +95,12 @@ class Case:
         self.lines += ["G49", "M30"] if self.dialect != "linuxcnc" else ["M2"]
 
     def turn(self, rng):
-        return words(**{k.lower(): float(rng.choice((0, 0, 45, 90, 180, -120)) if k == "C" else rng.choice((0, 0, -30, 25))) for k in self.machine.table + self.machine.head})
+        return words(
+            **{
+                k.lower(): float(rng.choice((0, 0, 45, 90, 180, -120)) if k == "C" else rng.choice((0, 0, -30, 25)))
+                for k in self.machine.table + self.machine.head
+            }
+        )
 
     def to(self, rng, x, y):
         self.lines += ["G0 " + words(x=x, y=y), "G0 Z2.", "G1 Z%s F%d" % (number(-rng.choice((0.5, 3.0, 8.0))), rng.choice((100, 250)))]
@@ -102,7 +110,12 @@ class Case:
         x, y, w, h = rng.uniform(-60, 0), rng.uniform(-60, 0), round(rng.uniform(15, 60), 2), round(rng.uniform(15, 60), 2)
         x, y, r = round(x, 2), round(y, 2), round(rng.uniform(2, 6), 2)
         self.to(rng, x + r, y)
-        corners = (((x + w - r, y), (x + w, y + r), (0, r)), ((x + w, y + h - r), (x + w - r, y + h), (-r, 0)), ((x + r, y + h), (x, y + h - r), (0, -r)), ((x, y + r), (x + r, y), (r, 0)))
+        corners = (
+            ((x + w - r, y), (x + w, y + r), (0, r)),
+            ((x + w, y + h - r), (x + w - r, y + h), (-r, 0)),
+            ((x + r, y + h), (x, y + h - r), (0, -r)),
+            ((x, y + r), (x + r, y), (r, 0)),
+        )
         for k, (end, behind, centre) in enumerate(corners):
             word = ("x", "y")[k % 2]
             self.lines.append("%s%s%s" % ("G1 " if k or rng.random() < 0.8 else "", words(**{word: end[k % 2]}), " F600" if k == 0 else ""))
@@ -115,15 +128,28 @@ class Case:
         x, y, r = round(rng.uniform(-30, 30), 3), round(rng.uniform(-30, 30), 3), round(rng.uniform(4, 25), 2)
         code = rng.choice(("G2", "G3"))
         self.lines += ["G0 " + words(x=x + r, y=y), "G0 Z2.", "G1 Z0.5 F200"]
-        self.lines += ["%s %s I%s J0. F400" % (code, words(x=x + r, y=y, z=-rng.choice((1.0, 2.5))), number(-r)), "%s I%s J0." % (code, number(-r))]
+        self.lines += [
+            "%s %s I%s J0. F400" % (code, words(x=x + r, y=y, z=-rng.choice((1.0, 2.5))), number(-r)),
+            "%s I%s J0." % (code, number(-r)),
+        ]
         self.lines += ["G1 " + words(x=x), "G0 Z30."]
 
     def holes(self, rng):
         depth = -rng.choice((2.0, 6.0, 12.5))
         code = rng.choice(("G81", "G82"))
-        self.lines.append("%s %s Z%s R2.%s F120" % (rng.choice(("G98", "G99")) + " " + code, words(x=rng.uniform(-50, 50), y=rng.uniform(-50, 50)), number(depth), " P0.2" if code == "G82" and self.dialect == "linuxcnc" else " P200" if code == "G82" else ""))
+        self.lines.append(
+            "%s %s Z%s R2.%s F120"
+            % (
+                rng.choice(("G98", "G99")) + " " + code,
+                words(x=rng.uniform(-50, 50), y=rng.uniform(-50, 50)),
+                number(depth),
+                " P0.2" if code == "G82" and self.dialect == "linuxcnc" else " P200" if code == "G82" else "",
+            )
+        )
         for _ in range(rng.randint(1, 5)):
-            self.lines.append(words(x=rng.uniform(-50, 50), y=rng.uniform(-50, 50)) if rng.random() < 0.7 else words(x=rng.uniform(-50, 50)))
+            self.lines.append(
+                words(x=rng.uniform(-50, 50), y=rng.uniform(-50, 50)) if rng.random() < 0.7 else words(x=rng.uniform(-50, 50))
+            )
         self.lines += ["G80", "G0 Z30."]
 
     def steps(self, rng):
@@ -131,7 +157,9 @@ class Case:
         self.to(rng, rng.uniform(-40, 40), rng.uniform(-40, 40))
         self.lines += ["G91", "G1 %s F500" % words(x=rng.uniform(5, 30))]
         for _ in range(rng.randint(1, 4)):
-            self.lines.append(words(**{k: rng.uniform(-25, 25) if k != "z" else rng.uniform(-2, 0) for k in rng.sample("xyz", rng.randint(1, 3))}))
+            self.lines.append(
+                words(**{k: rng.uniform(-25, 25) if k != "z" else rng.uniform(-2, 0) for k in rng.sample("xyz", rng.randint(1, 3))})
+            )
         self.lines += ["G90", "G0 Z30."]
 
     def tip_path(self, rng, tool):
@@ -141,7 +169,11 @@ class Case:
         self.lines += ["G0 Z80.", "G0 " + words(**{k.lower(): 0.0 for k in axes}), "G49", "G43.4 H%d" % tool]
         self.lines += ["G0 " + words(x=rng.uniform(-30, 30), y=rng.uniform(-30, 30)), "G0 Z30.", "G1 Z2. F300"]
         for _ in range(rng.randint(2, 4)):
-            self.lines.append("G1 " + words(x=rng.uniform(-30, 30), y=rng.uniform(-30, 30), z=rng.uniform(-5, 2), **turn()) + " F%d" % rng.choice((300, 800)))
+            self.lines.append(
+                "G1 "
+                + words(x=rng.uniform(-30, 30), y=rng.uniform(-30, 30), z=rng.uniform(-5, 2), **turn())
+                + " F%d" % rng.choice((300, 800))
+            )
         self.lines += ["G0 Z60.", "G49", "G0 " + words(**{k.lower(): 0.0 for k in axes})]
 
 

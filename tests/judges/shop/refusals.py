@@ -11,12 +11,17 @@ import plumbing
 PROGRAM = "G21 G17 G90 G94 G40 G49 G54\nG0 X0. Y0.\nG43 H1 Z30.\nG0 Z2.\nG1 Z-1. F100\nX20. F300\nG0 Z30.\nM30\n"
 PLACE = "[10.0, 20.0, -5.0]"
 
-SOUND = '{ at = [10.0, 20.0, 0.0], zero = "touched", touched_at = { X = { at = %s, tool = "H1" }, Z = { at = %s, tool = 40.0 } } }' % (PLACE, PLACE)
+SOUND = '{ at = [10.0, 20.0, 0.0], zero = "touched", touched_at = { X = { at = %s, tool = "H1" }, Z = { at = %s, tool = 40.0 } } }' % (
+    PLACE,
+    PLACE,
+)
 BAD = {
     "a touch outside the volume": '{ at = [10.0, 20.0, 0.0], touched_at = { X = { at = [900.0, 20.0, 0.0], tool = "H1" } } }',
     "a touch by a tool that the profile lacks": '{ at = [10.0, 20.0, 0.0], touched_at = { Y = { at = %s, tool = "H9" } } }' % PLACE,
-    "two places for one axis": '{ at = [10.0, 20.0, 0.0], touched_at = { at = %s, tool = "H1", X = { at = %s, tool = "H1" } } }' % (PLACE, PLACE),
-    "a rotary axis that the machine lacks": '{ at = [10.0, 20.0, 0.0], touched_at = { at = %s, tool = "H1", rotary_deg = { %%s = 30.0 } } }' % PLACE,
+    "two places for one axis": '{ at = [10.0, 20.0, 0.0], touched_at = { at = %s, tool = "H1", X = { at = %s, tool = "H1" } } }'
+    % (PLACE, PLACE),
+    "a rotary axis that the machine lacks": '{ at = [10.0, 20.0, 0.0], touched_at = { at = %s, tool = "H1", rotary_deg = { %%s = 30.0 } } }'
+    % PLACE,
     "an offset both touched and true": '{ at = [10.0, 20.0, 0.0], zero = "true", touched_at = { at = %s, tool = "H1" } }' % PLACE,
 }
 

@@ -36,7 +36,9 @@ def cases(count, wanted=lambda case: True):
 def difference(case, fault):
     """By how much a fault leads off, in times what is allowed."""
     moves = [m for m in Reader(case).read(case.text) if m.feed]
-    gap = lambda m: np.linalg.norm(fault(case, case.datums[m.offset], m.angles) - mock.right(case, case.datums[m.offset], m.angles), axis=1).max()
+    gap = lambda m: np.linalg.norm(
+        fault(case, case.datums[m.offset], m.angles) - mock.right(case, case.datums[m.offset], m.angles), axis=1
+    ).max()
     return max(gap(m) / judge.limit(case, m.offset) for m in moves)
 
 

@@ -63,12 +63,6 @@ def touch(machine, datum, axis, q, tool, sense):
     datum.sideways[axis] = -half * sense
 
 
-def untold(machine, datum, tool):
-    """Commands and tool vector of a touch of which the profile says nothing: at the zero, with the tool that silence means."""
-    length = machine.spec["lengths"].get(tool, 0.0)
-    return [datum.at[0], datum.at[1], round(datum.at[2] + length, 3)], [0.0, 0.0, -length]
-
-
 def face(rng, machine, datum, axis):
     """A face touched somewhere along itself; Z with a tool on the top, or on a setter whose height is known."""
     tool, said = probe(rng, machine.spec)
@@ -117,8 +111,8 @@ def bore(rng, machine, datum, walls):
     return [{"at": said[axis] if walls else middle, "tool": tool_said} for axis in (0, 1)]
 
 
-def offset(rng, machine, name, kind, place, angles, silence):
-    """Touches off one zero of that kind near a place (commands of the tip). `silence`: the tool where the profile names none."""
+def offset(rng, machine, name, kind, place, angles):
+    """Touches off one zero of that kind near a place (commands of the tip)."""
     datum = Datum(name, place, kind)
     datum.angles = angles
     turned = {"rotary_deg": dict(angles)} if angles else {}
@@ -127,7 +121,7 @@ def offset(rng, machine, name, kind, place, angles, silence):
         datum.zero, datum.angles = "true", {}
     elif kind == "corner":
         for axis in range(3):
-            touch(machine, datum, axis, *untold(machine, datum, silence), senses[axis])
+            touch(machine, datum, axis, datum.at, [0.0, 0.0, 0.0], senses[axis])
     elif kind == "one-place":
         tool = rng.choice(("H1", "H2"))
         vector = [0.0, 0.0, -machine.spec["lengths"][tool]]
@@ -142,5 +136,5 @@ def offset(rng, machine, name, kind, place, angles, silence):
         axes = (0, 1, 2) if kind == "faces" else rng.choice(((0, 2), (2,), (0, 1)))
         datum.touched_at = {"XYZ"[n]: {**face(rng, machine, datum, n), **turned} for n in axes}
         for axis in {0, 1, 2} - set(axes):
-            touch(machine, datum, axis, *untold(machine, datum, silence), senses[axis])
+            touch(machine, datum, axis, datum.at, [0.0, 0.0, 0.0], senses[axis])
     return datum
