@@ -1,0 +1,74 @@
+"""Zeros that cannot be what they say: each has to end with exit status 2, no output and a message of its own."""
+
+import pathlib
+import random
+import re
+import tempfile
+
+import machine as machines
+import plumbing
+
+PROGRAM = "G21 G17 G90 G94 G40 G49 G54\nG0 X0. Y0.\nG43 H1 Z30.\nG0 Z2.\nG1 Z-1. F100\nX20. F300\nG0 Z30.\nM30\n"
+PLACE = "[10.0, 20.0, -5.0]"
+
+SOUND = '{ at = [10.0, 20.0, 0.0], zero = "touched", touched_at = { X = { at = %s, tool = "H1" }, Z = { at = %s, tool = 40.0 } } }' % (
+    PLACE,
+    PLACE,
+)
+BAD = {
+    "a touch outside the volume": '{ at = [10.0, 20.0, 0.0], touched_at = { X = { at = [900.0, 20.0, 0.0], tool = "H1" } } }',
+    "a touch by a tool that the profile lacks": '{ at = [10.0, 20.0, 0.0], touched_at = { Y = { at = %s, tool = "H9" } } }' % PLACE,
+    "two places for one axis": '{ at = [10.0, 20.0, 0.0], touched_at = { at = %s, tool = "H1", X = { at = %s, tool = "H1" } } }'
+    % (PLACE, PLACE),
+    "a rotary axis that the machine lacks": '{ at = [10.0, 20.0, 0.0], touched_at = { at = %s, tool = "H1", rotary_deg = { %%s = 30.0 } } }'
+    % PLACE,
+    "an offset both touched and true": '{ at = [10.0, 20.0, 0.0], zero = "true", touched_at = { at = %s, tool = "H1" } }' % PLACE,
+}
+
+
+def attempt(vpost, rotary, offset):
+    rng = random.Random("shop refusals %s" % rotary)
+    spec = machines.random_machine(rng, rotary, False)
+    while rotary and ("B" in spec["chain"] or spec["chain"].endswith("A t]")):
+        spec = machines.random_machine(rng, rotary, False)
+    spec["lengths"] = {"H1": 80.0}
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        where = machines.profile(spec, "fanuc", folder, {"G54": offset})
+        (folder / "in.nc").write_text(PROGRAM.replace("G0 X0.", "G0 A0. C0.\nG0 X0.", 1) if rotary else PROGRAM)
+        return plumbing.run(vpost, "correct", folder / "in.nc", "-m", where)
+
+
+def judged(vpost):
+    """[(good, text)]"""
+    out, seen = [], {}
+    for rotary in (False, True):
+        machine = "on five axes" if rotary else "on three axes"
+        status, text, errors = attempt(vpost, rotary, SOUND)
+        out.append((status == 0 and text, "a sound one, %s: status %d %s" % (machine, status, first(errors))))
+        for name, offset in BAD.items():
+            offset = offset % ("B" if rotary else "A") if "%s" in offset else offset
+            status, text, errors = attempt(vpost, rotary, offset)
+            out.append((status == 2 and not text, "%s, %s: status %d %s" % (name, machine, status, first(errors))))
+            seen.setdefault(message(errors), set()).add(name)
+    for words, names in seen.items():
+        out.append((len(names) == 1 and words, "a message of its own: %s: %s" % (" and ".join(sorted(names)), words)))
+    return out
+
+
+def first(errors):
+    return next((x for x in errors.splitlines() if x.startswith("error")), "")
+
+
+def message(errors):
+    """The message without what it says of this case: numbers, and what stands in quotes."""
+    code, _, text = first(errors).partition("]")
+    return code + "]" + re.sub(r"`[^`]*`|\"[^\"]*\"|[-+]?\d[\d.]*", "", text)
+
+
+def main(vpost):
+    failed = 0
+    for good, text in judged(vpost):
+        failed += not good
+        print("%s %s" % ("ok  " if good else "FAIL", text))
+    return 1 if failed else 0
