@@ -47,7 +47,7 @@ fn success_is_one_line_for_eyes_and_none_for_pipes() {
     let seen = on_a_terminal(&arguments);
     assert_eq!(seen.lines().count(), 1, "{seen:?}");
     assert!(
-        seen.starts_with("20 blocks in, 24 out, 2 split; largest correction 197.3 um (line 10)"),
+        seen.starts_with("20 blocks in, 24 out, 2 split; largest correction 48.0 um (line 10)"),
         "{seen:?}"
     );
     assert_eq!(on_a_terminal(&[&arguments[..], &["-q"]].concat()), "");

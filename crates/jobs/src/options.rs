@@ -41,7 +41,7 @@ pub struct JobOptions {
         allow_hyphen_values = true
     )]
     pub work_offset: Vec<Given<WorkOffset>>,
-    /// What work offsets are: touched, or true.
+    /// What work offsets are: touched or true.
     ///
     /// Those that do not say it themselves: touched on this machine with correction off, so that its error at that place is in
     /// them, or found through a compensation or by an outside instrument; default: the profile's, else touched.

@@ -14,13 +14,16 @@ use crate::zeros::{
     ZeroFound,
 };
 
+/// Of each work offset.
+type ByName<T> = Vec<(String, T)>;
+
 impl Loader<'_> {
     /// Places of the zeros, and how each was found.
     pub(crate) fn work_offsets(
         &mut self,
         written: &BTreeMap<String, Spanned<WorkOffset>>,
         has_rotary: [bool; 3],
-    ) -> (Vec<(String, [f64; 3])>, Vec<(String, ZeroFound)>) {
+    ) -> (ByName<[f64; 3]>, ByName<ZeroFound>) {
         let (mut offsets, mut found) = (Vec::new(), Vec::new());
         for (name, offset) in written {
             if !name.strip_prefix('G').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) {
@@ -34,7 +37,8 @@ impl Loader<'_> {
             }
             let place = match offset.get_ref() {
                 WorkOffset::Place(place) => place,
-                WorkOffset::Found(FoundOffset { at, zero, touched_at }) => {
+                WorkOffset::Found(found_offset) => {
+                    let FoundOffset { at, zero, touched_at } = &**found_offset;
                     let places =
                         touched_at.as_ref().map(|places| self.touched_at(offset, places, has_rotary));
                     if let (Some(Found::True), Some(_)) = (zero, &places) {

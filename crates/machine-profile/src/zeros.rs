@@ -57,7 +57,7 @@ pub struct ZeroFound {
 )]
 pub(crate) enum WorkOffset {
     Place(Triple),
-    Found(FoundOffset),
+    Found(Box<FoundOffset>),
 }
 
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

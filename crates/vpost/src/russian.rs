@@ -291,7 +291,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("What it was measured with", "Чем измерено"),
     ("What the control says of itself: LinuxCNC's INI, or an MTConnect `probe`", "Что стойка говорит о себе: INI-файл LinuxCNC или ответ MTConnect на `probe`"),
     ("What to command so that the tool reaches points", "Что задать, чтобы инструмент пришёл в точки"),
-    ("What work offsets are: touched, or true", "Что такое смещения нуля: touched (касание) или true"),
+    ("What work offsets are: touched or true", "Нули: touched (касанием) или true"),
     ("Where a zero was touched, mm (repeatable)", "Где касались нуля, мм (можно повторять)"),
     ("Where the axes stand at the start, mm", "Где стоят оси в начале, мм"),
     ("Where the machine really goes for commanded points", "Куда станок на самом деле придёт по заданным точкам"),
