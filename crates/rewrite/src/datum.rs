@@ -226,7 +226,7 @@ impl LastDatum {
 
     /// That of the block that asked last, where something is cut from it for the first time.
     #[inline]
-    pub(crate) fn to_note(&mut self) -> Option<&Datum> {
+    pub(crate) fn newly_used(&mut self) -> Option<&Datum> {
         if std::mem::replace(&mut self.noted, true) {
             return None;
         }

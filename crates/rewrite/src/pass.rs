@@ -362,7 +362,7 @@ impl Pass<'_> {
         let line = block.line;
         let span = block.file_range();
         let cuts = motions.iter().any(|motion| matches!(motion, Motion::Feed(_) | Motion::Hole(_)));
-        if let Some(datum) = cuts.then(|| self.datum.to_note()).flatten() {
+        if let Some(datum) = cuts.then(|| self.datum.newly_used()).flatten() {
             self.tally.cut_from(datum, self.job.options.tolerance_mm, (&span, line));
         }
         let Tally { figures, notices, .. } = &mut self.tally;

@@ -103,7 +103,7 @@ impl Pass<'_> {
         run: &ShortRun,
         decimals: [u8; 3],
     ) -> Result<(), Vec<Diagnostic>> {
-        if let Some(datum) = self.datum.to_note() {
+        if let Some(datum) = self.datum.newly_used() {
             let (first, line) = (lines[0].offset, lines[0].line);
             let span = first..first + lines[0].content().len() as u64;
             self.tally.cut_from(datum, self.job.options.tolerance_mm, (&span, line));

@@ -68,6 +68,9 @@ fn number<T: Clone + Eq + std::hash::Hash>(
     number
 }
 
+/// The error of touched zeros, mm, and the context in which each was used first.
+pub(super) type Touched = Vec<([f64; 3], Context)>;
+
 /// A program under way.
 pub(super) struct Program<'a, 'n> {
     job: &'a Job<'a>,
@@ -87,7 +90,7 @@ pub(super) struct Program<'a, 'n> {
     /// Touched zeros in which something was cut.
     pub(super) datums: Vec<Datum>,
     /// Where asked for: the error of each of them, and in which context it was used first.
-    pub(super) touched: Option<&'n std::cell::RefCell<Vec<([f64; 3], Context)>>>,
+    pub(super) touched: Option<&'n std::cell::RefCell<Touched>>,
     ready: SmallVec<[Step; 4]>,
     ended: bool,
     /// Why it cannot be read on.
@@ -223,7 +226,7 @@ impl<'a, 'n> Program<'a, 'n> {
             let (tool_mm, kinematics) = (context.tool_mm, context.kinematics);
             let datum_mm = self.datum.error_mm(self.job.datums, self.job.machine(), context);
             let cuts = matches!(motion, Motion::Feed(_) | Motion::Hole(_));
-            if let Some(datum) = cuts.then(|| self.datum.to_note()).flatten()
+            if let Some(datum) = cuts.then(|| self.datum.newly_used()).flatten()
                 && !self.datums.iter().any(|known| known.is(datum))
             {
                 self.datums.push(datum.clone());
