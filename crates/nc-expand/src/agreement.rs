@@ -231,7 +231,7 @@ fn with_parameters(mut dialect: Dialect) -> Dialect {
         drill_return_mm: Some(0.5),
         drill_r: turning.cycles.drill_r.or(if turning.increments { None } else { Some(DrillR::Place) }),
         bore_return_percent: Some(200.0),
-        ..turning.cycles.clone()
+        ..turning.cycles
     };
     dialect
 }

@@ -7,7 +7,6 @@ use arbitrary::Unstructured;
 #[path = "mixed.rs"]
 mod mixed;
 
-#[cfg_attr(not(test), expect(unused_imports, reason = "asked for by the test of agreement"))]
 pub use mixed::shorthand;
 
 /// A program for a dialect; every choice comes from `bytes`, and they decide how long it gets.

@@ -144,7 +144,7 @@ impl Writer<'_> {
                 4 => self.say("G91 G1 X1. Z-1."),
                 5 => self.say(&format!("G0 X0 Z5.\n{incremental} {wait} G83 Z-20. R-3. Q5000 F.1")),
                 6 => self.say(&format!("G0 X30. Z5.\n{incremental} G83 X0 Z-20. R-3. F.1")),
-                7 => self.say(&format!("G0 X0 Z5.\nG85 Z-20. R-3. F.1")),
+                7 => self.say("G0 X0 Z5.\nG85 Z-20. R-3. F.1"),
                 8 => {
                     let (code, n) = (if self.one_in(3) { face } else { turn }, 100 + 10 * self.blocks);
                     self.say("G0 X64. Z2.");
@@ -156,8 +156,7 @@ impl Writer<'_> {
                     };
                     self.say(&format!("{code} P{n} Q{} U.4 W.1 F.2 M9\n{contour}", n + 1));
                     if self.one_in(2) {
-                        let code = if system == "C" { "G70" } else { "G70" };
-                        self.say(&format!("{code} P{n} Q{} F.1", n + 1));
+                        self.say(&format!("G70 P{n} Q{} F.1", n + 1));
                     }
                 }
                 9 => {
