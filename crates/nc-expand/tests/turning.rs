@@ -73,7 +73,7 @@ fn words_of_a_pass_hold_and_tapers_are_radii() {
         lines(&dialect("A"), "G94 X20. Z-3. R-1. F0.2\n"),
         ["F0.2 G0 X60. Z-4.", "G1 X20. Z-3.", "G1 Z2.", "G0 X60. Z2."]
     );
-    // Increments under G91 of system B, in the moves too.
+    // Increments under G91 of system B: its moves are places, and G91 holds behind them.
     assert_eq!(
         lines(&dialect("B"), "G91 G77 X-10. Z-32. F0.2\n"),
         ["F0.2 G0 X50. Z2.", "G1 Z-30.", "G1 X60.", "G0 X60. Z2.", "G91"]

@@ -202,10 +202,11 @@ pub(crate) fn apply<'d>(
                 )));
         }
         if *action == Action::ContourTolerance && may_switch_tip(&words.text(span), before) {
+            let call = words.text(span);
+            let name = call.split('(').next().unwrap_or_default();
             let message = both!(
-                "{} may switch TRAORI by its second argument",
-                "{} может переключать TRAORI вторым аргументом",
-                words.text(span)
+                "{name} is refused: may switch TRAORI by its second argument",
+                "{name} не принимается: может переключать TRAORI вторым аргументом"
             );
             let label = both!(
                 "its third digit from the right is a transformation, and 0 ends the one in force",
@@ -260,7 +261,7 @@ fn may_switch_tip(call: &str, before: &Modal) -> bool {
     let second = swivel::arguments(call).get(1).map_or("", |argument| argument.trim()).to_owned();
     let named = second.is_empty() || second.starts_with('_');
     let chooses_none = second.parse::<u32>().is_ok_and(|digits| digits / 100 % 10 == 0);
-    !named && !(chooses_none && before.kinematics == Kinematics::Axes)
+    !(named || chooses_none && before.kinematics == Kinematics::Axes)
 }
 
 /// True where P may be another code's than a work offset's: G4, G10, G64, a cycle, an arc of several turns or
