@@ -76,7 +76,12 @@ pub const fn treatment(action: &Action) -> Treatment {
         | Action::Curve(_)
         | Action::Cycle(_) => Treatment::Corrected,
         Action::Reference | Action::MachineCoordinates | Action::Probe => Treatment::NotCorrected,
-        Action::Dwell | Action::DwellBySetting | Action::DwellP | Action::Pass { .. } => Treatment::Passed,
+        Action::Dwell
+        | Action::DwellBySetting
+        | Action::DwellP
+        | Action::Pass { .. }
+        | Action::PassWithP
+        | Action::ContourTolerance => Treatment::Passed,
         Action::Refuse { .. } => Treatment::Refused,
         Action::PolarOn | Action::PolarOff | Action::Turning(_) | Action::Called(_) => Treatment::Executed,
         _ => Treatment::Followed,

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use nc_dialect::{builtin, builtin_names};
 use nc_expand::{Environment, Limits, expand};
-use nc_program::Setup;
+use nc_program::{Interpreter, Setup};
 use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Dialect, ItemKind, Reader, Value, looks_like_program};
 
@@ -64,6 +64,11 @@ fn verdict(text: &[u8], dialect: &Dialect) -> Option<u16> {
                 ItemKind::BracketCommand => {
                     let text = block.text(item.span);
                     match dialect.command(text) {
+                        // What its arguments mean depends on the state.
+                        Some(command) if command.action == Some(Action::ContourTolerance) => {
+                            let settings = Interpreter::new(dialect, &setup).settings(&block);
+                            settings.err().map(|refused| refused.code.0)
+                        }
                         Some(command) if command.refusal(text).is_none() => None,
                         _ => Some(224),
                     }

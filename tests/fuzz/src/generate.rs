@@ -5,10 +5,8 @@ use std::fmt::Write;
 use arbitrary::Unstructured;
 
 #[path = "mixed.rs"]
-#[allow(dead_code, reason = "the test of agreement asks for it, the fuzz targets do not yet")]
 mod mixed;
 
-#[allow(unused_imports, reason = "the same")]
 pub use mixed::shorthand;
 
 /// A program for a dialect; every choice comes from `bytes`, and they decide how long it gets.
