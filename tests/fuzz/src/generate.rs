@@ -13,7 +13,8 @@ pub use mixed::shorthand;
 #[must_use]
 pub fn program(bytes: &[u8], dialect: &str) -> String {
     let mut writer = Writer::new(bytes, dialect);
-    writer.opening();
+    let style = writer.below(32);
+    writer.opening(style);
     while !writer.chance.is_empty() && writer.blocks < 60 {
         writer.part();
     }
@@ -119,8 +120,8 @@ impl<'a> Writer<'a> {
         matches!(self.dialect.as_str(), "fanuc")
     }
 
-    fn opening(&mut self) {
-        let style = self.below(32);
+    /// The lowest bit of `style` set: lengths without points.
+    fn opening(&mut self, style: i64) {
         self.points = style & 1 == 0;
         self.spaces = style & 2 == 0;
         self.numbered = style & 4 != 0 && self.dialect != "linuxcnc";

@@ -10,7 +10,9 @@ pub fn shorthand(bytes: &[u8], dialect: &str) -> String {
     let (name, system) = dialect.split_once(' ').unwrap_or((dialect, ""));
     let mut writer = Writer::new(bytes, name);
     if system.is_empty() {
-        writer.opening();
+        // With points: who mixes both ways of writing lengths is refused (VP0241), and little of it would be seen.
+        let style = 2 * writer.below(16);
+        writer.opening(style);
         while !writer.chance.is_empty() && writer.blocks < 60 {
             if writer.one_in(2) {
                 writer.short();
@@ -48,35 +50,44 @@ impl Writer<'_> {
     fn short(&mut self) {
         let (a, b) = (self.place(), self.place());
         let (beside, size) = (self.beside(), self.size());
+        // A program that its control refuses whole shows nothing: mostly what the dialect has.
+        let foreign = self.one_in(16);
+        let has = |dialects: &[&str], writer: &Self| foreign || dialects.contains(&writer.dialect.as_str());
         match self.below(16) {
             0..=2 if self.dialect == "sinumerik" => {
                 let name = self.pick(&["RND", "CHR", "CHF"]).to_owned();
                 self.say(&format!("G1 {a} {name}={size}"));
                 self.say(&b);
             }
-            0..=2 => {
+            0..=2 if has(&["fanuc", "haas", "mitsubishi", "okuma"], self) => {
                 let letter = self.pick(&[",R", ",C"]).to_owned();
                 self.say(&format!("G1 {a} {letter}{size}"));
                 self.say(&b);
             }
             3 => self.say(&format!("{beside} G0 {a}")),
             4 => self.say(&format!("{beside} {a}")),
-            5 => {
+            5 if has(&["fanuc", "haas", "mitsubishi"], self) => {
                 self.say("G16");
                 let (radius, angle) = (10 + self.below(30), self.below(360));
                 self.say(&format!("{beside} G0 X{radius}. Y{angle}."));
                 self.say(&format!("Y{}.", self.blocks % 360));
                 self.say("G15");
             }
-            6 => {
+            6 if has(&["fanuc", "haas", "mitsubishi"], self) => {
                 self.say("G68 R30.");
                 self.say(&format!("G1 {a}"));
                 self.say("G69");
             }
-            7..=8 => {
+            7..=8 if has(&["fanuc", "haas", "mitsubishi", "linuxcnc"], self) => {
                 let count = self.below(5);
                 let back = self.pick(&["G98", "G99"]).to_owned();
-                let letter = self.pick(&["K", "L"]).to_owned();
+                let letter = if foreign {
+                    self.pick(&["K", "L"])
+                } else if self.dialect == "fanuc" {
+                    "K"
+                } else {
+                    "L"
+                };
                 self.say(&format!("G91 {back} G81 X2. Y1. Z-3. R-1. {letter}{count} F100."));
                 if self.one_in(2) {
                     self.say("X1.");
