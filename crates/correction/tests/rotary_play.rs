@@ -131,13 +131,16 @@ fn furthest(
         let pieces = if untouched { vec![own] } else { answer.pieces.to_vec() };
         lines += pieces.len();
         let mut gone = 0.0;
-        // What pieces have over the whole motion is that of an approach.
+        // What pieces have over the whole motion is that of approaches.
         let mut before = pieces.iter().map(|piece| piece.share).sum::<f64>() - 1.0;
         for piece in &pieces {
             let to = run(&at, piece, &words, &end);
-            // An approach leads from where the last motion has left the tool to where this one begins.
-            let share = if before > 1e-9 { 0.0 } else { piece.share };
-            before -= piece.share;
+            // An approach leads to where the next piece begins, at the start or where a table turns back on the way: no rotary
+            // axis moves in it.
+            let still = piece.rotary.is_none_or(|words| words == [Goal::Stays; 3]);
+            let approach = still && piece.share <= before + 1e-9;
+            let share = if approach { 0.0 } else { piece.share };
+            before -= piece.share - share;
             for k in 0..=400 {
                 let mix = |a: f64, b: f64, s: f64| a + (b - a) * s;
                 let s = f64::from(k) / 400.0;
@@ -205,7 +208,7 @@ fn a_table_that_moves_sideways_is_met_halfway() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(120))]
+    #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
     fn the_tip_follows_whatever_turns_back(
@@ -226,7 +229,12 @@ proptest! {
         }
         // A reversal inside the play moves nothing at once.
         let play_c = if sideways_mm == 0.0 { play_c } else { 0.0 };
-        let (off, lines) = furthest(Reversal { play_urad: [play_a, play_c], sideways_mm }, &places, true).unwrap();
+        let (off, lines) = match furthest(Reversal { play_urad: [play_a, play_c], sideways_mm }, &places, true) {
+            Ok(done) => done,
+            // Half of it and the rounding of the words are more than the tolerance: refused, not guessed.
+            Err(CorrectionError::NotWithinTolerance { .. }) if sideways_mm.abs() > 0.0018 => return Ok(()),
+            Err(error) => panic!("{error}"),
+        };
         prop_assert!(off <= ALLOWED_MM, "{off} mm, {lines} lines");
     }
 }
