@@ -551,6 +551,7 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
         tools: with_options(options, stored.lengths.as_ref().unwrap_or(&profile.tools)),
         tool_names: profile.tool_names.clone(),
         edge_at_change: profile.program.edge_at_change,
+        t_means_h: profile.program.t_means_h,
         noses_mm: noses_mm(profile),
         radii_mm: profile.cutter_radii_mm.clone(),
         default_tool_mm: profile.default_tool_mm,

@@ -463,6 +463,8 @@ pub(crate) struct Program {
     /// Edge of the tool that M6 brings in where the program writes no D (Sinumerik's MD20270): 1, or 0 for none.
     #[schemars(with = "Option<u32>")]
     pub(crate) edge_at_change: Option<Spanned<u32>>,
+    /// The length in force is that of the tool in the spindle, from its change on, whatever H a G43 names.
+    pub(crate) t_means_h: Option<bool>,
     /// Largest difference of an arc's radii that the control takes, mm; the dialect's where left out.
     #[schemars(with = "Option<f64>")]
     pub(crate) arc_tolerance_mm: Option<Spanned<Finite>>,

@@ -397,6 +397,7 @@ impl Loader<'_> {
             tool_change,
             arc_tolerance_mm,
             edge_at_change: self.edge_at_change(program),
+            t_means_h: program.t_means_h.unwrap_or_default(),
             harmless_m_codes,
             diameters: program.x.map(|x| matches!(x, XName::Diameter)),
             g_code_system: program.g_code_system.clone(),

@@ -87,6 +87,8 @@ pub struct ProgramRules {
     pub tool_change: [AfterChange; 3],
     /// The edge that a tool change brings in where no D says one, 0 for none; `None`: not said.
     pub edge_at_change: Option<u32>,
+    /// The length in force is that of the tool in the spindle, whatever H a G43 names.
+    pub t_means_h: bool,
     /// Numbers of M codes that move neither an axis nor the frame.
     pub harmless_m_codes: Vec<u16>,
     /// Largest difference of an arc's radii that the control takes, mm; `None`: the dialect's.

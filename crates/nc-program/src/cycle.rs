@@ -163,34 +163,19 @@ pub(crate) fn holes(
     }
     let (r_mm, bottom_mm) = levels(env, words, state, &cycle, normal, &shift)?;
     below_r(env, words, state, r_mm, bottom_mm)?;
-    if let ReturnLevel::Undecided { line } = state.return_level {
-        return Err(words
-            .refuse(
-                codes::BLOCK_DELETE,
-                both!(
-                    "whether G98 or G99 is in force depends on the block delete switch",
-                    "действует G98 или G99 — зависит от переключателя пропуска кадров"
-                ),
-                words.span(AXIS_LETTERS.or(R)),
-                both!(
-                    "line {line} and those behind it change it and may be skipped",
-                    "кадры со строки {line} его меняют и могут быть пропущены"
-                ),
-            )
-            .help(both!("write G98 or G99 in this block", "напишите G98 или G99 в этом кадре")));
-    }
     let mut at = require_known(words, &state.axes, &Text::pair("the drilling cycle", "цикл сверления"))?;
     // Nothing but a motion code makes an unknown axis known again, and that ends the cycle: where the
     // first hole finds the axis known, the start of the series did.
     let began_mm = cycle.initial.known().unwrap_or(at.linear_mm[normal]);
     // Controls end a cycle at the level further from the bottom.
     let initial_mm = if r_mm >= bottom_mm { began_mm.max(r_mm) } else { began_mm.min(r_mm) };
+    let level = if initial_mm == r_mm { ReturnLevel::Initial } else { state.return_level };
     let parameters = Cycle {
         kind: kind(cycle.kind),
         peck_mm: cycle.peck_mm,
         // P beside a cycle without a dwell (G81, G85) is kept for the next, and is not its own.
         dwell: cycle.dwell.filter(|_| !WITHOUT_DWELL.contains(&cycle.code)),
-        return_to_initial: state.return_level == ReturnLevel::Initial,
+        return_to_initial: returns_to_initial(words, level)?,
     };
     let mut motions: Motions = SmallVec::with_capacity(count as usize);
     for _ in 0..count {
@@ -216,6 +201,36 @@ pub(crate) fn holes(
     state.axes = position(at);
     state.cycle = Some(CycleState { drilled: true, ..cycle });
     Ok(motions)
+}
+
+/// G98 is in force; that it is not said, or who may skip its block, is asked where the two differ.
+fn returns_to_initial(words: &Words<'_, '_, '_>, level: ReturnLevel) -> Outcome<bool> {
+    let (code, what, label) = match level {
+        ReturnLevel::Initial => return Ok(true),
+        ReturnLevel::R => return Ok(false),
+        ReturnLevel::Unsaid => (
+            codes::CYCLE_INCOMPLETE,
+            both!("no G98 or G99 says to which level the tool returns", "ни G98, ни G99 не сказано, на какой уровень выходит инструмент"),
+            both!(
+                "the control starts in G99, or in what the program before it has left",
+                "стойка начинает с G99 или с того, что оставила предыдущая программа"
+            ),
+        ),
+        ReturnLevel::Undecided { line } => (
+            codes::BLOCK_DELETE,
+            both!(
+                "whether G98 or G99 is in force depends on the block delete switch",
+                "действует G98 или G99 — зависит от переключателя пропуска кадров"
+            ),
+            both!(
+                "line {line} and those behind it change it and may be skipped",
+                "кадры со строки {line} его меняют и могут быть пропущены"
+            ),
+        ),
+    };
+    Err(words
+        .refuse(code, what, words.span(AXIS_LETTERS.or(R)), label)
+        .help(both!("write G98 or G99 in this block", "напишите G98 или G99 в этом кадре")))
 }
 
 /// Where an axis of the plane goes for the next hole: under G91 on from the last one.

@@ -138,7 +138,11 @@ impl<'d> Interpreter<'d> {
             arc_centres: ArcCentres::Incremental,
             compensation: Compensation::Off,
             offset: Offset::default(),
-            return_level: ReturnLevel::Initial,
+            return_level: if dialect.codes.iter().any(|entry| entry.action == Action::ReturnR) {
+                ReturnLevel::Unsaid
+            } else {
+                ReturnLevel::Initial
+            },
             tool_length: ToolLength::Off,
             vectors: false,
             plane_begun: None,

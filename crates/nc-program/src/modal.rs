@@ -150,6 +150,8 @@ pub enum ReturnLevel {
     Initial,
     /// G99
     R,
+    /// The program has not said, and the control starts in what the program before has left, or in G99.
+    Unsaid,
     /// One of the two, depending on the block delete switch.
     Undecided {
         /// Line of the first block that may be skipped.

@@ -302,7 +302,9 @@ fn straight(
     let turns = words.has(ROTARY_LETTERS) || moved.direction.is_some();
     // While a rotary axis feeds, the tool cuts: along its real path, which the linear axes have to follow.
     let cuts = !rapid && env.setup.rotary_matters && end.rotary != start.rotary;
-    let alone = !words.has(LINEAR_LETTERS) || (end.linear == start.linear && end.rotary != start.rotary);
+    // A rapid that says the place again goes there, by what the new angles ask of it.
+    let still = end.linear == start.linear && end.rotary != start.rotary;
+    let alone = !words.has(LINEAR_LETTERS) || (still && !rapid);
     if turns && alone && !cuts {
         // Rotary axes position, or their place does not matter: the linear axes stay where they are.
         motions.push(Motion::Uncorrected { end: end.partial(), by: Mover::RotaryWords });

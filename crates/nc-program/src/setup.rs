@@ -77,6 +77,8 @@ pub struct Setup {
     pub tool_names: Vec<(String, u32)>,
     /// The edge that a tool change brings in where no D says one: 0 for none; `None`: not said (MD20270).
     pub edge_at_change: Option<u32>,
+    /// The length in force is that of the tool in the spindle, from its change on, whatever H a G43 names.
+    pub t_means_h: bool,
     /// H number and radius of the nose of a turning tool, mm, above zero.
     pub noses_mm: Vec<(u32, f64)>,
     /// D number and radius of a mill's cutter, mm, above zero: how long pieces must be that the control offsets.

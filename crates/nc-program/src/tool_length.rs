@@ -51,8 +51,11 @@ pub(crate) fn tool(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut
         }
         state.tool_selected = words.whole(b'T').ok().flatten();
     }
-    if env.tool_change(words).is_some() {
+    if let Some((_, span)) = env.tool_change(words) {
         state.tool_loaded = state.tool_selected;
+        if let (true, Some(tool)) = (env.setup.t_means_h, state.tool_loaded) {
+            return take(env, words, span, tool, state);
+        }
     }
     Ok(())
 }
@@ -344,8 +347,10 @@ pub(crate) fn length(
         (None, ToolLength::On { negative, .. }) if words.has(H) => (negative, words.span(H)),
         (None, _) => return Ok(()),
     };
-    let loaded = env.dialect.length_of_loaded_tool;
-    let number = match (words.whole(b'H')?.filter(|number| *number != 0 || !loaded), state.tool_length) {
+    let (loaded, written_number) = (env.dialect.length_of_loaded_tool, words.whole(b'H')?);
+    let of_tool = state.tool_loaded.filter(|_| env.setup.t_means_h && written_number != Some(0));
+    let written_number = of_tool.or(written_number);
+    let number = match (written_number.filter(|number| *number != 0 || !loaded), state.tool_length) {
         (Some(number), _) => number,
         (None, _) if loaded => match state.tool_loaded {
             Some(number) => number,

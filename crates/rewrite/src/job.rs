@@ -54,6 +54,8 @@ pub const OTHER_TOOL: Code = Code(533);
 pub const TOUCHED_OUTSIDE: Code = Code(522);
 /// A zero is taken as touched without a tool length, which another tool would have touched elsewhere.
 pub const TOUCHED_BY_GUESS: Code = Code(523);
+/// Tools cut without a length in force.
+pub const WITHOUT_LENGTH: Code = Code(527);
 /// Lost motion moves the tool sideways where an axis turns, by more than can be hidden.
 pub const SIDEWAYS: Code = Code(519);
 

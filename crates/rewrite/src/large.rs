@@ -163,10 +163,10 @@ impl<R: Read + Seek + Send, O: Fn() -> R + Sync> Source<'_, O> {
             }
         };
         let Written { bytes, hash, changed } = sink.finish(again).map_err(LargeEnd::Unwritten)?;
-        let mut figures = tally.figures;
         tally.evidence.refusal(&questions).map_err(|finding| self.refused_as_a_whole(*finding))?;
-        let mut warnings = tally.notices.warnings(&figures.held);
+        let mut warnings = tally.warnings(&self.job);
         warnings.extend(tally.evidence.doubts(&questions));
+        let mut figures = tally.figures;
         figures.warnings = warnings.iter().map(|(warning, _)| warning.clone()).collect();
         let warnings: io::Result<Vec<Part>> =
             warnings.into_iter().map(|warning| self.part(warning)).collect();

@@ -44,6 +44,7 @@ mod feed;
 mod guards;
 mod job;
 mod large;
+mod lengthless;
 mod nose;
 mod notices;
 mod pass;

@@ -365,6 +365,9 @@ impl Pass<'_> {
         if let Some(datum) = cuts.then(|| self.datum.newly_used()).flatten() {
             self.tally.cut_from(datum, self.job.options.tolerance_mm, (&span, line));
         }
+        if cuts {
+            self.tally.lengthless.cut(self.job, self.state.interpreter.modal(), &span, line);
+        }
         let Tally { figures, notices, .. } = &mut self.tally;
         for (motion, correction) in motions.iter().zip(corrections) {
             figures.raise(correction, line);

@@ -7,14 +7,16 @@ use machine_model::Vector;
 use nc_program::Evidence;
 
 use crate::datum::Datum;
-use crate::job::Figures;
-use crate::notices::Notices;
+use crate::job::{Figures, Job};
+use crate::lengthless::Lengthless;
+use crate::notices::{Notices, Warning};
 
 /// What is counted on the way.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Tally {
     pub(crate) figures: Figures,
     pub(crate) notices: Notices,
+    pub(crate) lengthless: Lengthless,
     pub(crate) evidence: Evidence,
 }
 
@@ -34,11 +36,19 @@ impl Tally {
         figures.held.add(&more.held);
         more.datums.iter().for_each(|datum| figures.see(datum));
         self.notices.add(&later.notices);
+        self.lengthless.add(&later.lengthless);
         self.evidence.add(&later.evidence);
     }
 }
 
 impl Tally {
+    /// What was done is to be said, all of the program read.
+    pub(crate) fn warnings(&self, job: &Job<'_>) -> Vec<Warning> {
+        let mut warnings = self.notices.warnings(&self.figures.held);
+        warnings.extend(self.lengthless.warning(job));
+        warnings
+    }
+
     /// Notes the zero that something is cut from in a line, and what is not known of it.
     pub(crate) fn cut_from(&mut self, datum: &Datum, tolerance_mm: f64, (span, line): (&Range<u64>, u64)) {
         let Self { figures, notices, .. } = self;

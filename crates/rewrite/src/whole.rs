@@ -89,8 +89,10 @@ pub(crate) fn pass<E: From<Vec<Diagnostic>>>(
     if let Some((unfinished, _)) = pass.state.interpreter.unfinished() {
         return Err(vec![unfinished].into());
     }
-    let Pass { out, tally: Tally { mut figures, notices, evidence }, .. } = pass;
-    figures.warnings = notices.warnings(&figures.held).into_iter().map(|(warning, _)| warning).collect();
+    let Pass { out, tally, .. } = pass;
+    let warnings = tally.warnings(job);
+    let Tally { mut figures, evidence, .. } = tally;
+    figures.warnings = warnings.into_iter().map(|(warning, _)| warning).collect();
     Ok(Some(Corrected { text: out, figures, evidence }))
 }
 
