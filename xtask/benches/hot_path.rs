@@ -75,6 +75,7 @@ fn hot_path(c: &mut Criterion) {
     });
     let options = Options {
         tolerance_mm: 1e-3,
+        accept_mm: 5e-3,
         outside: Outside::Refuse,
         minimum_segment_mm: 0.0,
         orientation_rad: 5e-5,

@@ -216,6 +216,7 @@ fn budget_page(options: &Options) -> anyhow::Result<String> {
         datums: &rewrite::Datums::default(),
         options: correction::Options {
             tolerance_mm: profile.correction.tolerance_um * 1e-3,
+            accept_mm: 5e-3 * profile.correction.tolerance_um,
             outside: correction::Outside::Refuse,
             minimum_segment_mm: profile.correction.minimum_segment_mm,
             orientation_rad: profile.correction.orientation_urad * 1e-6,

@@ -152,6 +152,7 @@ fn corrected(
         datums: &machine.datums,
         options: CorrectionOptions {
             tolerance_mm: profile.correction.tolerance_um * 1e-3,
+            accept_mm: 5e-3 * profile.correction.tolerance_um,
             outside: Outside::Refuse,
             minimum_segment_mm: profile.correction.minimum_segment_mm,
             orientation_rad: profile.correction.orientation_urad * 1e-6,

@@ -85,7 +85,7 @@ mod tests {
             let model = machine(monotone);
             let plane = [Plane::Xy, Plane::Zx, Plane::Yz][plane];
             let [u, v, _] = plane.axes();
-            let options = Options { tolerance_mm: 0.001, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5, orientation: crate::Orientation::Tip };
+            let options = Options { tolerance_mm: 0.001, accept_mm: 0.0, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5, orientation: crate::Orientation::Tip };
             let mut corrector = Corrector::new(&model, options);
             let block = block([3.0, -5.0, -120.0]);
             corrector.heed(&block, [0.0; 3]);

@@ -90,6 +90,20 @@ pub enum CorrectionError {
     },
 }
 
+impl CorrectionError {
+    /// How far the path would be off, mm, where that is all that is wrong.
+    pub(crate) fn off_mm(&self) -> Option<f64> {
+        match self {
+            Self::MustNotSplit { distance_um }
+            | Self::TurnedFrame { distance_um, .. }
+            | Self::Sideways { distance_um, .. }
+            | Self::Unnamed { distance_um, .. }
+            | Self::NotWithinTolerance { distance_um, .. } => Some(1e-3 * distance_um),
+            _ => None,
+        }
+    }
+}
+
 /// How far off one block would be, in words.
 fn off(distance_um: f64) -> String {
     if distance_um.is_finite() {

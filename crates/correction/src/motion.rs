@@ -10,16 +10,48 @@ use crate::curve::Curve;
 use crate::error::CorrectionError;
 use crate::follow::{Follow, Turning, Whole};
 use crate::grid::{Block, Goal};
-use crate::options::Orientation;
+use crate::options::{Options, Orientation};
 use crate::short_line::Run;
 use crate::{Piece, PieceKind};
 
+/// Where the tolerance cannot be held so many of it are tried.
+const WIDER: [f64; 4] = [1.25, 1.6, 2.0, 3.0];
+
 impl Corrector<'_> {
-    /// Corrects one motion of a block.
+    /// Corrects one motion of a block; where the tolerance cannot be held, as near as can be proven, up to
+    /// [`Options::accept_mm`](crate::Options::accept_mm).
     ///
     /// # Errors
     /// [`CorrectionError`] where the promise cannot be kept; nothing of the motion may be used then.
     pub fn correct(&mut self, motion: &Motion, block: &Block) -> Result<Corrected, CorrectionError> {
+        if self.options.accept_mm <= self.options.tolerance_mm {
+            return self.correct_within(motion, block);
+        }
+        let before = self.clone();
+        self.correct_within(motion, block).or_else(|error| {
+            if error.off_mm().is_none_or(|off_mm| off_mm > self.options.accept_mm) {
+                return Err(error);
+            }
+            self.correct_beyond(&before, motion, block).ok_or(error)
+        })
+    }
+
+    /// The same by the narrowest of wider tolerances that holds.
+    fn correct_beyond(&mut self, before: &Self, motion: &Motion, block: &Block) -> Option<Corrected> {
+        let Options { tolerance_mm, accept_mm, .. } = self.options;
+        let wider = WIDER.map(|times| times * tolerance_mm).into_iter().filter(|mm| *mm < accept_mm);
+        wider.chain([accept_mm]).find_map(|mm| {
+            self.clone_from(before);
+            self.options.tolerance_mm = mm;
+            let corrected = self.correct_within(motion, block);
+            self.options.tolerance_mm = tolerance_mm;
+            let mut corrected = corrected.ok()?;
+            corrected.correction.accepted_mm = Some(corrected.correction.after_mm);
+            Some(corrected)
+        })
+    }
+
+    fn correct_within(&mut self, motion: &Motion, block: &Block) -> Result<Corrected, CorrectionError> {
         if block.kinematics != self.kinematics {
             self.switch(block.kinematics)?;
         }

@@ -16,6 +16,9 @@ pub enum Outside {
 pub struct Options {
     /// Largest distance of the real path from the programmed one, rounding apart, mm.
     pub tolerance_mm: f64,
+    /// Largest distance that is written all the same where the tolerance cannot be held, and said, mm; none beyond the
+    /// tolerance where it is not above that.
+    pub accept_mm: f64,
     /// Feed motion outside the calibrated volume.
     pub outside: Outside,
     /// No piece is made shorter than this, mm; 0 for no limit.

@@ -40,6 +40,7 @@ fn correct(start: Vector, end: Vector) -> Result<usize, CorrectionError> {
     let block = Block { stated, ..Block::default() };
     let options = Options {
         tolerance_mm: 1e-3,
+        accept_mm: 0.0,
         outside: Outside::Refuse,
         minimum_segment_mm: 0.0,
         orientation_rad: 5e-5,

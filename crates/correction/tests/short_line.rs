@@ -92,7 +92,7 @@ proptest! {
         let interpolation = if monotone { Interpolation::Monotone } else { Interpolation::Linear };
         let model = machine(&values, play, interpolation);
         let bare = Bare(model.clone());
-        let options = Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5, orientation: correction::Orientation::Tip };
+        let options = Options { tolerance_mm: 1e-3, accept_mm: 0.0, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5, orientation: correction::Orientation::Tip };
         let (mut short, mut long) = (Corrector::new(&model, options), Corrector::new(&bare, options));
         let mut block = block();
         let at = |steps: [i32; 3]| Position {

@@ -52,6 +52,9 @@ pub struct Outcome {
     /// Touched zeros from which deviations count.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub datums: Vec<DatumUsed>,
+    /// Lines that cannot be held within the tolerance; held against what the correction proves of them.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub accepted_lines: usize,
     /// The same in words.
     #[serde(skip)]
     pub counted_from: Vec<Text>,
@@ -64,7 +67,7 @@ impl Outcome {
     /// What a comparison says.
     #[must_use]
     pub fn new(settings: &Settings, checked: &Checked) -> Self {
-        let Checked { comparison, datums, findings } = checked;
+        let Checked { comparison, datums, accepted, findings } = checked;
         let [before, after] = [comparison.leans_before, comparison.leans_after];
         let leans = before.largest_rad > 0.0 || after.largest_rad > 0.0;
         let urad = |lean: Lean| leans.then(|| (lean.largest_rad * 1e9).round() / 1e3);
@@ -84,6 +87,7 @@ impl Outcome {
             deviation_before_line: comparison.before.line,
             deviation_after_um: um(comparison.after.largest_mm),
             deviation_after_line: comparison.after.line,
+            accepted_lines: *accepted,
             counted_from: datums::said(datums),
             datums: DatumUsed::all(datums),
             findings: findings.clone(),
@@ -118,6 +122,14 @@ impl Outcome {
                 self.tilt_after_line.unwrap_or_default(),
             ));
         }
+        if self.accepted_lines > 0 {
+            text.push(&both!(
+                "{} line(s) cannot be held within the tolerance of {} um, and are held against what is proven of them (--accept)\n",
+                "строки, которые в допуске {1} мкм не удержать: {0}; сравниваются с тем, что для них доказано (--accept)\n",
+                self.accepted_lines,
+                self.tolerance_um
+            ));
+        }
         for sentence in &self.counted_from {
             text.push(&both!("{sentence}\n", "{sentence:#}\n"));
         }
@@ -127,6 +139,10 @@ impl Outcome {
         text.push(&if self.passed { PASSED } else { FAILED });
         text
     }
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 const PASSED: Text = Text::pair("passed\n", "проверка пройдена\n");

@@ -19,6 +19,10 @@ use crate::options::{self, JobOptions};
 use crate::stored::Stored;
 use crate::{conditions, datums, lines, profile};
 
+/// Where the tolerance cannot be held, so many of it are written where nobody says another limit: what a reversal of an axis
+/// with everyday play leaves beside a corner.
+const ACCEPTED: f64 = 5.0;
+
 /// Everything a job on a program needs.
 pub struct Settings {
     /// The machine.
@@ -117,6 +121,8 @@ impl Settings {
         };
         let limits = Options {
             tolerance_mm: tolerance_um * 1e-3,
+            accept_mm: 1e-3
+                * options.accept.or(profile.correction.accept_um).unwrap_or(ACCEPTED * tolerance_um),
             outside,
             minimum_segment_mm: profile.correction.minimum_segment_mm,
             orientation_rad: profile.correction.orientation_urad * 1e-6,

@@ -1125,6 +1125,7 @@ impl Loader<'_> {
         CorrectionOptions {
             engine,
             tolerance_um: positive(&written.tolerance_um, "tolerance_um", 1.0, false),
+            accept_um: written.accept_um.as_ref().map(|_| positive(&written.accept_um, "accept_um", 0.0, true)),
             outside: match written.outside {
                 OutsideName::Refuse => Outside::Refuse,
                 OutsideName::Clamp => Outside::Clamp,

@@ -42,6 +42,8 @@ pub struct CorrectionOptions {
     pub engine: EngineId,
     /// Largest distance of the real path from the programmed one, µm.
     pub tolerance_um: f64,
+    /// What is written all the same where the tolerance cannot be held, µm; `None`: not said.
+    pub accept_um: Option<f64>,
     /// Feed motion outside the calibrated volume.
     pub outside: Outside,
     /// No piece is made shorter than this, mm; 0 for no limit.

@@ -210,7 +210,10 @@ fn returns_to_initial(words: &Words<'_, '_, '_>, level: ReturnLevel) -> Outcome<
         ReturnLevel::R => return Ok(false),
         ReturnLevel::Unsaid => (
             codes::CYCLE_INCOMPLETE,
-            both!("no G98 or G99 says to which level the tool returns", "ни G98, ни G99 не сказано, на какой уровень выходит инструмент"),
+            both!(
+                "no G98 or G99 says to which level the tool returns",
+                "ни G98, ни G99 не сказано, на какой уровень выходит инструмент"
+            ),
             both!(
                 "the control starts in G99, or in what the program before it has left",
                 "стойка начинает с G99 или с того, что оставила предыдущая программа"

@@ -14,10 +14,12 @@ pub(crate) struct Found {
 }
 
 /// Both programs may go on from here: the same is begun, and leads the same way.
-pub(crate) fn fits(wanted: &Item, made: &Item, underway: bool) -> bool {
+///
+/// * `nearly_mm` – feeds so near each other are the same, though not as near as they should be; 0 for what the limits say
+pub(crate) fn fits(wanted: &Item, made: &Item, underway: bool, nearly_mm: f64) -> bool {
     match (wanted, made) {
         (Item::Feed(wanted), Item::Feed(made)) => {
-            let near_mm = NEAR_LIMITS * wanted.limit_mm;
+            let near_mm = (NEAR_LIMITS * wanted.limit_mm).max(nearly_mm);
             let ((from_mm, from), (to_mm, to)) = (wanted.nearest(&made.start()), wanted.nearest(&made.end()));
             let length_mm = wanted.length_mm().max(1e-9);
             let moves = (to - from) * length_mm > near_mm || wanted.reach_mm <= near_mm;
@@ -30,11 +32,15 @@ pub(crate) fn fits(wanted: &Item, made: &Item, underway: bool) -> bool {
 }
 
 /// What it costs to take one for the other, in halves of leaving one out.
-fn cost(wanted: &Item, made: &Item) -> Option<u32> {
+fn cost(wanted: &Item, made: &Item, nearly_mm: f64) -> Option<u32> {
     match (wanted, made) {
         (Item::Feed(wanted), Item::Feed(made)) => {
-            let near = (wanted.end() - made.end()).norm() <= NEAR_LIMITS * wanted.limit_mm;
-            Some(if near { 1 } else { 3 })
+            // One that is off by much is the same all the same, rather than one left out and one put in.
+            Some(match (wanted.end() - made.end()).norm() {
+                mm if mm <= NEAR_LIMITS * wanted.limit_mm => 1,
+                mm if mm <= nearly_mm => 2,
+                _ => 3,
+            })
         }
         (Item::Position(wanted), Item::Position(made)) => Some(if ends_alike(wanted, made) { 0 } else { 3 }),
         (Item::Deed(wanted), Item::Deed(made)) => (wanted.number == made.number).then_some(0),
@@ -53,8 +59,9 @@ pub(crate) fn names(wanted: &[Item], made: &[Item], next: Option<&Feeding>, near
         for m in 0..=made.len() {
             let skip = (w > 0).then(|| least[(w - 1) * columns + m] + 2);
             let add = (m > 0).then(|| least[w * columns + m - 1] + 2);
-            let both = (w > 0 && m > 0)
-                .then(|| Some(least[(w - 1) * columns + m - 1] + cost(&wanted[w - 1], &made[m - 1])?));
+            let both = (w > 0 && m > 0).then(|| {
+                Some(least[(w - 1) * columns + m - 1] + cost(&wanted[w - 1], &made[m - 1], nearly_mm)?)
+            });
             let best = [skip, add, both.flatten()].into_iter().flatten().min();
             least[w * columns + m] = best.unwrap_or(0);
         }
@@ -63,7 +70,7 @@ pub(crate) fn names(wanted: &[Item], made: &[Item], next: Option<&Feeding>, near
     while w > 0 || m > 0 {
         let here = least[w * columns + m];
         let both = (w > 0 && m > 0)
-            .then(|| Some(least[(w - 1) * columns + m - 1] + cost(&wanted[w - 1], &made[m - 1])?));
+            .then(|| Some(least[(w - 1) * columns + m - 1] + cost(&wanted[w - 1], &made[m - 1], nearly_mm)?));
         let what = if both.flatten() == Some(here) {
             (w, m) = (w - 1, m - 1);
             Found { what: What::Missing, wanted: Some(w), made: Some(m) }

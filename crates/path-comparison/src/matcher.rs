@@ -492,7 +492,7 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
                 let pair = (self.alignment.wanted.peek(done + skipped), self.commanded.peek(sum - skipped));
                 let rank = match pair {
                     (None, None) => 2,
-                    (Some(wanted), Some(made)) if difference::fits(wanted, made, skipped == 0) => {
+                    (Some(wanted), Some(made)) if difference::fits(wanted, made, skipped == 0, 0.0) => {
                         u8::from(!matches!(made, Item::Feed(_)))
                     }
                     _ => return None,
@@ -503,6 +503,14 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             if let Some((_, _, skipped)) = best {
                 return [skipped, sum - skipped];
             }
+        }
+        // A program that was not corrected is off everywhere: there the next that is much the same.
+        let same = (1..=most).find(|n| {
+            let pair = self.alignment.wanted.peek(done + n).zip(self.commanded.peek(*n));
+            pair.is_some_and(|(wanted, made)| difference::fits(wanted, made, false, NEARLY_MM))
+        });
+        if let Some(count) = same {
+            return [count; 2];
         }
         let left = [self.alignment.wanted.peek(done).is_some(), self.commanded.peek(0).is_some()];
         left.map(usize::from)

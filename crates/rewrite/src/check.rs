@@ -4,6 +4,7 @@ mod findings;
 mod reading;
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 
 use diagnostic::{Diagnostic, Text, both};
 use machine_model::{Models, Vector};
@@ -12,7 +13,8 @@ use nc_program::Context;
 use path_comparison::{Comparison, Course, Traces, compare};
 
 use crate::datum::Datum;
-use crate::job::Job;
+use crate::job::{Corrected, Guards, Job};
+use crate::whole::pass;
 use crate::words::retreats;
 use reading::{Numbers, Optional, Program, file_and_line};
 
@@ -23,6 +25,8 @@ pub struct Checked {
     pub comparison: Comparison,
     /// Touched zeros from which distances count.
     pub datums: Vec<Datum>,
+    /// Lines that cannot be held within the tolerance, and were held against what the correction proves of them instead.
+    pub accepted: usize,
     /// What differs, a sentence each; none where the program passes.
     pub findings: Vec<Text>,
 }
@@ -49,6 +53,35 @@ pub fn check(
     traces: Traces,
     progress: &dyn Fn(f64),
 ) -> Result<Checked, Unreadable> {
+    let first = check_within(job, programs, traces, progress, &BTreeMap::new())?;
+    if first.findings.is_empty() || job.options.accept_mm <= job.options.tolerance_mm {
+        return Ok(first);
+    }
+    // Of what cannot be held within the tolerance the correction says so itself.
+    let accepted = accepted(job, programs[0]);
+    if accepted.is_empty() { Ok(first) } else { check_within(job, programs, traces, progress, &accepted) }
+}
+
+/// Of each line that cannot be held within the tolerance, what the correction proves of it instead, mm.
+fn accepted(job: &Job<'_>, posted: &Expanded<'_>) -> BTreeMap<u64, f64> {
+    let job = Job { force: true, guards: Guards::default(), ..*job };
+    let corrected = pass::<Vec<Diagnostic>>(posted.text(), &job, |_| false, |_| Ok(()));
+    let Ok(Some(Corrected { figures, .. })) = corrected else { return BTreeMap::new() };
+    let mut accepted = BTreeMap::new();
+    for (line, off_mm) in figures.accepted {
+        let most: &mut f64 = accepted.entry(line).or_default();
+        *most = most.max(off_mm);
+    }
+    accepted
+}
+
+fn check_within(
+    job: &Job<'_>,
+    programs: [&Expanded<'_>; 2],
+    traces: Traces,
+    progress: &dyn Fn(f64),
+    accepted: &BTreeMap<u64, f64>,
+) -> Result<Checked, Unreadable> {
     let retreats = retreats(job.dialect);
     let compared = |optional: Optional, traces: Traces| {
         let numbers = RefCell::new(Numbers::default());
@@ -57,6 +90,7 @@ pub fn check(
             Program::new(wanted, job, optional, &numbers, &|_| ()),
             Program::new(commanded, job, optional, &numbers, progress),
         ];
+        steps[0].accepted = Some(accepted);
         let [w, c] = &mut steps;
         let comparison = compare(job.models, &mut *w, &mut *c, retreats, traces);
         // The one that the other was compared with may end early: what cannot be read is refused all the same.
@@ -69,7 +103,7 @@ pub fn check(
         let may_skip = steps.iter().any(|program| program.may_skip);
         let findings = findings::of(&comparison, &numbers.borrow());
         let [Program { datums, .. }, _] = steps;
-        Ok((Checked { comparison, datums, findings }, may_skip))
+        Ok((Checked { comparison, datums, accepted: accepted.len(), findings }, may_skip))
     };
     let (mut executed, may_skip) = compared(Optional::Executed, traces)?;
     if may_skip {
@@ -81,6 +115,13 @@ pub fn check(
                 ));
             }
         }
+    }
+    if !executed.findings.is_empty() && nc_emit::find_provenance(programs[1].text()).is_none() {
+        let finding = both!(
+            "this program was not corrected: it bears no mark of vpost",
+            "эта программа не исправлена: в ней нет отметки vpost"
+        );
+        executed.findings.insert(0, finding);
     }
     Ok(executed)
 }

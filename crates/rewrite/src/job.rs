@@ -54,6 +54,8 @@ pub const OTHER_TOOL: Code = Code(533);
 pub const TOUCHED_OUTSIDE: Code = Code(522);
 /// A zero is taken as touched without a tool length, which another tool would have touched elsewhere.
 pub const TOUCHED_BY_GUESS: Code = Code(523);
+/// Motions that cannot be held within the tolerance, and are written all the same.
+pub const ACCEPTED: Code = Code(528);
 /// Tools cut without a length in force.
 pub const WITHOUT_LENGTH: Code = Code(527);
 /// Lost motion moves the tool sideways where an axis turns, by more than can be hidden.
@@ -123,6 +125,8 @@ pub struct Figures {
     pub held: Held,
     /// Short moves to a corrected start that were put in.
     pub approaches: u64,
+    /// Motions that cannot be held within the tolerance: line, and what is proven instead, mm.
+    pub accepted: Vec<(u64, f64)>,
     /// Touched zeros that were used, in the order of the program; one whose tools differ comes once with each.
     pub datums: Vec<Datum>,
     /// What the user should know.

@@ -22,7 +22,7 @@
 //!     },
 //!     models: Models { axes: engine.path_model().expect("it corrects programs"), tip: None },
 //!     datums: &Datums::default(),
-//!     options: Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5, orientation: correction::Orientation::Tip },
+//!     options: Options { tolerance_mm: 1e-3, accept_mm: 0.0, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5, orientation: correction::Orientation::Tip },
 //!     decimals_mm: [3; 3],
 //!     rotary_steps: [(3, 1); 3],
 //!     force: false,

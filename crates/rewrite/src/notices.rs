@@ -3,16 +3,17 @@
 use std::ops::Range;
 
 use correction::CorrectionError;
-use diagnostic::{Code, Diagnostic, Speaks, Text, both};
+use diagnostic::{Code, Diagnostic, Severity, Speaks, Text, both};
 use machine_model::SolveError;
 use nc_program::Context;
 use nc_syntax::Block;
 use toolpath::{AXIS_NAMES, Motion};
 
 use crate::job::{
-    COMPENSATED, DIRECTION, DIRECTION_HELD, DIRECTION_IN_PLANE, Held, LEANING_CYCLE, LEANS, MUST_NOT_SPLIT,
-    NO_BOUNDS_FOR_TURNS, NOT_CONVERGED, NOT_WITHIN_TOLERANCE, OTHER_TOOL, OUTSIDE, RAPID_OUTSIDE, SIDEWAYS,
-    SPIRAL, TOO_MANY_PECKS, TOUCHED_BY_GUESS, TOUCHED_OUTSIDE, UNKNOWN_SIDE, UNNAMED,
+    ACCEPTED, COMPENSATED, DIRECTION, DIRECTION_HELD, DIRECTION_IN_PLANE, Held, LEANING_CYCLE, LEANS,
+    MUST_NOT_SPLIT, NO_BOUNDS_FOR_TURNS, NOT_CONVERGED, NOT_WITHIN_TOLERANCE, OTHER_TOOL, OUTSIDE,
+    RAPID_OUTSIDE, SIDEWAYS, SPIRAL, TOO_MANY_PECKS, TOUCHED_BY_GUESS, TOUCHED_OUTSIDE, UNKNOWN_SIDE,
+    UNNAMED,
 };
 
 /// Things that happen more than once and are told once.
@@ -27,6 +28,7 @@ pub(crate) struct Notices {
     pub(crate) held: Notice,
     pub(crate) touched_outside: Notice,
     pub(crate) touched_by_guess: Notice,
+    pub(crate) accepted: Notice,
 }
 
 /// One kind of them.
@@ -89,6 +91,7 @@ impl Notices {
         self.held.add(&later.held);
         self.touched_outside.add(&later.touched_outside);
         self.touched_by_guess.add(&later.touched_by_guess);
+        self.accepted.add(&later.accepted);
     }
 
     pub(crate) fn warnings(&self, held: &Held) -> Vec<Warning> {
@@ -151,8 +154,32 @@ impl Notices {
         [clamped, leaning, compensated, beside, unknown_side, spirals, directions]
             .into_iter()
             .chain(self.of_zeros())
+            .chain([self.beyond()])
             .flatten()
             .collect()
+    }
+
+    /// What was written although the tolerance cannot be held.
+    fn beyond(&self) -> Option<Warning> {
+        let largest = Notice { first: self.accepted.at_largest.clone(), ..self.accepted.clone() };
+        let (warning, line) = largest.warning(
+            ACCEPTED,
+            |count, um| {
+                both!(
+                    "{count} motion(s) leave their path by up to {um:.2} um, more than the tolerance",
+                    "движения отходят от траектории до {um:.2} мкм, больше допуска: {count}"
+                )
+            },
+            both!(
+                "the largest; no words of this program hold it nearer",
+                "наибольшее; никакие слова этой программы не удержат его ближе"
+            ),
+            both!(
+                "`--accept UM` says what may be written so, `--accept 0` refuses it and says why",
+                "`--accept МКМ` задаёт, до какой величины так писать; `--accept 0` откажет и скажет почему"
+            ),
+        )?;
+        Some((Diagnostic { severity: Severity::Doubt, ..warning }, line))
     }
 
     /// What is not known of touched zeros.

@@ -384,6 +384,10 @@ impl Pass<'_> {
             if correction.clamped {
                 notices.clamped.see(&span, line, 0.0);
             }
+            if let Some(off_mm) = correction.accepted_mm {
+                notices.accepted.see(&span, line, off_mm);
+                figures.accepted.push((line, off_mm));
+            }
             if let Some(lean) = correction.leaning_mm {
                 notices.leaning.see(&span, line, lean);
             }

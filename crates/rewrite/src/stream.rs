@@ -446,7 +446,7 @@ mod tests {
                 setup: &setup,
                 models: machine_model::Models { axes: &engine, tip: None },
                 datums: &crate::datum::Datums::touched(Default::default()),
-                options: Options { tolerance_mm: 1e-3, outside: Outside::Clamp, minimum_segment_mm: 0.0, orientation_rad: 5e-5, orientation: correction::Orientation::Tip },
+                options: Options { tolerance_mm: 1e-3, accept_mm: 0.0, outside: Outside::Clamp, minimum_segment_mm: 0.0, orientation_rad: 5e-5, orientation: correction::Orientation::Tip },
                 decimals_mm: [3; 3],
                 rotary_steps: [(3, 1); 3],
                 force: true,

@@ -34,6 +34,7 @@ impl Tally {
         raise(&mut figures.tilt, more.tilt);
         raise(&mut figures.tilt_before, more.tilt_before);
         figures.held.add(&more.held);
+        figures.accepted.extend(&more.accepted);
         more.datums.iter().for_each(|datum| figures.see(datum));
         self.notices.add(&later.notices);
         self.lengthless.add(&later.lengthless);

@@ -70,9 +70,10 @@ pub enum Command {
 
 /// Ids of the options in [`Shared`] that say something of the machine or the program: who reads which.
 const OF_MACHINE: [&str; 3] = ["machine", "engine", "at"];
-const OF_PROGRAM: [&str; 14] = [
+const OF_PROGRAM: [&str; 15] = [
     "dialect",
     "tolerance",
+    "accept",
     "work_offset",
     "zero",
     "touched_at",

@@ -198,6 +198,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("Its step l of model time; 0.1 if not given", "Его шаг l модельного времени; если не задан, 0.1"),
     ("K of the astatic law of `kmtpp-published`; 1.5 if not given", "K астатического закона `kmtpp-published`; если не задан, 1.5"),
     ("Largest path deviation, um", "Наибольшее отклонение от траектории, мкм"),
+    ("Write what can only be held within so many um; default: 5 tolerances", "Писать и то, что удержать можно лишь в стольких мкм; иначе 5 допусков"),
     ("Length of an H number, mm (repeatable)", "Длина по номеру H, мм (можно повторять)"),
     ("List or check dialect tables", "Перечислить или проверить таблицы диалектов"),
     ("Machine", "Станок"),

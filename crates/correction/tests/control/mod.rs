@@ -32,6 +32,7 @@ pub(crate) fn block(text: &str, incremental: bool) -> Block {
 
 pub(crate) const OPTIONS: Options = Options {
     tolerance_mm: 1e-3,
+    accept_mm: 0.0,
     outside: Outside::Refuse,
     minimum_segment_mm: 0.0,
     orientation_rad: 5e-5,

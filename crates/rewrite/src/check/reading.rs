@@ -1,6 +1,6 @@
 //! A program as the steps that the comparison asks for, block by block.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use correction::{HELD_RAD, Orientation};
 use diagnostic::Diagnostic;
@@ -89,6 +89,8 @@ pub(super) struct Program<'a, 'n> {
     datum_mm: Option<[f64; 3]>,
     /// Touched zeros in which something was cut.
     pub(super) datums: Vec<Datum>,
+    /// Of lines that cannot be held within the tolerance, how far they may be off, mm.
+    pub(super) accepted: Option<&'n BTreeMap<u64, f64>>,
     /// Where asked for: the error of each of them, and in which context it was used first.
     pub(super) touched: Option<&'n std::cell::RefCell<Touched>>,
     ready: SmallVec<[Step; 4]>,
@@ -139,6 +141,7 @@ impl<'a, 'n> Program<'a, 'n> {
             datum_mm: None,
             datums: Vec::new(),
             touched: None,
+            accepted: None,
             ready: SmallVec::new(),
             ended: false,
             refused: None,
@@ -194,7 +197,8 @@ impl<'a, 'n> Program<'a, 'n> {
 
     fn take(&mut self, block: &Block<'a>, says: BlockSays, motions: &[Motion], context: &Context) {
         let line = (self.line_name)(self.expanded.source_line(block.line));
-        let limit_mm = self.job.options.tolerance_mm + rounding_mm(self.job, context);
+        let stated_mm = self.accepted.and_then(|accepted| accepted.get(&block.line)).copied().unwrap_or(0.0);
+        let limit_mm = (self.job.options.tolerance_mm + rounding_mm(self.job, context)).max(stated_mm);
         says.before.into_iter().for_each(|said| self.say(said, line, limit_mm));
         if self.process.move_by(&context.kinematics) {
             self.process_number = None;
