@@ -132,7 +132,7 @@ fn the_page_of_a_shaft_says_what_the_correction_brings() {
 #[test]
 fn a_page_says_that_a_program_is_refused_and_where_nothing_is_turned() {
     // A thread over the bent shaft cannot be corrected; what the turning leaves is shown all the same.
-    let page = text(&turned(&SHAFT.replace("M5\n", "X39.\nG32 Z-100. F1.5\nG0 X80.\nM5\n"), &[]).page);
+    let page = text(&turned(&SHAFT.replace("M5\n", "X39.\nG32 Z-100. F1.5\nG0 X80.\nM5\n"), &["--accept", "0"]).page);
     assert!(page.contains("vpost does not correct this program") && page.contains("VP0503"), "{page}");
     assert!(data_of(&page)["corrected"].is_null());
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -221,7 +221,7 @@ fn nothing_in_a_turning_program_can_act() {
     let comment = format!("(<script>{act}</script> <img src=x onerror={act}>)");
     // The refused block stands on the page as it stands in the program.
     let thread = format!("X39.\nG32 Z-100. F1.5 {comment}\nG0 X80.\nM5\n");
-    let report = turned(&SHAFT.replace("M5\n", &thread), &[]);
+    let report = turned(&SHAFT.replace("M5\n", &thread), &["--accept", "0"]);
     let page = text(&report.page);
     assert_eq!(page.matches("<script").count(), 1, "the data block is the only one");
     assert!(page.contains("&lt;script&gt;"), "{page}");

@@ -172,7 +172,7 @@ fn a_bore_left_at_feed_where_z_stands_elsewhere_on_its_way_up() {
     let bore = "%\nG21 G90 G54 G17\nG0 X20. Y20. Z20.\nG99 G85 X20. Y20. Z-10. R2. F100.\nX40.\nG80\nG0 Z50.\nM30\n%\n";
     let program = place.write("in.nc", bore);
     let out = place.0.path().join("out.nc").display().to_string();
-    let ran = run(&[&program, "-m", &machine, START, "-o", &out]);
+    let ran = run(&[&program, "-m", &machine, START, "-o", &out, "--accept", "0"]);
     assert_eq!(ran.status.code(), Some(1), "{}", messages(&ran));
     assert!(messages(&ran).contains("in.nc:4:"), "{}", messages(&ran));
     // Drilled and left by a rapid, it is one hole.

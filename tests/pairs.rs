@@ -26,7 +26,7 @@ fn arguments(folder: &Path, kind: &str) -> Vec<String> {
     };
     let mill = |dialect: &str, program: &str| {
         let profile = profile(folder, "stan_s500", ("[correction]\n", &format!("{program}[correction]\n")));
-        let offsets = ["--work-offset", "G54=140,100,20", "--work-offset", "G55=150,105,19"];
+        let offsets = ["--work-offset", "G54=140,100,19", "--work-offset", "G55=150,105,18"];
         let all = ["-m", &profile, "-d", dialect];
         all.into_iter().chain(offsets).map(str::to_owned).collect()
     };

@@ -49,7 +49,7 @@ impl Bench {
     }
 
     fn refused(&self, program: &str, profile: &str) -> String {
-        let output = run(&[&self.file("bad.nc", program), "-m", profile]);
+        let output = run(&[&self.file("bad.nc", program), "-m", profile, "--accept", "0"]);
         assert!(!output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
         messages(&output)
     }

@@ -32,9 +32,10 @@ pub struct JobOptions {
     /// Rounding of the output apart.
     #[arg(long, value_name = "UM", global = true, help_heading = "Program", value_parser = finite)]
     pub tolerance: Option<f64>,
-    /// Write what can only be held within so many um; default: 5 tolerances.
+    /// Largest deviation where that fails, um.
     ///
-    /// Where the tolerance cannot be held, up to this the motion is corrected as near as can be and said; 0: refused.
+    /// Where the tolerance cannot be held, the motion is corrected as near as can be, up to this, and said; 5 tolerances if not
+    /// given, 0: refused.
     #[arg(long, value_name = "UM", global = true, help_heading = "Program", value_parser = finite)]
     pub accept: Option<f64>,
     /// Machine coordinates of a zero, mm (repeatable).

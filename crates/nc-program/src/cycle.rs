@@ -169,13 +169,12 @@ pub(crate) fn holes(
     let began_mm = cycle.initial.known().unwrap_or(at.linear_mm[normal]);
     // Controls end a cycle at the level further from the bottom.
     let initial_mm = if r_mm >= bottom_mm { began_mm.max(r_mm) } else { began_mm.min(r_mm) };
-    let level = if initial_mm == r_mm { ReturnLevel::Initial } else { state.return_level };
     let parameters = Cycle {
         kind: kind(cycle.kind),
         peck_mm: cycle.peck_mm,
         // P beside a cycle without a dwell (G81, G85) is kept for the next, and is not its own.
         dwell: cycle.dwell.filter(|_| !WITHOUT_DWELL.contains(&cycle.code)),
-        return_to_initial: returns_to_initial(words, level)?,
+        return_to_initial: returns_to_initial(words, state.return_level, [initial_mm, r_mm])?,
     };
     let mut motions: Motions = SmallVec::with_capacity(count as usize);
     for _ in 0..count {
@@ -204,10 +203,15 @@ pub(crate) fn holes(
 }
 
 /// G98 is in force; that it is not said, or who may skip its block, is asked where the two differ.
-fn returns_to_initial(words: &Words<'_, '_, '_>, level: ReturnLevel) -> Outcome<bool> {
+fn returns_to_initial(
+    words: &Words<'_, '_, '_>,
+    level: ReturnLevel,
+    [initial_mm, r_mm]: [f64; 2],
+) -> Outcome<bool> {
     let (code, what, label) = match level {
         ReturnLevel::Initial => return Ok(true),
         ReturnLevel::R => return Ok(false),
+        _ if initial_mm == r_mm => return Ok(true),
         ReturnLevel::Unsaid => (
             codes::CYCLE_INCOMPLETE,
             both!(

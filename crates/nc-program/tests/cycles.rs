@@ -157,7 +157,7 @@ fn levels_shift_with_the_frame() {
     let holes = motions("fanuc", "G55 G43 H1 G0 X0. Y0. Z10.\nG81 X1. Z-5. R2.\n");
     let h = hole(&holes[1]);
     assert_eq!((h.at_r.linear_mm, h.bottom_mm, h.initial_mm), ([101.0, 10.0, 123.0], 116.0, 131.0));
-    let inch = motions("linuxcnc", "G20 G0 X0 Y0 Z1\nG83 X1 Z-1 R.1 Q.1\n");
+    let inch = motions("linuxcnc", "G20 G0 X0 Y0 Z1\nG99 G83 X1 Z-1 R.1 Q.1\n");
     let h = hole(&inch[1]);
     assert_eq!((h.at_r.linear_mm, h.bottom_mm, h.cycle.peck_mm), ([25.4, 0.0, 2.54], -25.4, Some(2.54)));
 }
@@ -202,5 +202,14 @@ fn what_a_cycle_refuses() {
     ];
     for (text, code, line) in table {
         assert_eq!(refusal("fanuc", text), (code, line), "{text}");
+    }
+}
+
+/// LinuxCNC starts in G99 and keeps G98 between programs: where the levels differ the program has to say one.
+#[test]
+fn a_return_level_that_nobody_says_is_asked_where_it_matters() {
+    assert_eq!(refusal("linuxcnc", "G21 G0 X0 Y0 Z10\nG81 X10 Z-5 R2 F100\n"), (216, 2));
+    for said in ["G21 G99 G0 X0 Y0 Z10\nG81 X10 Z-5 R2 F100\n", "G21 G0 X0 Y0 Z2\nG81 X10 Z-5 R2 F100\n"] {
+        assert_eq!(hole(&motions("linuxcnc", said)[1]).end().linear_mm[2], 2.0, "{said}");
     }
 }

@@ -390,7 +390,7 @@ fn words_without_motion_pass() {
 #[test]
 fn g80_gives_back_the_motion_code_where_it_has_a_group_of_its_own() {
     assert_eq!(end("fanuc", &after("G81 Z-1. R.005\nG80\nX5.\n")), at(5.0, 0.0, 0.01));
-    assert_eq!(refusal("linuxcnc", &after("G81 Z-1 R1\nG80\nX5\n")), (212, 4));
+    assert_eq!(refusal("linuxcnc", &after("G98 G81 Z-1 R1\nG80\nX5\n")), (212, 4));
 }
 
 #[test]

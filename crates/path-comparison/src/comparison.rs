@@ -118,6 +118,8 @@ pub struct Trace {
     pub before_mm: f64,
     /// Largest distance of the corrected motions made for it, mm.
     pub after_mm: f64,
+    /// So far it may be, mm.
+    pub limit_mm: f64,
     /// Line of the corrected file whose motion that is, where one was made.
     pub after_line: Option<u64>,
     /// Where these bring the tool, mm, as the workpiece sees it: places in order, with [`Traces::WithPlaces`].

@@ -408,14 +408,14 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     fn record(&mut self, item: Item) {
         let Item::Feed(feed) = item else { return };
         let (minutes, way_mm) = feed.timed();
-        let Feeding { line, way, off_mm: before_mm, made_off_mm: after_mm, made: made_mm, .. } = *feed;
+        let Feeding { line, way, off_mm: before_mm, made_off_mm: after_mm, made: made_mm, limit_mm, .. } = *feed;
         let after_line = feed.made_line;
         self.result.leans_before.note(feed.leans_rad, line);
         self.result.leans_after.note(feed.made_leans_rad, line);
         self.result.before.note(before_mm, line);
         self.result.after.note(after_mm, line);
         if let (Traces::Kept | Traces::WithPlaces, Some(way)) = (self.traces, way) {
-            self.result.traces.push(Trace { line, way, before_mm, after_mm, after_line, made_mm });
+            self.result.traces.push(Trace { line, way, before_mm, after_mm, limit_mm, after_line, made_mm });
         }
         self.time.made = self.time.made.map(|made| made - minutes);
         self.time.made_mm -= way_mm;

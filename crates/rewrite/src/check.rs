@@ -10,7 +10,7 @@ use diagnostic::{Diagnostic, Text, both};
 use machine_model::{Models, Vector};
 use nc_expand::Expanded;
 use nc_program::Context;
-use path_comparison::{Comparison, Course, Traces, compare};
+use path_comparison::{Comparison, Course, Mismatch, Traces, What, compare};
 
 use crate::datum::Datum;
 use crate::job::{Corrected, Guards, Job};
@@ -54,7 +54,7 @@ pub fn check(
     progress: &dyn Fn(f64),
 ) -> Result<Checked, Unreadable> {
     let first = check_within(job, programs, traces, progress, &BTreeMap::new())?;
-    if first.findings.is_empty() || job.options.accept_mm <= job.options.tolerance_mm {
+    if first.findings.is_empty() {
         return Ok(first);
     }
     // Of what cannot be held within the tolerance the correction says so itself.
@@ -82,8 +82,7 @@ fn check_within(
     progress: &dyn Fn(f64),
     accepted: &BTreeMap<u64, f64>,
 ) -> Result<Checked, Unreadable> {
-    let retreats = retreats(job.dialect);
-    let compared = |optional: Optional, traces: Traces| {
+    let run = |optional: Optional, traces: Traces, wider: f64| {
         let numbers = RefCell::new(Numbers::default());
         let [wanted, commanded] = programs;
         let mut steps = [
@@ -91,8 +90,9 @@ fn check_within(
             Program::new(commanded, job, optional, &numbers, progress),
         ];
         steps[0].accepted = Some(accepted);
+        steps.iter_mut().for_each(|steps| steps.wider = wider);
         let [w, c] = &mut steps;
-        let comparison = compare(job.models, &mut *w, &mut *c, retreats, traces);
+        let comparison = compare(job.models, &mut *w, &mut *c, retreats(job.dialect), traces);
         // The one that the other was compared with may end early: what cannot be read is refused all the same.
         for (program, steps) in steps.iter_mut().enumerate() {
             steps.by_ref().for_each(drop);
@@ -101,8 +101,20 @@ fn check_within(
             }
         }
         let may_skip = steps.iter().any(|program| program.may_skip);
-        let findings = findings::of(&comparison, &numbers.borrow());
         let [Program { datums, .. }, _] = steps;
+        Ok((comparison, numbers.into_inner(), datums, may_skip))
+    };
+    let compared = |optional: Optional, traces: Traces| {
+        let (mut comparison, mut numbers, datums, may_skip) = run(optional, traces, 1.0)?;
+        for wider in WIDER.into_iter().take_while(|_| strays(&comparison)) {
+            let kept = if traces == Traces::Forgotten { Traces::Kept } else { traces };
+            let (measured, named, ..) = run(optional, kept, wider)?;
+            if let Some(measured) = in_a_corridor(measured, wider) {
+                (comparison, numbers) = (measured, named);
+                break;
+            }
+        }
+        let findings = findings::of(&comparison, &numbers);
         Ok((Checked { comparison, datums, accepted: accepted.len(), findings }, may_skip))
     };
     let (mut executed, may_skip) = compared(Optional::Executed, traces)?;
@@ -124,6 +136,42 @@ fn check_within(
         executed.findings.insert(0, finding);
     }
     Ok(executed)
+}
+
+/// Corridors in which a program that leaves its path is measured, in limits, narrowest first: in one that holds all of it each
+/// motion is compared with the one it was made for, and how far it is off is known.
+const WIDER: [f64; 3] = [4.0, 32.0, 256.0];
+/// So many motions that are off are named.
+const MOST_BEYOND: usize = 20;
+
+/// Something of the path is not where it should be.
+fn strays(comparison: &Comparison) -> bool {
+    comparison.mismatches.iter().any(|mismatch| matches!(mismatch.what, What::TooFar(_) | What::Extra))
+}
+
+/// What a comparison in a wider corridor says of motions that are off; `None` where that does not hold the path either.
+fn in_a_corridor(mut comparison: Comparison, wider: f64) -> Option<Comparison> {
+    let path = |mismatch: &Mismatch| {
+        matches!(mismatch.what, What::TooFar(_) | What::Extra | What::Missing | What::Short(_))
+    };
+    if comparison.more_mismatches > 0 || comparison.mismatches.iter().any(path) {
+        return None;
+    }
+    comparison.limit_mm /= wider;
+    let beyond = comparison.traces.iter().filter(|trace| trace.after_mm > trace.limit_mm / wider);
+    let beyond: Vec<Mismatch> = beyond
+        .map(|trace| Mismatch {
+            what: What::TooFar(trace.after_mm),
+            wanted_line: trace.line,
+            commanded_line: trace.after_line.unwrap_or_default(),
+        })
+        .collect();
+    if beyond.is_empty() {
+        return None;
+    }
+    comparison.more_mismatches = beyond.len().saturating_sub(MOST_BEYOND);
+    comparison.mismatches.splice(..0, beyond.into_iter().take(MOST_BEYOND));
+    Some(comparison)
 }
 
 /// Runs a program on several machines: every feed motion with its file, and with the errors of each machine along it,

@@ -384,15 +384,18 @@ impl Pass<'_> {
             if correction.clamped {
                 notices.clamped.see(&span, line, 0.0);
             }
+            let unsure_mm = correction.unknown_side_mm;
             if let Some(off_mm) = correction.accepted_mm {
                 notices.accepted.see(&span, line, off_mm);
-                figures.accepted.push((line, off_mm));
+            }
+            if correction.accepted_mm.is_some() || unsure_mm > 0.0 {
+                figures.accepted.push((line, correction.after_mm + unsure_mm));
             }
             if let Some(lean) = correction.leaning_mm {
                 notices.leaning.see(&span, line, lean);
             }
-            if correction.unknown_side_mm > 0.0 {
-                notices.unknown_side.see(&span, line, correction.unknown_side_mm);
+            if unsure_mm > 0.0 {
+                notices.unknown_side.see(&span, line, correction.after_mm + unsure_mm);
             }
             if let Some(apart_mm) = radii_apart_mm(motion).filter(|apart_mm| *apart_mm > SPIRAL_MM) {
                 notices.spirals.see(&span, line, apart_mm);

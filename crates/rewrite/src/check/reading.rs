@@ -89,6 +89,8 @@ pub(super) struct Program<'a, 'n> {
     datum_mm: Option<[f64; 3]>,
     /// Touched zeros in which something was cut.
     pub(super) datums: Vec<Datum>,
+    /// So many times its limits are taken.
+    pub(super) wider: f64,
     /// Of lines that cannot be held within the tolerance, how far they may be off, mm.
     pub(super) accepted: Option<&'n BTreeMap<u64, f64>>,
     /// Where asked for: the error of each of them, and in which context it was used first.
@@ -106,6 +108,9 @@ pub(super) struct Program<'a, 'n> {
     /// What a line of a file is called.
     line_name: fn((usize, u64)) -> u64,
 }
+
+/// Room above what the correction proves of a motion: it adds in another order, mm.
+const ROOM_MM: f64 = 2e-5;
 
 /// Of a file so many lines are told apart from those of the next.
 const LINES_OF_A_FILE: u64 = 1 << 32;
@@ -142,6 +147,7 @@ impl<'a, 'n> Program<'a, 'n> {
             datums: Vec::new(),
             touched: None,
             accepted: None,
+            wider: 1.0,
             ready: SmallVec::new(),
             ended: false,
             refused: None,
@@ -197,8 +203,8 @@ impl<'a, 'n> Program<'a, 'n> {
 
     fn take(&mut self, block: &Block<'a>, says: BlockSays, motions: &[Motion], context: &Context) {
         let line = (self.line_name)(self.expanded.source_line(block.line));
-        let stated_mm = self.accepted.and_then(|accepted| accepted.get(&block.line)).copied().unwrap_or(0.0);
-        let limit_mm = (self.job.options.tolerance_mm + rounding_mm(self.job, context)).max(stated_mm);
+        let stated_mm = self.accepted.and_then(|accepted| accepted.get(&block.line)).map_or(0.0, |mm| mm + ROOM_MM);
+        let limit_mm = (self.job.options.tolerance_mm + rounding_mm(self.job, context)).max(stated_mm) * self.wider;
         says.before.into_iter().for_each(|said| self.say(said, line, limit_mm));
         if self.process.move_by(&context.kinematics) {
             self.process_number = None;
