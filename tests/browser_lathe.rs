@@ -132,7 +132,9 @@ fn the_page_of_a_shaft_says_what_the_correction_brings() {
 #[test]
 fn a_page_says_that_a_program_is_refused_and_where_nothing_is_turned() {
     // A thread over the bent shaft cannot be corrected; what the turning leaves is shown all the same.
-    let page = text(&turned(&SHAFT.replace("M5\n", "X39.\nG32 Z-100. F1.5\nG0 X80.\nM5\n"), &["--accept", "0"]).page);
+    let page = text(
+        &turned(&SHAFT.replace("M5\n", "X39.\nG32 Z-100. F1.5\nG0 X80.\nM5\n"), &["--accept", "0"]).page,
+    );
     assert!(page.contains("vpost does not correct this program") && page.contains("VP0503"), "{page}");
     assert!(data_of(&page)["corrected"].is_null());
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -146,7 +146,11 @@ fn a_tool_change_leaves_the_axes_where_the_profile_says() {
         let ran = part.run(&profile, &["-o", out.to_str().expect("plain")]);
         assert!(ran.status.success(), "{change}: {}", messages(&ran));
         let mut check = vpost();
-        check.arg("check").arg(part.0.path().join("part.nc")).arg(&out).args(["-m", &profile, "-d", "fanuc", "--zero", "true"]);
+        check
+            .arg("check")
+            .arg(part.0.path().join("part.nc"))
+            .arg(&out)
+            .args(["-m", &profile, "-d", "fanuc", "--zero", "true"]);
         let check = check.output().expect("the command starts");
         assert!(check.status.success(), "{change}: {}", String::from_utf8_lossy(&check.stdout));
     }

@@ -70,6 +70,7 @@ mod real_machines;
 mod refusals;
 mod russian;
 mod s_wall;
+mod shop_floor;
 mod spreadsheets;
 mod swivel;
 mod tool_lengths;

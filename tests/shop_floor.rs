@@ -1,0 +1,165 @@
+//! What a control brings along and a program does not say, what cannot be held within the tolerance, and whether the numbers
+//! of `check` are true.
+
+use crate::common::{messages, root, run};
+
+const STAN: &str = "machine-profiles/stan_s500.toml";
+const OFFSET: &str = "G54=140,100,100";
+
+struct Place(tempfile::TempDir);
+
+impl Place {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("a temporary folder"))
+    }
+
+    fn write(&self, name: &str, text: &str) -> String {
+        let path = self.0.path().join(name);
+        std::fs::write(&path, text).expect("writable");
+        path.to_str().expect("a plain path").to_owned()
+    }
+
+    /// The corrected program, and what was said of it.
+    fn corrected(&self, program: &str, arguments: &[&str]) -> (String, String) {
+        let input = self.write("in.nc", program);
+        let ran = run(&[&["correct", &input], arguments].concat());
+        assert!(ran.status.success(), "{}", messages(&ran));
+        (String::from_utf8(ran.stdout.clone()).expect("ASCII"), messages(&ran))
+    }
+
+    fn refused(&self, program: &str, arguments: &[&str]) -> String {
+        let input = self.write("in.nc", program);
+        let ran = run(&[&["correct", &input], arguments].concat());
+        assert_eq!(ran.status.code(), Some(1), "{}", messages(&ran));
+        messages(&ran)
+    }
+
+    fn check(&self, program: &str, corrected: &str, arguments: &[&str]) -> serde_json::Value {
+        let (input, out) = (self.write("in.nc", program), self.write("out.nc", corrected));
+        let ran = run(&[&["check", &input, &out, "--json"], arguments].concat());
+        serde_json::from_slice(&ran.stdout).expect("JSON")
+    }
+}
+
+/// The words of each block that is in it, comments apart.
+fn blocks(text: &str) -> Vec<&str> {
+    text.lines().filter(|line| !line.starts_with(['(', '%', 'O'])).collect()
+}
+
+const WITHOUT_MOTION: [(&str, &str, &str); 3] = [
+    (
+        "fanuc",
+        "G21 G17 G90 G94 G54 G40 G49 G80\nM3 S3000\nG0 X-30. Y-20. Z5.\nG41 D1\nG1 Z-10. F150\nG1 X0. Y-12. F400\nG1 Y30.\nG1 X40.\nG1 Y0.\nG40\nG1 Z5.\nG0 Z20.\nG0 X100.\nM30\n",
+        "start-up and retract",
+    ),
+    (
+        "linuxcnc",
+        "G21 G17 G90 G94 G54 G40\nM3 S3000\nG0 X-30 Y-20 Z5\nG1 Z-10 F150\nG41 D1\nG1 X0 Y-12 F400\nG1 Y30\nG1 X40\nG1 Y5\nG40\nG1 Z5\nG0 Z20\nG0 X100\nM2\n",
+        "a bare G40",
+    ),
+    (
+        "linuxcnc",
+        "G21 G17 G90 G94 G54 G40\nM3 S3000\nG0 X-30 Y-20 Z5\nG42 D1\nG1 X-10 Y-12 F400\nG1 X0 Y0\nG1 Z-10 F150\nG1 X40 F400\nG1 Y30\nG1 X-10\nG40 G1 X-30 Y40\nG0 Z20\nM2\n",
+        "a plunge on the contour",
+    ),
+];
+
+/// A control leads onto a contour and off it by the first motion in the plane, be it of a micrometre: where a block has none, it
+/// is given none.
+#[test]
+fn what_plunges_under_compensation_stays_in_its_axis() {
+    let place = Place::new();
+    for (dialect, program, what) in WITHOUT_MOTION {
+        let more = ["-m", STAN, "-d", dialect, "--work-offset", OFFSET, "--accept", "60"];
+        let (out, _) = place.corrected(program, &more);
+        let (posted, made) = (blocks(program), blocks(&out));
+        for block in posted.iter().filter(|block| block.starts_with("G1 Z")) {
+            // Only Z says where it goes; what stands for it may have another Z.
+            let depth = block.split([' ', '.']).nth(1).expect("a word");
+            let stands = made
+                .iter()
+                .filter(|made| made.contains("Z-10.") || made.contains("Z-9.") || made.contains(depth));
+            for made in stands.filter(|made| made.starts_with("G1 ") && made.contains('Z')) {
+                assert!(!made.contains(['X', 'Y']), "{what}: {made}\n{out}");
+            }
+        }
+    }
+}
+
+#[test]
+fn tools_that_cut_without_a_length_are_said() {
+    let tool = |number: u32, z: u32| {
+        format!("T{number} M6\nG0 G54 X0. Y0. S5000 M3\nZ{z}.\nG1 Z2. F300.\nX60. F800.\nY40.\nG0 Z50.\n")
+    };
+    let program = format!("G21 G17 G40 G49 G80 G90\n{}{}M30\n", tool(15, 50), tool(3, 50));
+    let place = Place::new();
+    let more = ["-m", STAN, "-d", "fanuc", "--work-offset", OFFSET];
+    let (_, said) = place.corrected(&program, &more);
+    assert!(said.contains("warning[VP0527]") && said.contains("T3, T15"), "{said}");
+    assert!(place.refused(&program, &[&more[..], &["--strict"]].concat()).contains("error[VP0527]"));
+    // The control brings it in: the same as with G43 behind the change.
+    let text = std::fs::read_to_string(root().join(STAN)).expect("readable");
+    let tables = root().join("machine-profiles/stan_s500");
+    let text = text.replace("\"stan_s500/", &format!("\"{}/", tables.display()));
+    let text = text.replacen("[correction]", "[program]\nt_means_h = true\n[correction]", 1);
+    let machine = place.write("machine.toml", &text);
+    let lengths = ["--tool", "H15=30", "--tool", "H3=45", "--work-offset", "G54=140,100,60", "-d", "fanuc"];
+    let (brought, said) = place.corrected(&program, &[&["-m", &machine], &lengths[..]].concat());
+    assert!(!said.contains("VP0527"), "{said}");
+    let named = program.replace("T15 M6\n", "T15 M6\nG43 H15\n").replace("T3 M6\n", "T3 M6\nG43 H3\n");
+    let (named, _) = place.corrected(&named, &[&["-m", STAN], &lengths[..]].concat());
+    let moves = |text: &str| -> Vec<String> {
+        blocks(text).into_iter().filter(|block| !block.starts_with("G43")).map(str::to_owned).collect()
+    };
+    assert_eq!(moves(&brought), moves(&named));
+}
+
+/// A rapid that turns a table and says its place again goes there by what the new angle asks of it.
+#[test]
+fn a_rapid_that_turns_and_repeats_its_place_is_corrected() {
+    let program = "G21 G90 G17 G54\nG0 X30. Y20. Z80. A0. C0.\nG0 Z3.\nG1 Z-1. F100.\nG0 Z80.\nG0 X30. Y20. Z80. A0. C90.\nG0 Z3.\nG1 Z-1. F100.\nG0 Z80.\nM30\n";
+    let (place, more) = (Place::new(), ["-m", "samples/profiles/tilting_table.toml"]);
+    let (out, _) = place.corrected(program, &more);
+    let turned = out.lines().find(|line| line.contains("C90.")).expect("it turns");
+    assert!(!turned.contains("X30. Y20."), "{out}");
+    assert_eq!(place.check(program, &out, &more)["passed"], true);
+}
+
+const UNNAMED: &str = "G21 G17 G40 G49 G80 G90 G94 G54\nG0 X10. Y10. Z100.\nG52 X0 Y0\nG1 Y40. F400.\nM30\n";
+const SQUARE: &str = "format = 1\nname = \"Square\"\ncontrol = \"fanuc\"\nchain = \"[w X Y b Z t]\"\naxis.X = { travel_mm = [-100, 600] }\naxis.Y = { travel_mm = [-100, 600] }\naxis.Z = { travel_mm = [-100, 600] }\nsquareness = { EC0Y_urad = 100, EA0Z_urad = 140 }\nwork_offsets_mm = { G54 = [95, 88, 60] }\n";
+
+/// X has no word in the frame in force, and Y leans by 3 µm over its 30 mm.
+#[test]
+fn what_cannot_be_held_is_written_and_said_or_refused() {
+    let place = Place::new();
+    let machine = place.write("square.toml", SQUARE);
+    let more = ["-m", machine.as_str()];
+    let (out, said) = place.corrected(UNNAMED, &more);
+    assert!(said.contains("warning[VP0528]: 1 motion(s) leave their path by up to 3.00 um"), "{said}");
+    let checked = place.check(UNNAMED, &out, &more);
+    assert_eq!((&checked["passed"], &checked["accepted_lines"]), (&true.into(), &1.into()), "{checked:#}");
+    // Another micrometre is not what was proven.
+    let worse = out.replace("Y40.014", "Y40.018");
+    assert_ne!(worse, out);
+    assert_eq!(place.check(UNNAMED, &worse, &more)["passed"], false);
+    for refused in [&["--accept", "2"][..], &["--accept", "0"], &["--strict"]] {
+        let said = place.refused(UNNAMED, &[&more[..], refused].concat());
+        let code = if refused == ["--strict"] { "VP0528" } else { "VP0514" };
+        assert!(said.starts_with(&format!("error[{code}]")), "{refused:?}: {said}");
+    }
+    assert_eq!(place.check(UNNAMED, &out, &[&more[..], &["--accept", "0"]].concat())["passed"], false);
+}
+
+/// A program held against itself is off by what its machine does, in each motion, and no more.
+#[test]
+fn a_program_that_was_not_corrected_is_measured_truly() {
+    let machine = "machine-profiles/generic_vmc.toml";
+    let rows: String =
+        (0..12).map(|k| format!("X{}. Y{}.\nZ{}.\n", 20 * (k % 3), 15 * k, -(k % 2))).collect();
+    let program = format!("G21 G17 G90 G54\nG0 X0 Y0 Z20.\nG1 Z5. F500.\n{rows}G0 Z20.\nM30\n");
+    let checked = Place::new().check(&program, &program, &["-m", machine, "-d", "fanuc", "--zero", "true"]);
+    assert_eq!(checked["passed"], false);
+    assert_eq!(checked["deviation_after_um"], checked["deviation_before_um"], "{checked:#}");
+    assert_eq!(checked["deviation_after_line"], checked["deviation_before_line"]);
+    assert_eq!(checked["findings"][0], "this program was not corrected: it bears no mark of vpost");
+}
