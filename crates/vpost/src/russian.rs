@@ -283,6 +283,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("Use nodes this far apart only: longer chords know their directions better", "Брать только узлы на таком расстоянии: у длинных хорд направления известны лучше"),
     ("Variable that the program does not set", "Переменная, которую программа не задаёт"),
     ("Wanted M, largest error at the control points, µm: what to mend, and what each deviation may be", "Желаемая M, наибольшая погрешность в контрольных точках, мкм: что исправить и каким может быть каждое отклонение"),
+    ("Ways of runs: alternating, up or down", "Направления проходов: alternating, up или down"),
     ("What Z10 is: increments or millimetres", "Z10 без точки: increments или millimetres"),
     ("What a message means and what to do: VP0509", "Что значит сообщение и что делать: VP0509"),
     ("What became of each program (JSON Lines)", "Что стало с каждой программой (JSON Lines)"),

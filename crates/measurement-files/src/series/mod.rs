@@ -10,7 +10,7 @@ mod file;
 mod renishaw;
 
 use diagnostic::{Text, both};
-pub use file::{Content, Origin, Series, SeriesReading, Told, Values, symbol};
+pub use file::{Content, Origin, Series, SeriesReading, Told, Values, Ways, symbol};
 use file::{File, numbers};
 
 use machine_model::Axis;
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     fn positioning(text: &str, values: Option<Values>) -> Result<Content, Box<Refusal>> {
-        read("a.pos", text.as_bytes(), Told { symbol: symbol("EXX"), unit: None, values }, &[])
+        read("a.pos", text.as_bytes(), Told { symbol: symbol("EXX"), values, ..Told::default() }, &[])
     }
 
     /// Written by hand after the headings that a public reader looks for.
