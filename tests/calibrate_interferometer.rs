@@ -123,6 +123,28 @@ fn ways_of_runs_are_asked_where_no_title_says_them() {
 }
 
 #[test]
+fn a_deviation_of_an_axis_is_that_of_the_axis_that_moved() {
+    let room = Room::new();
+    let rows = "1;1;0;0,0\n1;1;100;2,1\n1;-1;100;4,0\n1;-1;0;2,2\n";
+    let russian = |name: &str, deviation: &str| {
+        room.file(name, &format!("Проход;Направление;Позиция, мм;{deviation}, мкм\n{rows}"))
+    };
+    good(&room.calibrate(&[&russian("x.csv", "Отклонение X")]));
+    assert_eq!(room.made("x.csv"), "position_mm,EXX_um\n0,0\n100,2.1\n");
+    assert_eq!(room.made("x_negative.csv"), "position_mm,EXX_um\n0,2.2\n100,4\n");
+    // Straightness, where the axis that moved is said.
+    good(&room.calibrate(&[&format!("{}=EZX", russian("z.csv", "Отклонение Z"))]));
+    assert!(room.made("x.csv").starts_with("position_mm,EZX_um\n"), "{}", room.made("x.csv"));
+    let z = format!("{}=EYX", russian("z.csv", "Отклонение Z"));
+    said(&room.calibrate(&[&z]), &["VP1101", "EYX", "EZX"]);
+    let two = room.file("two.csv", "position_mm,dx_um,dy_um\n0,0,0\n100,2,1\n");
+    said(&room.calibrate(&[&two]), &["VP1106", "which axis moved", "two.csv=EXX"]);
+    good(&room.calibrate(&[&format!("{two}=EXX")]));
+    let own = room.file("own.csv", "position_mm,EXX_um\n0,0\n100,2\n");
+    said(&room.calibrate(&[&format!("{own}=EYY")]), &["VP1101", "EYY", "EXX"]);
+}
+
+#[test]
 fn control_tables_are_asked_what_they_mean() {
     let room = Room::new();
     let positions =
