@@ -81,6 +81,21 @@ fn a_control_says_what_its_machine_is() {
 }
 
 #[test]
+fn a_check_refuses_a_control_that_no_dialect_is_of() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let profile = folder.path().join("m.toml").to_str().expect("plain").to_owned();
+    assert!(new(&[&TRAVELS[..], &["-o", &profile]].concat()).status.success());
+    // A name that no control has.
+    let text = std::fs::read_to_string(&profile).expect("written").replace("\"fanuc\"", "\"Fanuc\"");
+    std::fs::write(&profile, text).expect("written");
+    let wrong = run(&["profile", "check", &profile]);
+    assert_eq!(wrong.status.code(), Some(2));
+    for said in ["VP0303", "there is no dialect `Fanuc`", "m.toml:4:11", "did you mean fanuc?", "sinumerik"] {
+        assert!(messages(&wrong).contains(said), "{said} in {}", messages(&wrong));
+    }
+}
+
+#[test]
 fn what_is_missing_or_wrong_is_said() {
     let cases: [(&[&str], &str); 9] = [
         (&[&TRAVELS[..], &["--device", "VF-2"]].concat(), "--from"),

@@ -4,6 +4,7 @@ use diagnostic::both;
 
 use crate::arguments::{Profile, ProfileCommand};
 use crate::message::{Failure, Messages};
+use crate::settings::check_control;
 use crate::{export, file, profile, profile_new};
 
 /// `vpost profile check|show|new|export|schema`
@@ -11,6 +12,7 @@ pub(crate) fn run(arguments: &Profile, messages: &Messages) -> Result<(), Failur
     match &arguments.command {
         ProfileCommand::Check { profile: path } => {
             let loaded = profile::load(path)?;
+            check_control(path, &loaded.profile)?;
             messages.note(&both!(
                 "{}: a good profile of {}",
                 "{}: профиль станка {} в порядке",
