@@ -80,6 +80,29 @@ fn a_control_says_what_its_machine_is() {
     assert!(from(&["--chain", "[w X Y b Z t]"]).status.success());
 }
 
+/// A profile that is read is not yet one that means what its owner wanted.
+#[test]
+fn a_check_says_what_a_profile_that_can_be_read_does_not_mean() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("plain").to_owned();
+    let (profile, program) = (path("m.toml"), path("p.nc"));
+    assert!(new(&[&TRAVELS[..], &["-o", &profile]].concat()).status.success());
+    std::fs::write(&program, "G21\nM30\n").expect("written");
+    // Nine tenths of a table as calibrate takes them: 20 mm for 20 um.
+    for (value, said) in [("20000", "readings of EXX reach 20000 um"), ("0.001", "of ten of EXX are below 0.05 um")] {
+        let rows: Vec<String> = (0..9).map(|k| format!("{},{value}", k * 95 - 760)).collect();
+        std::fs::write(path("x.csv"), format!("position_mm,EXX_um\n{}\n", rows.join("\n"))).expect("written");
+        let _ = std::fs::remove_file(&profile);
+        let made = new(&[&TRAVELS[..], &["--table", "X=x.csv", "-o", &profile]].concat());
+        assert!(made.status.success(), "{}", messages(&made));
+        for command in [vec!["profile", "check", &profile], vec!["correct", &program, "-m", &profile]] {
+            let checked = messages(&run(&command));
+            assert!(checked.contains("VP0315") && checked.contains(said), "{checked}");
+            assert!(checked.contains("[axis.X] errors"), "{checked}");
+        }
+    }
+}
+
 #[test]
 fn a_check_refuses_a_control_that_no_dialect_is_of() {
     let folder = tempfile::tempdir().expect("a temporary folder");

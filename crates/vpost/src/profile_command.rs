@@ -5,7 +5,7 @@ use diagnostic::both;
 use crate::arguments::{Profile, ProfileCommand};
 use crate::message::{Failure, Messages};
 use crate::settings::check_control;
-use crate::{export, file, profile, profile_new};
+use crate::{conditions, export, file, profile, profile_new};
 
 /// `vpost profile check|show|new|export|schema`
 pub(crate) fn run(arguments: &Profile, messages: &Messages) -> Result<(), Failure> {
@@ -13,6 +13,8 @@ pub(crate) fn run(arguments: &Profile, messages: &Messages) -> Result<(), Failur
         ProfileCommand::Check { profile: path } => {
             let loaded = profile::load(path)?;
             check_control(path, &loaded.profile)?;
+            let doubts = conditions::doubts(&loaded.profile, loaded.profile.correction.engine);
+            doubts.iter().for_each(|report| messages.report(report));
             messages.note(&both!(
                 "{}: a good profile of {}",
                 "{}: профиль станка {} в порядке",
