@@ -51,7 +51,7 @@ impl Profile {
             let odd = |f: usize| {
                 let values = tables.nodes().iter().map(|q| tables.at(*q)[f]);
                 let name = format!("E{}{axis}", Axis::ALL[f]);
-                let odd = OddSizes::of(&source, &name, f < 3, values)?;
+                let odd = OddSizes::of(&source, &name, f, values)?;
                 Some(Diagnostic::warning(ODD_SIZES, odd.message).help(odd.help))
             };
             (0..6).filter_map(odd).collect::<Vec<_>>()

@@ -13,8 +13,9 @@ pub struct OddSizes {
 }
 
 impl OddSizes {
-    /// Of values in mm or rad that a source has of an error function; `None` where they are of the usual size.
-    pub fn of(source: &str, name: &str, is_length: bool, values: impl Iterator<Item = f64>) -> Option<Self> {
+    /// Of values in mm or rad that a source has of an error function, 0 to 5; `None` where they are of the usual size.
+    pub fn of(source: &str, name: &str, function: usize, values: impl Iterator<Item = f64>) -> Option<Self> {
+        let is_length = function < 3;
         let mut sizes: Vec<f64> = values.map(f64::abs).collect();
         sizes.sort_by(f64::total_cmp);
         let large = sizes.get(sizes.len() * 9 / 10).copied().unwrap_or(0.0);

@@ -127,10 +127,21 @@ fn own_csv(name: &str, bytes: &[u8], told: Told<'_>, ignore: &[String]) -> Resul
             ),
         ));
     }
+    holds_what_is_told(&sheet, told, &found, &functions[0].2)?;
+    Ok(found)
+}
+
+/// Refuses a file that does not hold the function which the command line names.
+fn holds_what_is_told(
+    sheet: &Sheet,
+    told: Told<'_>,
+    found: &[Series],
+    key: &str,
+) -> Result<(), Box<Refusal>> {
     if let Some((function, axis)) = told.symbol
         && !found.iter().any(|series| (series.function, series.axis) == (function, axis))
     {
-        let symbol = Series::new(axis, function, name, Origin::Instrument).name();
+        let symbol = Series::new(axis, function, sheet.name(), Origin::Instrument).name();
         let held: Vec<String> = found.iter().map(Series::name).collect();
         let message = both!(
             "{symbol} was asked for, the file holds {}",
@@ -139,9 +150,9 @@ fn own_csv(name: &str, bytes: &[u8], told: Told<'_>, ignore: &[String]) -> Resul
         );
         let help =
             both!("correct the symbol behind the file's name", "исправьте обозначение после имени файла");
-        return Err(sheet.refuse_column(AXES, &functions[0].2, message, help));
+        return Err(sheet.refuse_column(AXES, key, message, help));
     }
-    Ok(found)
+    Ok(())
 }
 
 /// Deviations along X, Y, Z.

@@ -20,7 +20,7 @@ use crate::number::short;
 /// Readings of an instrument that nine times in ten are below what any machine's are.
 pub(super) fn units(series: &Series, messages: &Messages) -> Result<(), Failure> {
     let values = series.readings.iter().map(|r| r.value);
-    let Some(odd) = OddSizes::of(&series.source, &series.name(), series.function < 3, values) else {
+    let Some(odd) = OddSizes::of(&series.source, &series.name(), series.function, values) else {
         return Ok(());
     };
     if odd.are_small && series.origin == Origin::Instrument {
