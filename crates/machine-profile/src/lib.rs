@@ -27,7 +27,7 @@ pub use profile::{
     AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics, LatheParts,
     MeasuringFrame, Nose, Outside, Profile, ProgramRules, TurningRules,
 };
-pub use show::schema;
+pub use show::{plus_turns, schema};
 pub use tables::ErrorRows;
 pub use write::{ProfileText, rename_tables};
 pub use zeros::{Found, TouchPlace, TouchedBy, ZeroFound};

@@ -224,6 +224,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("Of a control: positions, errors, corrections", "Таблица стойки: positions, errors, corrections"),
     ("One point of so many is held out of a first fit and judges it, spread over the rows; 0: none", "Одна точка из стольких оставлена от первой подгонки и судит её, вразброс по строкам; 0 — ни одной"),
     ("Plus is right-handed or larger-than90", "Плюс — right-handed или larger-than90"),
+    ("Plus turns a rotary axis right or left about its letter's direction; one for each", "Плюс поворачивает ось вправо (right) или влево (left) вокруг направления её буквы; для каждой свой"),
     ("Points anywhere in the volume, of a tracker or a tracking interferometer: all rigid-body terms", "Точки где угодно в объёме, от трекера или следящего интерферометра: все погрешности твёрдых тел"),
     ("Predict what a lathe turns by a program: radius along Z, roundness, cylindricity, roughness", "Предсказать, что токарный станок выточит по программе: радиус вдоль Z, круглость, цилиндричность, шероховатость"),
     ("Print only the shards that must run again, in the form that this engine takes", "Напечатать только части, которые надо запустить снова, в записи этого планировщика"),
