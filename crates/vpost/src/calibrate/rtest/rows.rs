@@ -306,8 +306,8 @@ fn other_way(profile: &Profile, turned: &[Axis], [as_said_mm, turned_mm]: [f64; 
     let said = Text::join(&said, "; ");
     let names = names.join(", ");
     let message = both!(
-        "{names} counts the other way than the profile says: by it the ball moves by {as_said_mm:.1} mm in the workpiece, the other way by {turned_mm:.3} mm",
-        "{names} считает не в ту сторону, что в профиле: по нему шар смещается на детали на {as_said_mm:.1} мм, наоборот — на {turned_mm:.3} мм"
+        "plus of {names} turns the other way than the profile says: by it the ball moves by {as_said_mm:.1} mm in the workpiece, the other way by {turned_mm:.3} mm",
+        "плюс {names} направлен не так, как в профиле: по нему шар смещается на детали на {as_said_mm:.1} мм, наоборот — на {turned_mm:.3} мм"
     );
     let help =
         both!("write {keys}; the profile says now: {said}", "напишите {keys}; сейчас в профиле: {said:#}");
