@@ -362,10 +362,11 @@ fn each_bad_input_has_its_own_message() {
     // C the other way round, in half of the rows: the ball would not be in its nest.
     let turned: Vec<String> = text
         .lines()
-        .map(|line| {
+        .enumerate()
+        .map(|(k, line)| {
             let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
             if let Ok(deg) = cells[5].parse::<f64>() {
-                cells[5] = (-deg.abs()).to_string();
+                cells[5] = if k % 2 == 0 { deg } else { -deg }.to_string();
             }
             cells.join(",")
         })

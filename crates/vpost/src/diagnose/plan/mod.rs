@@ -37,7 +37,7 @@ pub(super) fn print(form: Form, model: &Model, shared: &Shared, messages: &Messa
     let mut plan = lines(model.profile.volume(), tool_mm)?;
     let (turning, missing) = rotary_lines(&model.profile, tool_mm, plan.len());
     plan.extend(turning);
-    print_lines(form, &plan, "measuring plan of vpost", shared)?;
+    print_lines(form, &plan, "measuring plan of vpost", shared, messages)?;
     let found = confounding(&design(&plan, &model.geometry));
     messages.note(&summary(&plan, &found, &missing));
     Ok(())
@@ -64,16 +64,21 @@ pub(super) fn print_next(
             ),
         ));
     };
-    print_lines(form, &proposed(next, model.profile.volume())?, next.text.english(), shared)?;
+    print_lines(form, &proposed(next, model.profile.volume())?, next.text.english(), shared, messages)?;
     messages.note(&next.text);
     Ok(())
 }
 
-fn print_lines(form: Form, plan: &[Line], title: &str, shared: &Shared) -> Result<(), Failure> {
+fn print_lines(
+    form: Form,
+    plan: &[Line],
+    title: &str,
+    shared: &Shared,
+    messages: &Messages,
+) -> Result<(), Failure> {
     let text = match form {
         Form::Points => points(plan),
-        // What is doubtful in the profile is of no matter here: nothing is corrected.
-        Form::Program => program::text(plan, title, &crate::settings::Settings::load(&shared.job)?)?,
+        Form::Program => program::text(plan, title, &crate::settings::load(shared, messages)?)?,
     };
     file::print(text.as_bytes())
 }
