@@ -14,6 +14,7 @@ pub struct OddSizes {
 
 impl OddSizes {
     /// Of values in mm or rad that a source has of an error function, 0 to 5; `None` where they are of the usual size.
+    #[must_use]
     pub fn of(source: &str, name: &str, function: usize, values: impl Iterator<Item = f64>) -> Option<Self> {
         let is_length = function < 3;
         let mut sizes: Vec<f64> = values.map(f64::abs).collect();
