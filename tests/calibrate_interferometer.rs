@@ -104,6 +104,47 @@ fn columns_of_runs_and_own_csv_say_the_same() {
 }
 
 #[test]
+fn ways_of_runs_are_asked_where_no_title_says_them() {
+    let room = Room::new();
+    let rows = "-300\t0.0\t3.0\t0.2\t3.2\n-200\t2.0\t5.0\t2.2\t5.2\n-100\t4.0\t7.0\t4.2\t7.2\n";
+    let table = |name: &str, runs: [&str; 4]| {
+        format!("{}=EXX:um", room.file(name, &format!("Target\t{}\n{rows}", runs.join("\t"))))
+    };
+    let said_by = table("said.txt", ["Run 1 forward", "Run 2 reverse", "Run 3 (up)", "Run 4-"]);
+    good(&room.calibrate(&[&said_by]));
+    let both = (room.made("x.csv"), room.made("x_negative.csv"));
+    // Numbers with a stroke, and no direction.
+    let unsaid = table("unsaid.txt", ["Run-1", "Run-2", "Run-3", "Run-4"]);
+    said(&room.calibrate(&[&unsaid]), &["VP1106", "`run-1`", "--runs alternating"]);
+    good(&room.calibrate(&[&unsaid, "--runs", "alternating"]));
+    assert_eq!((room.made("x.csv"), room.made("x_negative.csv")), both);
+    good(&room.calibrate(&[&unsaid, "--runs", "up"]));
+    assert_eq!(room.made("x.csv"), "position_mm,EXX_um\n-300,1.6\n-200,3.6\n-100,5.6\n");
+}
+
+#[test]
+fn a_deviation_of_an_axis_is_that_of_the_axis_that_moved() {
+    let room = Room::new();
+    let rows = "1;1;0;0,0\n1;1;100;2,1\n1;-1;100;4,0\n1;-1;0;2,2\n";
+    let russian = |name: &str, deviation: &str| {
+        room.file(name, &format!("Проход;Направление;Позиция, мм;{deviation}, мкм\n{rows}"))
+    };
+    good(&room.calibrate(&[&russian("x.csv", "Отклонение X")]));
+    assert_eq!(room.made("x.csv"), "position_mm,EXX_um\n0,0\n100,2.1\n");
+    assert_eq!(room.made("x_negative.csv"), "position_mm,EXX_um\n0,2.2\n100,4\n");
+    // Straightness, where the axis that moved is said.
+    good(&room.calibrate(&[&format!("{}=EZX", russian("z.csv", "Отклонение Z"))]));
+    assert!(room.made("x.csv").starts_with("position_mm,EZX_um\n"), "{}", room.made("x.csv"));
+    let z = format!("{}=EYX", russian("z.csv", "Отклонение Z"));
+    said(&room.calibrate(&[&z]), &["VP1101", "EYX", "EZX"]);
+    let two = room.file("two.csv", "position_mm,dx_um,dy_um\n0,0,0\n100,2,1\n");
+    said(&room.calibrate(&[&two]), &["VP1106", "which axis moved", "two.csv=EXX"]);
+    good(&room.calibrate(&[&format!("{two}=EXX")]));
+    let own = room.file("own.csv", "position_mm,EXX_um\n0,0\n100,2\n");
+    said(&room.calibrate(&[&format!("{own}=EYY")]), &["VP1101", "EYY", "EXX"]);
+}
+
+#[test]
 fn control_tables_are_asked_what_they_mean() {
     let room = Room::new();
     let positions =

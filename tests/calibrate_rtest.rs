@@ -227,6 +227,28 @@ fn the_known_machine_comes_back_from_its_own_rows_and_predicts_others() {
 }
 
 #[test]
+fn an_axis_that_counts_the_other_way_is_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let (real, base) = (profile(at, "real", Some(LOCATIONS)), profile(at, "base", None));
+    let measured = rows(at, "rows.csv", &everywhere(), &real);
+    let text = std::fs::read_to_string(&base).expect("written");
+    for letter in ['B', 'C'] {
+        let section = format!("[rotary.{letter}]\n");
+        let direction = if letter == 'B' { "[0, -1, 0]" } else { "[0, 0, -1]" };
+        assert!(text.contains(&section), "{text}");
+        let turned = text.replace(&section, &format!("{section}direction = {direction}\n"));
+        let turned = file(at, "turned.toml", &turned);
+        let found = run(&["calibrate", "rtest", &measured, "-m", &turned]);
+        let said = messages(&found);
+        assert!(!found.status.success() && said.contains("VP1101"), "{said}");
+        let right = direction.replace("-1", "1");
+        assert!(said.contains(&format!("[rotary.{letter}] direction = {right}")), "{said}");
+        assert!(said.contains(&format!("plus {letter}: ")), "{said}");
+    }
+}
+
+#[test]
 fn a_probe_centred_on_a_sphere_says_the_same() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = folder.path();
@@ -337,13 +359,14 @@ fn each_bad_input_has_its_own_message() {
     let on_axis = rows(at, "axis.csv", &around([0.0, 0.0, 50.0]), &real);
     let on_axis = std::fs::read_to_string(on_axis).expect("written");
     says(&refused("axis.csv", &on_axis, &base, &[]), "VP1105", "the ball lies on the axis in every run");
-    // C the other way round: the ball would not be in its nest.
+    // C the other way round, in half of the rows: the ball would not be in its nest.
     let turned: Vec<String> = text
         .lines()
-        .map(|line| {
+        .enumerate()
+        .map(|(k, line)| {
             let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
             if let Ok(deg) = cells[5].parse::<f64>() {
-                cells[5] = (-deg).to_string();
+                cells[5] = if k % 2 == 0 { deg } else { -deg }.to_string();
             }
             cells.join(",")
         })

@@ -105,9 +105,9 @@ pub struct CircularTest {
     pub radius_mm: f64,
     /// By run and sense.
     pub traces: Vec<Trace>,
-    /// G(b): of all traces together, mm, where both senses were read.
+    /// G(b): of the runs that were read in both senses, mm: of one centre and one length of the bar.
     pub bidirectional_mm: Option<f64>,
-    /// H, where both senses were read at neighbouring angles.
+    /// H, where one run was read in both senses at neighbouring angles.
     pub hysteresis: Option<Hysteresis>,
     /// `F_min` and `F_max`: radial deviation against the length that the bar states, mm.
     pub radial_mm: [f64; 2],
@@ -178,10 +178,9 @@ pub(crate) fn evaluate(
         set_up_mm: 0.0,
         traces,
     };
-    let both = [Sense::CounterClockwise, Sense::Clockwise];
-    if both.iter().all(|sense| test.traces.iter().any(|t| t.sense == *sense)) {
-        test.bidirectional_mm = Some(test.range(&|p| p.deviation_mm));
-    }
+    let there_and_back = both_senses(&test.traces).flat_map(|pair| pair.map(|t| &t.points)).flatten();
+    let range_mm = range(there_and_back.map(|p| p.deviation_mm));
+    test.bidirectional_mm = both_senses(&test.traces).next().map(|_| range_mm);
     test.left_mm = test.range(&|p| p.deviation_mm - p.fitted_mm);
     test.set_up_mm = test.range(&CirclePoint::set_up_mm);
     let of = |p: &CirclePoint, kept: &dyn Fn(Cause) -> bool| {
@@ -211,6 +210,14 @@ pub(crate) fn evaluate(
 }
 
 impl CircularTest {
+    /// True where both senses were read, but none of the runs in both: each run has a set-up of its own, which takes the
+    /// difference of centre and radius that G(b) and H are of.
+    #[must_use]
+    pub fn is_centred_apart(&self) -> bool {
+        let read = |sense| self.traces.iter().any(|t| t.sense == sense);
+        self.bidirectional_mm.is_none() && read(Sense::CounterClockwise) && read(Sense::Clockwise)
+    }
+
     /// Largest minus smallest of something of the readings.
     fn range(&self, of: &dyn Fn(&CirclePoint) -> f64) -> f64 {
         range(self.traces.iter().flat_map(|t| &t.points).map(of))
@@ -317,11 +324,17 @@ fn gap(points: &[CirclePoint]) -> f64 {
     points.iter().zip(next).map(|(p, next)| next - p.angle_rad).fold(0.0, f64::max)
 }
 
-/// Both senses at the same angles: the first trace of each, the second of each, and so on.
-fn hysteresis(traces: &[Trace]) -> Option<Hysteresis> {
+/// Both senses of each run that has them.
+fn both_senses(traces: &[Trace]) -> impl Iterator<Item = [&Trace; 2]> {
     let of = |sense: Sense| traces.iter().filter(move |t| t.sense == sense);
+    of(Sense::CounterClockwise)
+        .filter_map(move |there| Some([there, of(Sense::Clockwise).find(|back| back.run == there.run)?]))
+}
+
+/// Both senses of a run at the same angles.
+fn hysteresis(traces: &[Trace]) -> Option<Hysteresis> {
     let mut worst: Option<Hysteresis> = None;
-    for (there, back) in of(Sense::CounterClockwise).zip(of(Sense::Clockwise)) {
+    for [there, back] in both_senses(traces) {
         for (one, other) in [(there, back), (back, there)] {
             for point in &one.points {
                 let Some(value) = at(other, point.angle_rad) else { continue };
@@ -365,8 +378,13 @@ mod tests {
 
     /// A circle of 100 mm: readings by `deviation(angle, sense)`, the fixed ball a millimetre off.
     fn circles(count: usize, deviation: impl Fn(f64, f64) -> f64) -> CircularTest {
+        in_runs([0, 0], count, deviation)
+    }
+
+    /// The same, both senses in these runs.
+    fn in_runs(runs: [usize; 2], count: usize, deviation: impl Fn(f64, f64) -> f64) -> CircularTest {
         let mut all = Vec::new();
-        for (run, sense) in [(0, 1.0), (1, -1.0)] {
+        for (run, sense) in runs.into_iter().zip([1.0, -1.0]) {
             for k in 0..count {
                 let a = TAU * k as f64 / count as f64;
                 let (sin, cos) = (math::sin(a), math::cos(a));
@@ -411,6 +429,16 @@ mod tests {
         assert!((found.value_mm - 0.002).abs() < 5e-6, "{found:?}");
         let senses: Vec<Sense> = test.traces.iter().map(|t| t.sense).collect();
         assert_eq!(senses, [Sense::CounterClockwise, Sense::Clockwise]);
+    }
+
+    #[test]
+    fn runs_centred_apart_have_no_figures_of_both_senses() {
+        let larger_back = |_: f64, sense: f64| -0.0045 * sense;
+        let test = circles(72, larger_back);
+        assert!((test.hysteresis.unwrap().value_mm - 0.009).abs() < 1e-6 && !test.is_centred_apart());
+        let test = in_runs([0, 1], 72, larger_back);
+        assert_eq!((test.hysteresis, test.bidirectional_mm), (None, None));
+        assert!(test.is_centred_apart(), "how far apart the circles are is in their set-ups");
     }
 
     #[test]

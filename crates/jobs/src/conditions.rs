@@ -86,7 +86,7 @@ pub fn temperature(
     }))
 }
 
-/// What the profile's error vectors leave in doubt, where this engine uses them.
+/// What the profile leaves in doubt, where this engine uses it.
 #[must_use]
 pub fn doubts(profile: &Profile, id: EngineId) -> Option<Report> {
     let diagnostics = profile.doubts(id);

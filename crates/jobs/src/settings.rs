@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use correction::{Options, Orientation, Outside};
-use diagnostic::both;
+use diagnostic::{Code, Diagnostic, Text, both};
 use machine_model::{Command, Engine, EngineId, Models, PathModel, TipControl, Vector};
 use machine_profile::{BareLengths, Profile, TurningRules};
 use nc_program::{AfterChange, BetweenVectors, Questions, Setup};
@@ -14,7 +14,7 @@ use nc_syntax::dialect::{
 use rewrite::{Datums, Guards, Job};
 
 use crate::flow::Flow;
-use crate::message::{Failure, Report, Source};
+use crate::message::{Failure, OPTION, Report, Source};
 use crate::options::{self, JobOptions};
 use crate::stored::Stored;
 use crate::{conditions, datums, lines, profile};
@@ -527,20 +527,43 @@ pub fn load_dialect(name: &str) -> Result<Dialect, Failure> {
         return Ok(dialect.clone());
     }
     if !name.ends_with(".toml") {
-        return Err(Failure::option(
-            both!("there is no dialect `{name}`", "диалекта `{name}` нет"),
-            both!(
-                "one of: {}; or the path of a grammar file ending in .toml",
-                "одно из: {}; или путь к файлу таблицы, который кончается на .toml",
-                nc_dialect::builtin_names().join(", ")
-            ),
-        ));
+        return Err(Failure::usage(no_dialect(OPTION, name)));
     }
     let bytes = std::fs::read(name).map_err(|error| Failure::unread(name, &error))?;
     let stem = Path::new(name)
         .file_stem()
         .map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
     parse_dialect(&stem, name, &bytes)
+}
+
+/// That a name is of no shipped dialect, and of which it may be meant.
+fn no_dialect(code: Code, name: &str) -> Diagnostic {
+    let names = nc_dialect::builtin_names();
+    let mut help = diagnostic::closest(name, names.iter().copied())
+        .map_or(Text::EMPTY, |near| both!("did you mean {near}? ", "имелось в виду {near}? "));
+    help.push(&both!(
+        "one of: {}; or the path of a grammar file ending in .toml",
+        "одно из: {}; или путь к файлу таблицы, который кончается на .toml",
+        names.join(", ")
+    ));
+    Diagnostic::error(code, both!("there is no dialect `{name}`", "диалекта `{name}` нет")).help(help)
+}
+
+/// Checks that there is the dialect which a profile names.
+///
+/// # Errors
+/// There is none: where the profile says it. What is wrong with a file.
+pub fn check_control(path: &Path, profile: &Profile) -> Result<(), Failure> {
+    let (Some(name), Some(at)) = (&profile.control, &profile.control_at) else { return Ok(()) };
+    if name.ends_with(".toml") || nc_dialect::builtin(name).is_some() {
+        return load_dialect(name).map(drop);
+    }
+    let label = both!("names no control", "не называет стойку");
+    let bytes = std::fs::read(path).map_err(|error| Failure::unread(&lines::name(path), &error))?;
+    Err(Failure::Usage(vec![Report {
+        source: Some(Source::whole(&lines::name(path), bytes.as_slice())),
+        diagnostics: vec![no_dialect(Code(303), name).at(at.clone(), label)],
+    }]))
 }
 
 fn parse_dialect(stem: &str, file_name: &str, bytes: &[u8]) -> Result<Dialect, Failure> {

@@ -188,9 +188,11 @@ impl<'a> Summary<'a> {
                 lines: figures.held.lines.clone(),
             }),
             datums: DatumUsed::all(&figures.datums),
-            warnings: figures
+            warnings: settings
                 .warnings
                 .iter()
+                .flat_map(|report| &report.diagnostics)
+                .chain(&figures.warnings)
                 .map(|warning| Warning {
                     code: warning.code.to_string(),
                     message: warning.message.english().to_owned(),

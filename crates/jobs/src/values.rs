@@ -541,6 +541,38 @@ impl Value for Centre {
     }
 }
 
+/// `C=right`
+#[derive(Debug, Clone, Copy)]
+pub struct Sense {
+    /// The rotary axis.
+    pub axis: Axis,
+    /// 1 where plus turns it right-handed about its letter's direction, -1 where against.
+    pub sign: f64,
+}
+
+impl Sense {
+    /// `right` or `left`.
+    #[must_use]
+    pub fn sign(text: &str) -> Option<f64> {
+        match text {
+            "right" => Some(1.0),
+            "left" => Some(-1.0),
+            _ => None,
+        }
+    }
+}
+
+impl Value for Sense {
+    const WHAT: Text = Text::pair("a rotary axis and right or left", "поворотную ось и right или left");
+    const EXAMPLES: &'static [&'static str] = &["C=right", "C=left"];
+
+    fn read(text: &str) -> Result<Self, Option<Text>> {
+        let (axis, way) = assignment(text).ok_or(None)?;
+        let axis = axis_of(axis).filter(|axis| !axis.is_linear()).ok_or(None)?;
+        Self::sign(way).map(|sign| Self { axis, sign }).ok_or(None)
+    }
+}
+
 fn linear_axis(text: &str) -> Option<Axis> {
     axis_of(text).filter(|axis| axis.is_linear())
 }
@@ -661,6 +693,7 @@ mod tests {
         examples::<Travel>();
         examples::<AxisTable>();
         examples::<Centre>();
+        examples::<Sense>();
         examples::<NamedRegion>();
         examples::<Layer>();
         examples::<Lattice>();

@@ -32,6 +32,10 @@ pub(crate) const FIELD: Code = Code(312);
 pub(crate) const DOUBTFUL_FIELD: Code = Code(313);
 /// What a tilt means is not said.
 pub(crate) const TILT: Code = Code(314);
+/// Errors of a size that no machine has.
+pub(crate) const ODD_SIZES: Code = Code(315);
+/// Nothing to correct by.
+pub(crate) const NO_ERRORS: Code = Code(316);
 
 /// One thing wrong with a profile or with a table it names.
 #[derive(Clone, Debug, PartialEq)]

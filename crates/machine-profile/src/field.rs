@@ -2,7 +2,7 @@
 
 use diagnostic::{Diagnostic, Speaks, Text, both};
 use machine_model::engines::{ErrorVector, Field, FieldError, Made};
-use machine_model::{EngineId, Range, Vector};
+use machine_model::{Range, Vector};
 use measurement_files::{Codes, Kind, Refusal, Row, Sheet, numbered};
 use units::Length;
 
@@ -503,12 +503,9 @@ impl MeasuredField {
 }
 
 impl Profile {
-    /// What its error vectors leave in doubt, where this engine uses them: warnings.
-    #[must_use]
-    pub fn doubts(&self, engine: EngineId) -> Vec<Diagnostic> {
-        let Some(measured) = self.field.as_ref().filter(|_| engine == EngineId::Field) else {
-            return Vec::new();
-        };
+    /// What its error vectors leave in doubt.
+    pub(crate) fn doubts_of_field(&self) -> Vec<Diagnostic> {
+        let Some(measured) = &self.field else { return Vec::new() };
         let mut doubts = Vec::new();
         if let Some(doubt) = measured.field.doubt() {
             let [stated, scatter] = [doubt.stated_mm, doubt.scatter_mm].map(|mm| Length::from_mm(mm).um());

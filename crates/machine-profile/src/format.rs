@@ -19,7 +19,8 @@ pub(crate) struct Document {
     /// Name of the machine.
     pub(crate) name: String,
     /// The control's dialect: a file in grammars/.
-    pub(crate) control: Option<String>,
+    #[schemars(with = "Option<String>")]
+    pub(crate) control: Option<Spanned<String>>,
     /// Axes from workpiece to tool, like "[w X Y b Z t]"; of a lathe, S its spindle, like "[w S b Z X t]".
     #[schemars(with = "String")]
     pub(crate) chain: Spanned<String>,

@@ -3,6 +3,7 @@
 //! The format is the contract's `format = 1`. Files are read by a function the caller gives; errors know
 //! the file and the bytes they speak of. What a column or key means is said where it is read: [`load`].
 
+mod doubts;
 mod effects;
 mod error;
 mod field;
@@ -26,7 +27,7 @@ pub use profile::{
     AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics, LatheParts,
     MeasuringFrame, Nose, Outside, Profile, ProgramRules, TurningRules,
 };
-pub use show::schema;
+pub use show::{plus_turns, schema};
 pub use tables::ErrorRows;
 pub use write::{ProfileText, rename_tables};
 pub use zeros::{Found, TouchPlace, TouchedBy, ZeroFound};

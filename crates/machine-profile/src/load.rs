@@ -186,7 +186,8 @@ impl Loader<'_> {
         };
         Some(Profile {
             name: document.name,
-            control: document.control,
+            control_at: document.control.as_ref().map(|control| span(&control.span())),
+            control: document.control.map(Spanned::into_inner),
             calibrated,
             description,
             resolution_mm,

@@ -221,6 +221,8 @@ pub struct Profile {
     pub name: String,
     /// The control's dialect.
     pub control: Option<String>,
+    /// The bytes of the profile that say it.
+    pub control_at: Option<std::ops::Range<u64>>,
     /// Calibration record.
     pub calibrated: Option<Calibrated>,
     /// Geometry for the rigid-body model: chain, tables, squareness, rotary axes.

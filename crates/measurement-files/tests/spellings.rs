@@ -321,3 +321,46 @@ fn files_that_are_no_table_are_told_what_they_are() {
         );
     }
 }
+
+/// Units as people write them beside a name, by the end of the column's key.
+const UNITS_BESIDE: [(&str, &str); 7] = [
+    ("_mm_min", ", мм/мин"),
+    ("_mm", ", мм"),
+    ("_um", " (мкм)"),
+    ("_deg", " [град]"),
+    ("_c", ", °C"),
+    ("_kg", ", кг"),
+    ("_s", ", с"),
+];
+
+/// Every name of a column that docs/reference.md promises is read as that column.
+#[test]
+fn headers_that_the_documents_promise_are_read() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/reference.md");
+    let text = std::fs::read_to_string(path).expect("the reference");
+    let table = text.split("| column | other names |").nth(1).expect("the table of names");
+    let mut read = 0;
+    for row in table.lines().skip(2).take_while(|line| line.starts_with('|')) {
+        let cells: Vec<&str> = row.trim_matches('|').split(" | ").collect();
+        let keys = cells[0].split('`').skip(1).step_by(2);
+        for (key, names) in keys.zip(cells[1].split("; ").filter(|names| !names.contains('`'))) {
+            let unit = UNITS_BESIDE.iter().find(|(end, _)| key.ends_with(end)).map_or("", |(_, unit)| unit);
+            let outside = names
+                .split(" (")
+                .next()
+                .into_iter()
+                .chain(names.split(')').nth(1))
+                .flat_map(|n| n.split(", "));
+            for name in outside.map(str::trim).filter(|name| !name.is_empty()) {
+                let kind = Kind { columns: key, ..KIND };
+                let table = format!("\"{name}{unit}\"\n1\n");
+                let sheet = Sheet::read("a.csv", table.as_bytes(), &kind, None).unwrap_or_else(|refusal| {
+                    panic!("{name}{unit}: {}", refusal.diagnostic.message.english())
+                });
+                assert!(sheet.has(key), "{name}{unit}");
+                read += 1;
+            }
+        }
+    }
+    assert!(read > 70, "{read}");
+}

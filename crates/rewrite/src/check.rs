@@ -128,6 +128,10 @@ fn check_within(
             }
         }
     }
+    if programs[0].text() == programs[1].text() {
+        // Nearest places of a path may be nearer than those of the same moment.
+        executed.comparison.after = executed.comparison.before;
+    }
     if !executed.findings.is_empty() && nc_emit::find_provenance(programs[1].text()).is_none() {
         let finding = both!(
             "this program was not corrected: it bears no mark of vpost",

@@ -155,6 +155,8 @@ impl Profile {
                 c.y,
                 c.z
             )?;
+            let plus = self.plus_turns(axis);
+            tell!(out, language, "  {plus}", "  {plus:#}")?;
             if data.errors_negative.is_some() {
                 tell!(
                     out,

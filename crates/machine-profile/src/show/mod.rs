@@ -2,6 +2,9 @@
 
 mod machine;
 mod program;
+mod sense;
+
+pub use sense::plus_turns;
 
 use std::fmt::Write as _;
 

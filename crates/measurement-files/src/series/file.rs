@@ -22,6 +22,28 @@ pub enum Values {
     Corrections,
 }
 
+/// Which way an axis passed its targets in runs whose titles do not say it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ways {
+    /// Runs 1, 3, 5 … towards plus, the others towards minus.
+    Alternating,
+    /// All towards plus.
+    Up,
+    /// All towards minus.
+    Down,
+}
+
+impl Ways {
+    /// Of a run, from 1.
+    pub(super) fn of(self, run: usize) -> i8 {
+        match self {
+            Self::Up => 1,
+            Self::Alternating if run % 2 == 1 => 1,
+            Self::Alternating | Self::Down => -1,
+        }
+    }
+}
+
 /// What kind of numbers a file holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
@@ -111,6 +133,8 @@ pub struct Told<'t> {
     pub unit: Option<&'t str>,
     /// What a control's numbers are.
     pub values: Option<Values>,
+    /// How runs went that do not say it.
+    pub ways: Option<Ways>,
 }
 
 /// `EXX`: function and axis.

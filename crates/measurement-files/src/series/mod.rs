@@ -10,16 +10,16 @@ mod file;
 mod renishaw;
 
 use diagnostic::{Text, both};
-pub use file::{Content, Origin, Series, SeriesReading, Told, Values, symbol};
+pub use file::{Content, Origin, Series, SeriesReading, Told, Values, Ways, symbol};
 use file::{File, numbers};
 
 use machine_model::Axis;
 
-use crate::codes::COLUMN;
+use crate::codes::{AXES, COLUMN, QUESTION};
 use crate::refusal::{Codes, Refusal};
 use crate::sheet::{Kind, Sheet};
 use crate::text::decoded;
-use crate::unit::{MM, RAD};
+use crate::unit::{MM, RAD, UM};
 
 /// Reads a file of an interferometer or a control; `ignore` are columns of the product's own CSV to pass over.
 ///
@@ -53,11 +53,11 @@ pub fn read(name: &str, bytes: &[u8], told: Told<'_>, ignore: &[String]) -> Resu
     {
         return Ok(vec![renishaw::columns_of_runs(&file)?].into());
     }
-    Ok(own_csv(name, bytes, ignore)?.into())
+    Ok(own_csv(name, bytes, told, ignore)?.into())
 }
 
-/// The product's own CSV: `position_mm`, functions with units, `run`, `dir`.
-fn own_csv(name: &str, bytes: &[u8], ignore: &[String]) -> Result<Vec<Series>, Box<Refusal>> {
+/// The product's own CSV: `position_mm`, functions with units or deviations of axes, `run`, `dir`.
+fn own_csv(name: &str, bytes: &[u8], told: Told<'_>, ignore: &[String]) -> Result<Vec<Series>, Box<Refusal>> {
     let linear = || Axis::ALL.into_iter().take(3);
     let of_axis = |axis| {
         Axis::ALL.iter().enumerate().map(move |(function, direction)| {
@@ -65,10 +65,10 @@ fn own_csv(name: &str, bytes: &[u8], ignore: &[String]) -> Result<Vec<Series>, B
             (axis, function, format!("E{direction}{axis}_{}", unit.name))
         })
     };
-    let functions: Vec<(Axis, usize, String)> = linear().flat_map(of_axis).collect();
+    let mut functions: Vec<(Axis, usize, String)> = linear().flat_map(of_axis).collect();
     let keys: Vec<&str> = functions.iter().map(|(.., key)| key.as_str()).collect();
     let kind = Kind {
-        columns: &format!("position_mm run dir temp_c {}", keys.join(" ")),
+        columns: &format!("position_mm run dir temp_c {} {}", DEVIATIONS.join(" "), keys.join(" ")),
         expected: Text::pair(
             "expected: position_mm, any of EXX_um … ECZ_urad, and run, dir where there are repeats",
             "ожидалось: position_mm, любые из EXX_um … ECZ_urad, а при повторах run и dir",
@@ -79,8 +79,10 @@ fn own_csv(name: &str, bytes: &[u8], ignore: &[String]) -> Result<Vec<Series>, B
     };
     let sheet = Sheet::read(name, bytes, &kind, Some(ignore))?;
     sheet.need(&["position_mm"], kind.expected)?;
+    functions.retain(|(.., key)| sheet.has(key));
+    functions.extend(deviations(&sheet, told, functions.first().map(|(axis, ..)| *axis))?);
     let mut found: Vec<Series> = Vec::new();
-    for (axis, function, key) in functions.iter().filter(|(.., key)| sheet.has(key)) {
+    for (axis, function, key) in &functions {
         let mut series = Series::new(*axis, *function, name, Origin::Instrument);
         if let Some(other) = found.first().filter(|other| other.axis != *axis) {
             let message = both!(
@@ -96,13 +98,19 @@ fn own_csv(name: &str, bytes: &[u8], ignore: &[String]) -> Result<Vec<Series>, B
                 both!("give each axis a file of its own", "дайте каждой оси отдельный файл"),
             ));
         }
+        if found.iter().any(|other| other.function == *function) {
+            let message = both!("{} stands twice in the file", "{} стоит в файле дважды", series.name());
+            let help = both!("remove one of the two columns", "уберите один из двух столбцов");
+            return Err(sheet.refuse_column(COLUMN, key, message, help));
+        }
+        let scale = if DEVIATIONS.contains(&key.as_str()) { UM.factor_to(MM) } else { 1.0 };
         for row in sheet.rows() {
             if let Some(value) = row.number(key)? {
                 let run = row.text("run");
                 series.readings.push(SeriesReading {
                     run: if run.is_empty() { "1".to_owned() } else { run.into_owned() },
                     position_mm: row.needed("position_mm")?,
-                    value,
+                    value: value * scale,
                     direction: row.sign("dir")?,
                     temperature_c: row.number("temp_c")?,
                 });
@@ -119,7 +127,60 @@ fn own_csv(name: &str, bytes: &[u8], ignore: &[String]) -> Result<Vec<Series>, B
             ),
         ));
     }
+    holds_what_is_told(&sheet, told, &found, &functions[0].2)?;
     Ok(found)
+}
+
+/// Refuses a file that does not hold the function which the command line names.
+fn holds_what_is_told(
+    sheet: &Sheet,
+    told: Told<'_>,
+    found: &[Series],
+    key: &str,
+) -> Result<(), Box<Refusal>> {
+    if let Some((function, axis)) = told.symbol
+        && !found.iter().any(|series| (series.function, series.axis) == (function, axis))
+    {
+        let symbol = Series::new(axis, function, sheet.name(), Origin::Instrument).name();
+        let held: Vec<String> = found.iter().map(Series::name).collect();
+        let message = both!(
+            "{symbol} was asked for, the file holds {}",
+            "запрошена {symbol}, а в файле {}",
+            held.join(", ")
+        );
+        let help =
+            both!("correct the symbol behind the file's name", "исправьте обозначение после имени файла");
+        return Err(sheet.refuse_column(AXES, key, message, help));
+    }
+    Ok(())
+}
+
+/// Deviations along X, Y, Z.
+const DEVIATIONS: [&str; 3] = ["dx_um", "dy_um", "dz_um"];
+
+/// Functions of which a file has deviations by direction: of the axis that it names elsewhere, that is told, or that
+/// alone deviates.
+fn deviations(
+    sheet: &Sheet,
+    told: Told<'_>,
+    named: Option<Axis>,
+) -> Result<Vec<(Axis, usize, String)>, Box<Refusal>> {
+    let own: Vec<usize> = (0..3).filter(|direction| sheet.has(DEVIATIONS[*direction])).collect();
+    let alone = if let [one] = own[..] { Some(Axis::ALL[one]) } else { None };
+    let Some(axis) = named.or(told.symbol.map(|(_, axis)| axis)).or(alone) else {
+        let Some(first) = own.first() else { return Ok(Vec::new()) };
+        let message = both!(
+            "which axis moved? the file has deviations of several",
+            "какая ось двигалась? в файле отклонения нескольких"
+        );
+        let help = both!(
+            "say it behind the file's name: `{}=EXX` for X",
+            "скажите это после имени файла: `{}=EXX` для X",
+            sheet.name()
+        );
+        return Err(sheet.refuse_column(QUESTION, DEVIATIONS[*first], message, help));
+    };
+    Ok(own.into_iter().map(|direction| (axis, direction, DEVIATIONS[direction].to_owned())).collect())
 }
 
 #[cfg(test)]
@@ -127,7 +188,7 @@ mod tests {
     use super::*;
 
     fn positioning(text: &str, values: Option<Values>) -> Result<Content, Box<Refusal>> {
-        read("a.pos", text.as_bytes(), Told { symbol: symbol("EXX"), unit: None, values }, &[])
+        read("a.pos", text.as_bytes(), Told { symbol: symbol("EXX"), values, ..Told::default() }, &[])
     }
 
     /// Written by hand after the headings that a public reader looks for.

@@ -147,8 +147,18 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
     Ok(series)
 }
 
-/// A target column and one column a run. Directions: from `+`/`-`, `forward`/`reverse` or `up`/`down` in the column's title;
-/// otherwise odd runs go up and even ones down, as instruments run them.
+/// Which way a run went, by `+`/`-`, `forward`/`reverse` or `up`/`down` in its title; `None` where that does not say it.
+fn way(title: &str) -> Option<i8> {
+    let words = title.split([' ', '_', ',', '(', ')']);
+    let says = |word: &str, sign: char, names: [&str; 3]| word.ends_with(sign) || names.contains(&word);
+    let found = words.map(|word| {
+        i8::from(says(word, '+', ["forward", "fwd", "up"]))
+            - i8::from(says(word, '-', ["reverse", "backward", "down"]))
+    });
+    Some(found.sum::<i8>().signum()).filter(|way| *way != 0)
+}
+
+/// A target column and one column a run. Which way a run went its title says, or the user.
 pub(super) fn columns_of_runs(file: &File<'_>) -> Result<Series, Box<Refusal>> {
     let (function, axis) = file.function()?;
     let of = |diagnostic| Refusal::of(file.name, file.text, diagnostic);
@@ -178,20 +188,24 @@ pub(super) fn columns_of_runs(file: &File<'_>) -> Result<Series, Box<Refusal>> {
             both!("give the target positions in mm", "дайте положения целей в мм"),
         ));
     }
-    let directions: Vec<i8> = titles
-        .iter()
-        .enumerate()
-        .map(|(k, t)| {
-            let says = |words: [&str; 3]| words.iter().any(|w| t.contains(w));
-            if says(["+", "forward", "up"]) {
-                1
-            } else if says(["-", "reverse", "down"]) || k % 2 == 0 {
-                -1
-            } else {
-                1
-            }
+    // Of a single run nothing hangs on it.
+    let alone = (titles.len() == 2).then_some(0);
+    let directions = titles.iter().enumerate().skip(1).map(|(run, title)| {
+        let told = || file.told.ways.map(|ways| ways.of(run));
+        way(title).or_else(told).or(alone).ok_or_else(|| {
+            file.question(
+                &both!(
+                    "does not say which way the axis went in `{title}`: lost motion is what two directions differ by",
+                    "не говорит, в какую сторону шла ось в `{title}`: мёртвый ход — это разность двух направлений"
+                ),
+                both!(
+                    "add `--runs alternating` (the first towards plus, the next towards minus, and so on), `--runs up` or `--runs down`; or say it in the titles: `Run 1 +`, `Run 2 -`",
+                    "добавьте `--runs alternating` (первый в плюс, следующий в минус и так далее), `--runs up` или `--runs down`; или скажите это в заголовках: `Run 1 +`, `Run 2 -`"
+                ),
+            )
         })
-        .collect();
+    });
+    let directions: Vec<i8> = directions.collect::<Result<_, _>>()?;
     let mut series = Series::new(axis, function, file.name, Origin::Instrument);
     for record in &table.records {
         let number = |k: usize| {
@@ -214,7 +228,10 @@ pub(super) fn columns_of_runs(file: &File<'_>) -> Result<Series, Box<Refusal>> {
         };
         let target = number(0)?;
         for k in (1..record.cells.len()).filter(|k| !record.cells[*k].span.is_empty()) {
-            series.push(&k.div_ceil(2).to_string(), target, number(k)? * factor, directions[k]);
+            let direction = directions[k - 1];
+            // Runs of a direction are numbered for themselves: as ISO 230-2 counts them, one there and one back make one.
+            let run = 1 + directions[..k - 1].iter().filter(|other| **other == direction).count();
+            series.push(&run.to_string(), target, number(k)? * factor, direction);
         }
     }
     Ok(series)

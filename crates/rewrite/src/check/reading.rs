@@ -203,8 +203,10 @@ impl<'a, 'n> Program<'a, 'n> {
 
     fn take(&mut self, block: &Block<'a>, says: BlockSays, motions: &[Motion], context: &Context) {
         let line = (self.line_name)(self.expanded.source_line(block.line));
-        let stated_mm = self.accepted.and_then(|accepted| accepted.get(&block.line)).map_or(0.0, |mm| mm + ROOM_MM);
-        let limit_mm = (self.job.options.tolerance_mm + rounding_mm(self.job, context)).max(stated_mm) * self.wider;
+        let stated_mm =
+            self.accepted.and_then(|accepted| accepted.get(&block.line)).map_or(0.0, |mm| mm + ROOM_MM);
+        let limit_mm =
+            (self.job.options.tolerance_mm + rounding_mm(self.job, context)).max(stated_mm) * self.wider;
         says.before.into_iter().for_each(|said| self.say(said, line, limit_mm));
         if self.process.move_by(&context.kinematics) {
             self.process_number = None;

@@ -1,5 +1,6 @@
 //! What `calibrate ballbar` prints.
 
+use calibration::circular_test::CircularTest;
 use calibration::linear_ballbar::CircleCalibration;
 use calibration::rotary_ballbar::{RotaryCalibration, Test};
 use calibration::rotary_sequence::{Sequence, approximation_mm, sequence};
@@ -101,6 +102,12 @@ pub(super) fn before_and_after(before: &RotaryCalibration, after: &RotaryCalibra
     out
 }
 
+/// Why circles that were read both ways round have no figures of both.
+pub(super) static CENTRED_APART: Text = Text::pair(
+    "Both directions were read in runs of their own, each with its own centre and length of the bar: G(b) and H of ISO 230-4 need both about one centre; where nothing was moved between them, give both one run number",
+    "Стороны сняты в разных проходах, у каждого свой центр и своя длина измерителя: G(b) и H по ISO 230-4 требуют обе стороны около одного центра; если между ними ничего не двигали, дайте обеим один номер прохода",
+);
+
 pub(super) fn circle_report(found: &CircleCalibration) -> Text {
     let mut out = both!(
         "circles, {} readings, {:.3} um left (standard deviation)\n",
@@ -151,6 +158,9 @@ pub(super) fn circle_report(found: &CircleCalibration) -> Text {
                 "  люфт {axis}      не виден: нет отсчётов с направлением {axis} в обе стороны\n"
             ),
         });
+    }
+    if found.tests.iter().any(CircularTest::is_centred_apart) {
+        out.push(&both!("  {CENTRED_APART}\n", "  {CENTRED_APART:#}\n"));
     }
     out
 }

@@ -8,7 +8,7 @@ use calibration::measured_line::{AxisOnNodes, Gauge, Zero};
 use diagnostic::{Diagnostic, Text, both};
 use machine_model::{Axis, Interpolation, Six, Squareness, Table};
 use machine_profile::Calibrated;
-use measurement_files::series::{Origin, Series};
+use measurement_files::series::{Origin, Series, Told};
 
 use crate::arguments::Shared;
 use crate::file;
@@ -104,8 +104,9 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
 fn read(arguments: &Interferometer) -> Result<(Vec<Series>, Option<[f64; 3]>), Failure> {
     let mut all: Vec<Series> = Vec::new();
     let mut angles_read: Option<[f64; 3]> = None;
+    let told = Told { values: arguments.values, ways: arguments.runs, ..Told::default() };
     for spec in &arguments.files {
-        let content = sources::series(spec, arguments.values, &arguments.target.ignore_column)?;
+        let content = sources::series(spec, told, &arguments.target.ignore_column)?;
         angles_read = angles_read.or(content.angles_rad);
         for series in content.series {
             // Further runs of the same function may come in a file of their own.

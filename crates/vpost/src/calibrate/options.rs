@@ -3,7 +3,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use machine_model::Interpolation;
-use measurement_files::series::Values;
+use measurement_files::series::{Values, Ways};
 
 use super::output::Target;
 use super::page::Shown;
@@ -22,6 +22,11 @@ pub struct Interferometer {
     /// What the numbers of its table are.
     #[arg(long, value_name = "WHAT", value_parser = values(), hide_possible_values = true, help_heading = "Tables")]
     pub values: Option<Values>,
+    /// Ways of runs: alternating, up or down.
+    ///
+    /// Which way the axis went in the columns of a table whose titles do not say it.
+    #[arg(long, value_name = "HOW", value_parser = ways(), hide_possible_values = true, help_heading = "Tables")]
+    pub runs: Option<Ways>,
     /// As the instrument gave it, µrad.
     ///
     /// XY=12,ZX=-3,YZ=5; what is left out stays as it is.
@@ -95,9 +100,19 @@ pub enum Reference {
     Carriage,
 }
 
+/// One of these, by name.
+fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
+    all: [(&'static str, T, &'static str); N],
+) -> impl TypedValueParser<Value = T> {
+    let names = all.map(|(name, _, help)| PossibleValue::new(name).help(help));
+    PossibleValuesParser::new(names).try_map(move |given| {
+        all.into_iter().find(|(name, ..)| *name == given).map(|(_, one, _)| one).ok_or("unknown")
+    })
+}
+
 /// `--values`
 fn values() -> impl TypedValueParser<Value = Values> {
-    const ALL: [(&str, Values, &str); 3] = [
+    one_of([
         ("positions", Values::Positions, "Where the axis really was (LinuxCNC COMP_FILE_TYPE = 0)"),
         ("errors", Values::Errors, "Actual minus nominal"),
         (
@@ -105,11 +120,16 @@ fn values() -> impl TypedValueParser<Value = Values> {
             Values::Corrections,
             "What the control adds: nominal minus actual (LinuxCNC COMP_FILE_TYPE = 1)",
         ),
-    ];
-    let names = ALL.map(|(name, _, help)| PossibleValue::new(name).help(help));
-    PossibleValuesParser::new(names).try_map(|given| {
-        ALL.into_iter().find(|(name, ..)| *name == given).map(|(_, values, _)| values).ok_or("unknown")
-    })
+    ])
+}
+
+/// `--runs`
+fn ways() -> impl TypedValueParser<Value = Ways> {
+    one_of([
+        ("alternating", Ways::Alternating, "The first towards plus, the next towards minus, and so on"),
+        ("up", Ways::Up, "All towards plus"),
+        ("down", Ways::Down, "All towards minus"),
+    ])
 }
 
 /// What becomes of two directions.

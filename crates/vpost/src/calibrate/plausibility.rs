@@ -6,6 +6,7 @@ use diagnostic::{Diagnostic, Text, both};
 
 use crate::message::{Failure, Messages};
 
+use measurement_files::OddSizes;
 use measurement_files::series::{Origin, Series};
 
 use super::codes::{AXES, MISSING, RUNS, UNITS};
@@ -18,46 +19,14 @@ use crate::number::short;
 /// # Errors
 /// Readings of an instrument that nine times in ten are below what any machine's are.
 pub(super) fn units(series: &Series, messages: &Messages) -> Result<(), Failure> {
-    let mut sizes: Vec<f64> = series.readings.iter().map(|r| r.value.abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    let large = sizes.get(sizes.len() * 9 / 10).copied().unwrap_or(0.0);
-    let name = series.name();
-    // 0.05 µm and 0.05 µrad; 0.5 mm and 5 mrad.
-    let (low, high) = if series.function < 3 { (5e-5, 0.5) } else { (5e-8, 5e-3) };
-    if large > 0.0 && large < low && sizes.len() > 3 {
-        let message = both!(
-            "{}: nine readings of ten of {name} are below {}: are they in a larger unit than said?",
-            "{}: девять показаний {name} из десяти меньше {:#}: их единица крупнее названной?",
-            series.source,
-            if series.function < 3 {
-                both!("0.05 um", "0.05 мкм")
-            } else {
-                both!("0.05 urad", "0.05 мкрад")
-            }
-        );
-        let diagnostic = |d: Diagnostic| {
-            d.help(both!("no machine is that good: check µm against mm, µrad against arc seconds; leave out a column that holds nothing (--ignore-column)", "таких точных станков нет: проверьте, не мм ли вместо мкм, не угловые ли секунды вместо мкрад; столбец, где ничего нет, пропустите (--ignore-column)"))
-        };
-        if series.origin == Origin::Instrument {
-            return Err(Failure::usage(diagnostic(Diagnostic::error(UNITS, message))));
-        }
-        warn(messages, diagnostic(Diagnostic::warning(UNITS, message)));
-    } else if large > high {
-        let (scale, unit) = micro(series.function < 3);
-        let message = both!(
-            "{}: readings of {name} reach {:.0} {unit}: are they in a smaller unit than said?",
-            "{}: показания {name} доходят до {:.0} {unit:#}: их единица мельче названной?",
-            series.source,
-            large * scale
-        );
-        warn(
-            messages,
-            Diagnostic::warning(UNITS, message).help(both!(
-                "check µm against mm and nm, µrad against arc seconds",
-                "проверьте, мкм ли это, а не мм или нм, мкрад ли, а не угловые секунды"
-            )),
-        );
+    let values = series.readings.iter().map(|r| r.value);
+    let Some(odd) = OddSizes::of(&series.source, &series.name(), series.function, values) else {
+        return Ok(());
+    };
+    if odd.are_small && series.origin == Origin::Instrument {
+        return Err(Failure::usage(Diagnostic::error(UNITS, odd.message).help(odd.help)));
     }
+    warn(messages, Diagnostic::warning(UNITS, odd.message).help(odd.help));
     Ok(())
 }
 

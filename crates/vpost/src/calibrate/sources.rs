@@ -5,7 +5,7 @@ use std::path::Path;
 use calibration::functions::FunctionReading;
 use diagnostic::{Text, both};
 use machine_model::effects::Conditions;
-use measurement_files::series::{Content, Series, Told, Values, symbol};
+use measurement_files::series::{Content, Series, Told, symbol};
 use measurement_files::{Codes, Kind, Row, Sheet};
 
 use crate::file;
@@ -47,8 +47,7 @@ pub(super) fn path_of(spec: &str) -> &str {
 }
 
 /// Reads `FILE[=SYMBOL[:UNIT]]`.
-pub(super) fn series(spec: &str, values: Option<Values>, ignore: &[String]) -> Result<Content, Failure> {
-    let mut told = Told { values, ..Told::default() };
+pub(super) fn series<'s>(spec: &'s str, mut told: Told<'s>, ignore: &[String]) -> Result<Content, Failure> {
     if let Some((_, rest)) = spec.rsplit_once('=') {
         let (name, unit) = rest.split_once(':').map_or((rest, None), |(name, unit)| (name, Some(unit)));
         let known = symbol(name).ok_or_else(|| {

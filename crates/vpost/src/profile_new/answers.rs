@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use control_files::Machine;
 use diagnostic::{Speaks, Text, both};
-use machine_model::{Axis, Chain, Range};
+use machine_model::{Axis, Chain, Range, Vector};
+use machine_profile::plus_turns;
 
 use crate::message::{Failure, Messages};
 use crate::profile_new::New;
 use crate::profile_new::questions::Questions;
 use crate::settings::load_dialect;
-use crate::values::{Centre, Given, Travel};
+use crate::values::{Centre, Given, Sense, Travel};
 
 /// The chain of a machine nobody describes otherwise.
 const USUAL: &str = "[w X Y b Z t]";
@@ -24,8 +25,8 @@ pub(super) struct Answers {
     pub(super) chain: Chain,
     /// X, Y, Z.
     pub(super) travels_mm: [Range; 3],
-    /// A point of the line of each rotary axis of the chain.
-    pub(super) centres_mm: Vec<(Axis, [f64; 3])>,
+    /// A point of the line of each rotary axis of the chain, mm, and the direction about which plus turns it right-handed.
+    pub(super) rotary: Vec<(Axis, [f64; 3], Vector)>,
     pub(super) output: Option<PathBuf>,
 }
 
@@ -100,7 +101,8 @@ pub(super) fn complete(arguments: &New, said: Machine, messages: &Messages) -> R
             None => asked(ask, &question, read)?.ok_or_else(|| not_once(axis))?,
         };
     }
-    let centres_mm = centres(arguments, &chain, ask)?;
+    let along = |(axis, point_mm)| Ok((axis, point_mm, sense(arguments, &chain, axis, ask)?));
+    let rotary = centres(arguments, &chain, ask)?.into_iter().map(along).collect::<Result<_, Failure>>()?;
     let output = match (&arguments.output, ask) {
         (Some(path), _) => Some(path.clone()),
         (None, None) => None,
@@ -111,7 +113,7 @@ pub(super) fn complete(arguments: &New, said: Machine, messages: &Messages) -> R
             Some(ask.ask(&question, read)?)
         }
     };
-    Ok(Answers { name, control, chain, travels_mm: ranges, centres_mm, output })
+    Ok(Answers { name, control, chain, travels_mm: ranges, rotary, output })
 }
 
 /// The answer of whoever is there; `None` where nobody is.
@@ -257,6 +259,37 @@ fn centres(
         point_mm.map(|point_mm| (axis, point_mm)).ok_or_else(not_once)
     };
     rotary().map(centre).collect()
+}
+
+/// The direction about which plus turns an axis right-handed.
+fn sense(arguments: &New, chain: &Chain, axis: Axis, ask: Option<&Questions<'_>>) -> Result<Vector, Failure> {
+    let letter = axis.letter();
+    let along = |sign: f64| Vector::ith(axis.direction(), sign);
+    let [right, left] = [1.0, -1.0].map(|sign| plus_turns(chain, axis, along(sign)));
+    // ISO 841 has plus right-handed where the tool turns; a table turns against that.
+    let standard = if chain.table().contains(&axis) { "left" } else { "right" };
+    let mut given = arguments.sense.iter().filter(|sense| sense.axis == axis);
+    let sign = match (given.next(), given.next()) {
+        (Some(sense), None) => Some(sense.sign),
+        (Some(_), Some(_)) => None,
+        (None, _) => {
+            let question = both!(
+                "Which way does {letter} count? right: {right}; left: {left} ({standard} by ISO 841)",
+                "В какую сторону считает {letter}? right: {right:#}; left: {left:#} (по ISO 841 {standard})"
+            );
+            let read = |text: &str| Sense::sign(text).ok_or_else(|| both!("right or left", "right или left"));
+            asked(ask, &question, read)?
+        }
+    };
+    sign.map(along).ok_or_else(|| {
+        Failure::option(
+            both!("--sense of {letter} is not given once", "--sense для {letter} задан не один раз"),
+            both!(
+                "turn it by a little and look: `--sense {letter}=right`: {right}; `--sense {letter}=left`: {left} ({standard} by ISO 841)",
+                "поверните её немного и посмотрите: `--sense {letter}=right`: {right:#}; `--sense {letter}=left`: {left:#} (по ISO 841 {standard})"
+            ),
+        )
+    })
 }
 
 /// A file named after a machine.

@@ -7,11 +7,12 @@ use clap::Args;
 use control_files::Machine;
 use diagnostic::{Language, both, say};
 use machine_model::Axis;
+use machine_profile::plus_turns;
 
 use crate::message::{Failure, Messages};
 use crate::number::short;
 use crate::profile_new::answers::Answers;
-use crate::values::{AxisTable, Centre, Given, Travel};
+use crate::values::{AxisTable, Centre, Given, Sense, Travel};
 use crate::{file, profile};
 
 mod answers;
@@ -47,6 +48,12 @@ pub struct New {
     /// A point of a rotary axis' line, machine coordinates; one for each.
     #[arg(long, value_name = "C=X,Y,Z", allow_hyphen_values = true)]
     pub centre: Vec<Given<Centre>>,
+    /// Plus turns a rotary axis right or left about its letter's direction; one for each.
+    ///
+    /// right: the side of a table towards +Y goes towards +Z (A), +X towards -Z (B), +X towards +Y (C); left: the other way, as
+    /// ISO 841 has it of tables.
+    #[arg(long, value_name = "C=right")]
+    pub sense: Vec<Given<Sense>>,
     /// The profile; a file that is there is left alone.
     #[arg(short = 'o', long, value_name = "PROFILE.toml")]
     pub output: Option<PathBuf>,
@@ -131,7 +138,7 @@ fn text(arguments: &New, machine: &Answers, language: Language) -> Result<String
         };
         text.push_str("# backlash_um = 0.0\n");
     }
-    for (axis, point_mm) in &machine.centres_mm {
+    for (axis, point_mm, along) in &machine.rotary {
         let letter = axis.letter();
         let [x, y, z] = point_mm.map(|value| short(value, 6));
         let point = say!(
@@ -139,7 +146,13 @@ fn text(arguments: &New, machine: &Answers, language: Language) -> Result<String
             "A point of its line, machine coordinates of the linear axes.",
             "Точка на её оси, координаты станка по линейным осям."
         );
-        let _ = writeln!(text, "\n[rotary.{letter}]\n# {point}\ncentre_mm = [{x}, {y}, {z}]");
+        let plus = plus_turns(chain, *axis, *along);
+        let plus = plus.in_language(language);
+        let [u, v, w] = [along.x, along.y, along.z].map(|value| short(value, 6));
+        let _ = writeln!(
+            text,
+            "\n[rotary.{letter}]\n# {point}\ncentre_mm = [{x}, {y}, {z}]\n# {plus}\ndirection = [{u}, {v}, {w}]"
+        );
     }
     let signs = say!(
         language,

@@ -10,6 +10,7 @@ use report::page::{Section, figure, folded, table};
 use report::text::{MICROMETRES, Numbers, shown};
 use serde_json::Value;
 
+use super::super::bar_report::CENTRED_APART;
 use super::bars::{Bars, PLANES, SQUARENESS, cause_name, sense_name};
 use super::bars_csv;
 use super::facts::Facts;
@@ -373,6 +374,8 @@ fn not_drawn(test: &CircularTest, names: &[String], language: Language) -> Marku
                         "No reading says which way round it was taken (dir_x, dir_y, dir_z, or dir): G(b), H and backlash are not known.",
                         "Ни один отсчёт не говорит, в какую сторону он снят (dir_x, dir_y, dir_z или dir): G(b), H и люфт неизвестны."
                     ))
+                } @else if test.is_centred_apart() {
+                    (CENTRED_APART.in_language(language)) "."
                 } @else {
                     (say!(
                         language,

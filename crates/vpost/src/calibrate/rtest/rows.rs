@@ -33,6 +33,9 @@ const UNCERTAINTIES: [&str; 3] = ["u_x_um", "u_y_um", "u_z_um"];
 const MOST_UM: f64 = 5000.0;
 const MOST_MM: f64 = 20.0;
 
+/// A ball's place in the workpiece that moves by less is one place, mm.
+const ONE_PLACE_MM: f64 = 1.0;
+
 /// Places outside the base's volume by less are rounding, mm.
 const SLACK_MM: f64 = 1e-6;
 
@@ -107,6 +110,7 @@ impl Rows {
                 ),
             ));
         }
+        all.turn_as_the_profile_says(profile)?;
         if arguments.sphere {
             all.about_one_place()?;
         }
@@ -123,14 +127,50 @@ impl Rows {
     ///
     /// A ball in its nest stays where it is. Where it does not, a sign or a centre may be wrong, or the linear axes did not follow.
     pub(super) fn moving_ball(&self) -> Option<(&str, f64)> {
+        let (run, mm) = self.farthest(&self.nominal_mm)?;
+        (mm > MOST_MM).then_some((self.runs[run].as_str(), mm))
+    }
+
+    /// The run in which these places, one for each row, are farthest apart, and how far, mm.
+    fn farthest(&self, places: &[Vector]) -> Option<(usize, f64)> {
         let spread = |run: usize| {
-            let own =
-                || self.readings.iter().zip(&self.nominal_mm).filter(|(r, _)| r.run == run).map(|(_, at)| at);
+            let own = || self.readings.iter().zip(places).filter(|(r, _)| r.run == run).map(|(_, at)| at);
             let low = own().fold(Vector::repeat(f64::INFINITY), |low, at| low.inf(at));
             (own().fold(Vector::repeat(f64::NEG_INFINITY), |high, at| high.sup(at)) - low).norm()
         };
-        let each = self.runs.iter().enumerate().map(|(run, name)| (name.as_str(), spread(run)));
-        each.filter(|(_, mm)| *mm > MOST_MM).max_by(|a, b| a.1.total_cmp(&b.1))
+        (0..self.runs.len()).map(|run| (run, spread(run))).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Refuses rows in which the ball stays where it is only if axes count the other way than the profile says.
+    fn turn_as_the_profile_says(&self, profile: &Profile) -> Result<(), Failure> {
+        let apart_mm = |places: &[Vector]| self.farthest(places).map_or(0.0, |(_, mm)| mm);
+        let as_said_mm = apart_mm(&self.nominal_mm);
+        if as_said_mm < ONE_PLACE_MM {
+            return Ok(());
+        }
+        let rotary: Vec<Axis> = profile.chain().axes().filter(|axis| !axis.is_linear()).collect();
+        // Every choice of axes, the fewest first.
+        let mut choices: Vec<Vec<Axis>> = (1..1_usize << rotary.len())
+            .map(|bits| (0..rotary.len()).filter(|k| bits >> k & 1 == 1).map(|k| rotary[k]).collect())
+            .collect();
+        choices.sort_by_key(Vec::len);
+        for turned in choices {
+            let places: Vec<Vector> = self
+                .readings
+                .iter()
+                .map(|reading| {
+                    let mut command = reading.command;
+                    turned.iter().for_each(|axis| command.rotary_rad[axis.direction()] *= -1.0);
+                    let there = profile.rigid_body_without_effects().predict(&command);
+                    there.position_mm - there.error_mm
+                })
+                .collect();
+            let turned_mm = apart_mm(&places);
+            if turned_mm < ONE_PLACE_MM && turned_mm < 0.1 * as_said_mm {
+                return Err(other_way(profile, &turned, [as_said_mm, turned_mm]));
+            }
+        }
+        Ok(())
     }
 
     /// A refusal at the row of a reading.
@@ -251,6 +291,27 @@ fn columns(sheet: &Sheet, sphere: bool, profile: &Profile) -> Result<(), Failure
         sheet.need(&UNCERTAINTIES, help)?;
     }
     Ok(())
+}
+
+/// The refusal of rows from a machine on which these axes count the other way.
+fn other_way(profile: &Profile, turned: &[Axis], [as_said_mm, turned_mm]: [f64; 2]) -> Failure {
+    let names: Vec<String> = turned.iter().map(Axis::to_string).collect();
+    let keys = turned.iter().map(|axis| {
+        let own = profile.description.rotary[axis.direction()].direction;
+        let [x, y, z] = own.unwrap_or_else(|| Vector::ith(axis.direction(), 1.0)).map(|v| 0.0 - v).into();
+        format!("[rotary.{axis}] direction = [{x}, {y}, {z}]")
+    });
+    let keys = keys.collect::<Vec<_>>().join(", ");
+    let said: Vec<Text> = turned.iter().map(|axis| profile.plus_turns(*axis)).collect();
+    let said = Text::join(&said, "; ");
+    let names = names.join(", ");
+    let message = both!(
+        "plus of {names} turns the other way than the profile says: by it the ball moves by {as_said_mm:.1} mm in the workpiece, the other way by {turned_mm:.3} mm",
+        "плюс {names} направлен не так, как в профиле: по нему шар смещается на детали на {as_said_mm:.1} мм, наоборот — на {turned_mm:.3} мм"
+    );
+    let help =
+        both!("write {keys}; the profile says now: {said}", "напишите {keys}; сейчас в профиле: {said:#}");
+    Failure::usage(Diagnostic::error(AXES, message).help(help))
 }
 
 fn reading(
