@@ -609,7 +609,8 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
                 ),
             ));
         }
-        (setup.start_mm, setup.start_deg) = (start.linear_mm, start.rotary_deg);
+        setup.start_mm = start.linear_mm;
+        setup.start_deg = [0, 1, 2].map(|axis| start.rotary_deg[axis].or(setup.start_deg[axis]));
     }
     Ok(setup)
 }

@@ -144,7 +144,7 @@ impl Loader<'_> {
             .map(|axis| chain.as_ref().is_some_and(|chain| chain.axes().any(|own| own == axis)));
         let (work_offsets, zeros) = self.work_offsets(&document.work_offsets_mm, has_rotary);
         let correction = self.correction(&document.correction);
-        let program = self.program_rules(&document.program, &document.m_codes);
+        let program = self.program_rules(&document, chain.as_ref());
         let kinematics =
             document.kinematics.as_ref().and_then(|written| self.kinematics(written, chain.as_ref()));
         let effects = self.effects(&document.effect);
@@ -359,7 +359,8 @@ impl Loader<'_> {
         })
     }
 
-    fn program_rules(&mut self, program: &format::Program, m_codes: &format::MCodes) -> ProgramRules {
+    fn program_rules(&mut self, document: &format::Document, chain: Option<&Chain>) -> ProgramRules {
+        let program = &document.program;
         let bare_lengths = program.decimal.map(|name| match name {
             DecimalName::Increments => BareLengths::Increments,
             DecimalName::Millimetres => BareLengths::Millimetres,

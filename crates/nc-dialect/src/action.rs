@@ -6,7 +6,7 @@ use nc_syntax::dialect::{
 };
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 117] = [
+pub const ACTION_NAMES: [&str; 121] = [
     "rapid",
     "line",
     "arc-clockwise",

@@ -10,6 +10,7 @@ use nc_syntax::{Block, Reader};
 
 use crate::codes;
 use crate::faults::{self, Stop, say, whole};
+use crate::flow::variables;
 use crate::jump::CallKind;
 use crate::o_word::{Label, OStatement, OWord};
 use crate::program::Source;

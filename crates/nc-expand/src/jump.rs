@@ -82,10 +82,7 @@ impl<'a> Run<'a, '_> {
             faults::label(&self.names.name(to).to_ascii_uppercase(), &both!("label", "метку"), &why)
         };
         match source.named(to, place.statement, direction) {
-            Found::Statement(statement) => {
-                self.at.statement = statement;
-                Ok(())
-            }
+            Found::Statement(statement) => Ok(statement),
             Found::Missing => Err(refuse(both!(
                 "there is no such label in this direction",
                 "в эту сторону такой метки нет"

@@ -10,10 +10,11 @@ use nc_syntax::dialect::{Action, Dialect, Macros};
 use crate::evaluate::{Rules, Variables, number};
 use crate::expression::Expression;
 use crate::faults::{self, Stop};
+use crate::flow;
 use crate::jump::{CallKind, Frame};
 use crate::output::{From, Output};
 use crate::program::Source;
-use crate::statement::{Complex, Control, Kind, Statement};
+use crate::statement::{Complex, Control, Direction, Kind, Statement};
 use crate::value::{Names, Value, Variable};
 use crate::variables::Store;
 use crate::{Environment, Expanded, Refusal};
@@ -183,6 +184,12 @@ impl<'a> Run<'a, '_> {
                     return Ok(Next::Ended);
                 }
             }
+            Kind::Print(variables) => {
+                self.started = true;
+                self.print(source, statement, variables, place, again);
+                self.spend(u64::from(again))?;
+                self.bounded()?;
+            }
             Kind::Complex(complex) => {
                 if again {
                     self.spend(1 + u64::from(complex.cost) / 16)?;
@@ -269,7 +276,7 @@ impl<'a> Run<'a, '_> {
     }
 
     /// Modal facts that computing needs.
-    fn note(&mut self, statement: &Statement) {
+    pub(crate) fn note(&mut self, statement: &Statement) {
         self.started |= statement.flags.words;
         if let Some(inch) = statement.flags.inch {
             self.units(inch);
@@ -301,7 +308,7 @@ impl<'a> Run<'a, '_> {
         self.previous = Some(place);
     }
 
-    fn copy(&mut self, source: &Source<'a>, statement: &Statement, place: Place, again: bool) {
+    pub(crate) fn copy(&mut self, source: &Source<'a>, statement: &Statement, place: Place, again: bool) {
         self.join(place);
         let bytes = source.bytes(statement);
         let from = self.from(statement, place);
@@ -350,17 +357,17 @@ impl<'a> Run<'a, '_> {
         match &complex.control {
             None => Ok(()),
             Some(Control::IfThen(condition, assignments)) => {
-                if self.holds(condition)? {
+                if !self.holds(condition)? {
+                    return Ok(());
+                }
+                if let Some(command) = flow::commanded(bytes, self.dialect) {
+                    self.join(place);
+                    self.out.write(command, from);
+                } else {
                     for (target, value) in assignments {
                         let (variable, value) = (self.target(target)?, self.evaluate(value)?);
                         self.assign(variable, value, source, statement, place)?;
                     }
-                }
-                Ok(())
-            }
-            Some(Control::Output) => {
-                if place.file == 0 {
-                    self.first_output.get_or_insert_with(|| source.span(statement));
                 }
                 Ok(())
             }
@@ -418,7 +425,7 @@ impl<'a> Run<'a, '_> {
                 Ok(())
             }
             Control::EndFor { start } => self.count(source, statement, *start, place),
-            Control::IfThen(..) | Control::Output => Ok(()),
+            Control::IfThen(..) => Ok(()),
         }
     }
 
@@ -541,10 +548,16 @@ impl<'a> Run<'a, '_> {
         let files = self.sources[1..].iter().map(|s| (s.name.clone(), s.text.to_vec())).collect();
         let Output { text, segments, .. } = self.out;
         let routines = self.routines;
+        // Where all of it is left alone it is no other program.
+        let same = matches!(main.text, Cow::Borrowed(source) if source == text);
+        let text = match main.text {
+            Cow::Borrowed(source) if same => Cow::Borrowed(source),
+            _ => Cow::Owned(text),
+        };
         Expanded {
-            text: Cow::Owned(text),
+            text,
             files,
-            flow: Some(segments),
+            flow: (!same).then_some(segments),
             shorthand: Vec::new(),
             warnings,
             #[cfg(test)]

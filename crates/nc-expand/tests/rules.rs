@@ -258,7 +258,8 @@ fn refusals() {
         ("linuxcnc", "#1=0\no1 while [#1 LT 1000000000000]\n#1=[#1+1]\no1 endwhile\nM2\n", "VP0130"),
         ("fanuc", "#2001=5\nX#1\nM30\n", "VP0132"),
         ("linuxcnc", "#5221=5\nM2\n", "VP0132"),
-        ("fanuc", "#3000=1 (TOOL BROKEN)\nM30\n", "VP0133"),
+        ("fanuc", "#1=1\nIF[#1EQ1]THEN#3000=1\nM30\n", "VP0133"),
+        ("fanuc", "#1=1\n#3000=1 (TOOL BROKEN)\nM30\n", "VP0133"),
         ("linuxcnc", "#1=1\n(ABORT, no tool)\nM2\n", "VP0133"),
         ("fanuc", "/#1=2\nX#1\nM30\n", "VP0134"),
         ("fanuc", "/M98 P1\nM30\nO1\nM99\n", "VP0134"),
@@ -336,5 +337,6 @@ fn what_is_lost_is_said() {
     };
     assert_eq!(codes("#1=2\nX#1\nM30\n"), []);
     assert_eq!(codes("#500=2\nX#500\nM30\n"), [139]);
-    assert_eq!(codes("POPEN\nDPRNT[X#1[3]]\nPCLOS\nX1.\nM30\n"), [140]);
+    assert_eq!(codes("POPEN\nDPRNT[X#1[3]]\nPCLOS\nX1.\nM30\n"), []);
+    assert_eq!(codes("#1=5.\nPOPEN\nDPRNT[X#1[3]]\nPCLOS\nX#1\nM30\n"), [140]);
 }

@@ -6,6 +6,7 @@ use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
 use smallvec::{SmallVec, smallvec};
 use toolpath::{Frame, Kinematics, Motion, Mover, Plane};
 
+use crate::call;
 use crate::codes;
 use crate::curves::{self, CurvePart};
 use crate::delete;

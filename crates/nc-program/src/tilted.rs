@@ -668,8 +668,8 @@ pub(crate) fn check_motions(
                     "на одних стойках плоскость поворачивается вместе с ней, на других нет"
                 ),
             )
-            .help(if ending(env) == "G69" {
-                both!(
+            .help(match ending(env) {
+                "G69" => both!(
                     "turn the axis before G68.2, or let G53.1 do it",
                     "поверните ось до G68.2 или предоставьте это G53.1"
                 )
@@ -677,7 +677,7 @@ pub(crate) fn check_motions(
                 both!(
                     "end the plane with CYCLE800() before it, or let CYCLE800 turn the axis",
                     "отмените перед этим плоскость: CYCLE800() — или предоставьте поворот CYCLE800"
-                )
+                ),
             }));
     }
     if motions.iter().all(|motion| matches!(motion, Motion::Uncorrected { .. })) {

@@ -772,7 +772,8 @@ pub struct LatheSign {
     pub mill: Text,
 }
 
-/// A command by name: a word of letters (Sinumerik `SCALE`) or the first word in brackets (Balt-System `(UAO,1)`).
+/// A command by name: a word of letters (Sinumerik `SCALE`), the first word in brackets (Balt-System `(UAO,1)`), or a
+/// variable of the control that acts when it is set (Fanuc `#3006=1`).
 ///
 /// A command that is not in the table is refused: it may move the frame.
 ///
@@ -1173,9 +1174,9 @@ impl Dialect {
     /// The table's row for a command: `text` is a [`crate::ItemKind::BracketCommand`]'s bytes, brackets included.
     #[must_use]
     pub fn command(&self, text: &[u8]) -> Option<&Command> {
-        let start = text.iter().position(u8::is_ascii_alphabetic)?;
-        let length =
-            text[start..].iter().take_while(|byte| byte.is_ascii_alphanumeric() || **byte == b'_').count();
+        let start = text.iter().position(|byte| byte.is_ascii_alphabetic() || *byte == b'#')?;
+        let inside = |byte: &&u8| byte.is_ascii_alphanumeric() || **byte == b'_';
+        let length = 1 + text[start + 1..].iter().take_while(inside).count();
         let name = text[start..start + length].to_ascii_uppercase();
         self.commands
             .binary_search_by(|entry| entry.name.as_bytes().cmp(&name))

@@ -299,7 +299,7 @@ impl<'d> Lexer<'d> {
         let run = letters(&line[at..]);
         let name = &line[at..at + run];
         if is_flow_word(name) || (self.fanuc && is_short_flow_word(name)) {
-            return Some(self.flow(line, at, at + run));
+            return Some(self.macro_statement(line, at, at + run));
         }
         if line.get(at + run) == Some(&b'=')
             && let Some((_, letter)) =
@@ -411,7 +411,7 @@ impl<'d> Lexer<'d> {
             b'_' | b'$' if self.siemens => self
                 .statement(line, at)
                 .unwrap_or_else(|| (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at))),
-            b'#' => self.flow(line, at, at + 1),
+            b'#' => self.macro_statement(line, at, at + 1),
             b',' => self.comma_word(line, at),
             b'<' => match angle_name(&line[at..]) {
                 Ok((_, name)) => (ItemKind::Name, at + name.len()),
@@ -520,6 +520,16 @@ impl<'d> Lexer<'d> {
             };
         }
         (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at))
+    }
+
+    /// A statement, or a command where the dialect's table has it by its first word: `#3006=1`, `DPRNT[X#1[3]]`.
+    fn macro_statement(&self, line: &[u8], at: usize, least: usize) -> (ItemKind, usize) {
+        match self.flow(line, at, least) {
+            (ItemKind::Flow, end) if self.commands.iter().any(|command| names(command, &line[at..])) => {
+                (ItemKind::BracketCommand, end)
+            }
+            found => found,
+        }
     }
 
     /// A statement to the next comment; brackets must close within it.
