@@ -9,7 +9,8 @@ use machine_profile::{BareLengths, Profile, TurningRules};
 use nc_program::{AfterChange, BetweenVectors, Questions, Setup};
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{
-    DrillPecks, DrillR, FlankFrom, MCode, Macros, PointFree, TipSwitch, TurningParameters,
+    Action, CodeEntry, ControlCall, DrillPecks, DrillR, FlankFrom, GCode, MCode, Macros, PointFree,
+    TipSwitch, TurningParameters,
 };
 use rewrite::{Datums, Guards, Job};
 
@@ -78,6 +79,7 @@ impl Settings {
         };
         setup.lengths_settled = settle_lengths(options, &profile, &mut dialect)?;
         declare_harmless(&profile, &mut dialect)?;
+        declare_calls(&profile, &mut dialect)?;
         declare_switches(&profile, &mut dialect);
         declare_cycles(&profile, &mut dialect);
         let tip = profile.tip_control().filter(|_| engine_id == EngineId::RigidBody);
@@ -374,6 +376,48 @@ fn settle_lengths(options: &JobOptions, profile: &Profile, dialect: &mut Dialect
         Some(BareLengths::Increments) => {}
     }
     Ok(true)
+}
+
+/// Puts what the profile leaves to the control into the dialect.
+fn declare_calls(profile: &Profile, dialect: &mut Dialect) -> Result<(), Failure> {
+    for call in &profile.program.calls {
+        let (letter, tenths) = (call.letter as u8, call.tenths);
+        let taken = if letter == b'G' {
+            let is_free = |row: &CodeEntry| matches!(row.action, Action::Call | Action::Refuse { .. });
+            let taken = dialect.code(GCode(tenths)).is_some_and(|row| !is_free(row));
+            let others = dialect.codes.iter().filter(|row| row.code != GCode(tenths)).cloned();
+            let own = CodeEntry { code: GCode(tenths), group: 0, action: Action::Call };
+            dialect.codes = others.chain([own]).collect::<Vec<_>>().into();
+            taken
+        } else {
+            let row = MCode { calls: true, ..MCode::harmless(tenths / 10) };
+            match dialect.m_codes.binary_search_by_key(&row.number, |row| row.number) {
+                Err(at) => {
+                    dialect.m_codes.insert(at, row);
+                    false
+                }
+                Ok(at) => {
+                    let is = std::mem::replace(&mut dialect.m_codes[at], row);
+                    is.ends_program || is.changes_tool || is.after_motion
+                }
+            }
+        };
+        if taken {
+            return Err(Failure::option(
+                both!(
+                    "the profile leaves {}{} to the control, which the table of dialect {} knows as something else",
+                    "профиль оставляет {}{} стойке, а в таблице диалекта {} это другое",
+                    call.letter,
+                    tenths / 10,
+                    dialect.name
+                ),
+                both!("remove it from `[calls]` in the profile", "уберите её из раздела `[calls]` профиля"),
+            ));
+        }
+        let unknown = call.unknown;
+        dialect.calls.push(ControlCall { letter, tenths, program: call.program, unknown });
+    }
+    Ok(())
 }
 
 /// Puts the M codes that the profile calls harmless into the dialect, beside those that its table has.

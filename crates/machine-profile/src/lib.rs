@@ -24,7 +24,7 @@ pub use field::MeasuredField;
 pub use load::{Read, load};
 pub use profile::{
     AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics, LatheParts,
-    MeasuringFrame, Nose, Outside, Profile, ProgramRules, TurningRules,
+    LeftAlone, MeasuringFrame, Nose, Outside, Profile, ProgramRules, TurningRules,
 };
 pub use show::schema;
 pub use tables::ErrorRows;

@@ -20,7 +20,7 @@ use crate::format::{
 };
 use crate::number::{Finite, Length as WrittenLength};
 use crate::profile::{
-    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics,
+    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics, LeftAlone,
     MeasuringFrame, Outside, Profile, ProgramRules, TurningRules,
 };
 use crate::tables::{ErrorRows, error_rows, traverse};
@@ -269,6 +269,37 @@ impl Loader<'_> {
         numbers
     }
 
+    fn left_alone(&mut self, call: &str, moves: &Spanned<format::Moves>) -> Option<LeftAlone> {
+        let mut unknown = [false; 6];
+        let axes = match moves.get_ref() {
+            format::Moves::Nothing(_) => "",
+            format::Moves::Some(some) => some.unknown.as_str(),
+        };
+        let axis = |letter| "XYZABC".find(letter);
+        let all = axes.chars().all(|letter| axis(letter).is_some());
+        axes.chars().filter_map(axis).for_each(|at| unknown[at] = true);
+        let (code, program) =
+            call.split_once(' ').map_or((call, None), |(code, program)| (code, Some(program)));
+        let number = |text: &str, letter| text.strip_prefix(letter)?.parse::<u32>().ok();
+        let letter = code.chars().next().filter(|letter| matches!(letter, 'G' | 'M'));
+        let tenths = letter.and_then(|letter| u16::try_from(number(code, letter)?.checked_mul(10)?).ok());
+        let program = program.map(|program| number(program, 'P'));
+        if let (Some(letter), Some(tenths), true, None | Some(Some(_))) = (letter, tenths, all, program) {
+            return Some(LeftAlone { letter, tenths, program: program.flatten(), unknown });
+        }
+        let message = both!("`{call}` under [calls] is not understood", "`{call}` в [calls] непонятно");
+        let help = both!(
+            "write a call and axes, like `\"G65 P9810\" = {{ unknown = \"XYZ\" }}`, or `\"M200\" = \"harmless\"`",
+            "напишите вызов и оси, например `\"G65 P9810\" = {{ unknown = \"XYZ\" }}` или `\"M200\" = \"harmless\"`"
+        );
+        let label = both!(
+            "a code with its number, and letters of X Y Z A B C",
+            "функция с номером и буквы из X Y Z A B C"
+        );
+        self.refuse(moves, Diagnostic::error(VALUE, message).help(help), label);
+        None
+    }
+
     fn kinematics(
         &mut self,
         written: &Spanned<format::Kinematics>,
@@ -369,7 +400,8 @@ impl Loader<'_> {
             .tool_change
             .as_ref()
             .map_or([AfterChange::Unknown; 3], |written| self.tool_change(written));
-        let harmless_m_codes = self.m_codes(&m_codes.harmless);
+        let harmless_m_codes = self.m_codes(&document.m_codes.harmless);
+        let calls = document.calls.iter().filter_map(|(call, moves)| self.left_alone(call, moves)).collect();
         let mut arc_tolerance_mm = None;
         if let Some(written) = &program.arc_tolerance_mm {
             let Finite(mm) = *written.get_ref();
@@ -399,6 +431,7 @@ impl Loader<'_> {
             arc_tolerance_mm,
             edge_at_change: self.edge_at_change(program),
             harmless_m_codes,
+            calls,
             diameters: program.x.map(|x| matches!(x, XName::Diameter)),
             g_code_system: program.g_code_system.clone(),
             turning: self.turning_rules(program),

@@ -219,6 +219,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             local_calls: flow.local_calls,
             one_value_atan: flow.one_value_atan,
             return_by_m: flow.return_by_m,
+            control_programs: flow.control_programs,
             polar_words,
             called,
         },
@@ -244,6 +245,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
         t_may_change_tool: tool_length.t_word == TWord::MayChange,
         writes_lengths: tool_length.writes_lengths,
         edge_in_d: tool_length.edge_in_d,
+        calls: Vec::new(),
         frames: FrameRules {
             p_selects_numbered: frames.p_selects_numbered,
             l20: match frames.l20 {
@@ -395,6 +397,7 @@ fn m_code(number: u16, key: &Spanned<String>, row: &MRow) -> Result<MCode, Diagn
         changes_tool: row.changes_tool,
         switches: row.switches.as_deref().map(russian::text),
         tip: None,
+        calls: row.calls,
         refuse,
     })
 }

@@ -189,6 +189,8 @@ pub(crate) struct FlowRules {
     /// Cycles return where M53 and M54 say.
     #[serde(default)]
     pub(crate) return_by_m: bool,
+    /// First and last number of programs that are the control's own.
+    pub(crate) control_programs: Option<(u32, u32)>,
 }
 
 #[derive(Clone, Copy, Default, Deserialize)]
@@ -380,6 +382,8 @@ pub(crate) struct MRow {
     #[serde(default)]
     pub(crate) changes_tool: bool,
     pub(crate) switches: Option<String>,
+    #[serde(default)]
+    pub(crate) calls: bool,
     pub(crate) refuse: Option<String>,
     pub(crate) help: Option<String>,
 }

@@ -55,6 +55,8 @@ pub(crate) struct Run<'a, 'e> {
     /// File names that were looked for, and what was found.
     pub(crate) externals: BTreeMap<String, Option<usize>>,
     first_output: Option<std::ops::Range<u64>>,
+    /// The first call of each program that the control has, where no profile says what it moves.
+    pub(crate) left_alone: BTreeMap<String, std::ops::Range<u64>>,
     first_kept: Option<(std::ops::Range<u64>, Variable)>,
     /// Bytes of the output that are contours of cycles.
     pub(crate) routines: Vec<std::ops::Range<u64>>,
@@ -105,6 +107,7 @@ pub(crate) fn run<'a>(
         calls: BTreeMap::new(),
         externals: BTreeMap::new(),
         first_output: None,
+        left_alone: BTreeMap::new(),
         first_kept: None,
         routines: Vec::new(),
         #[cfg(test)]
@@ -321,6 +324,34 @@ impl<'a> Run<'a, '_> {
         }
     }
 
+    /// A block that prints stays where the control will have its variables as this program leaves them: untouched.
+    fn print(
+        &mut self,
+        source: &Source<'a>,
+        statement: &Statement,
+        variables: &[Option<Variable>],
+        place: Place,
+        again: bool,
+    ) {
+        if self.are_untouched(variables) {
+            return self.copy(source, statement, place, again);
+        }
+        if place.file == 0 {
+            self.first_output.get_or_insert_with(|| source.span(statement));
+        }
+        if !again {
+            self.join(place);
+            let from = self.from(statement, place);
+            self.out.comment(source.bytes(statement).trim_ascii_end(), from);
+        }
+    }
+
+    /// True where the flat program leaves variables as the control will have them.
+    pub(crate) fn are_untouched(&self, variables: &[Option<Variable>]) -> bool {
+        let untouched = |variable: &Variable| self.store.value(*variable) == Ok(Value::Unknown(*variable));
+        variables.iter().all(|variable| variable.as_ref().is_some_and(untouched))
+    }
+
     fn complex(
         &mut self,
         source: &Source<'a>,
@@ -329,6 +360,11 @@ impl<'a> Run<'a, '_> {
         place: Place,
         again: bool,
     ) -> Result<(), Stop> {
+        if let Some(Control::Call(call)) = &complex.control
+            && self.is_left_alone(source, call, place)?
+        {
+            return self.leave_alone(source, statement, call, place, again);
+        }
         if statement.flags.skip && (complex.control.is_some() || !complex.assignments.is_empty()) {
             return Err(faults::block_delete());
         }
@@ -545,6 +581,7 @@ impl<'a> Run<'a, '_> {
         if let Some(span) = self.first_output {
             warnings.push(faults::lost_output(span));
         }
+        warnings.extend(self.left_alone.iter().map(|(call, span)| faults::left_alone(span.clone(), call)));
         let files = self.sources[1..].iter().map(|s| (s.name.clone(), s.text.to_vec())).collect();
         let Output { text, segments, .. } = self.out;
         let routines = self.routines;

@@ -333,6 +333,10 @@ fn run<'d>(
     if !words.m_codes.is_empty() {
         miscellaneous(env, words, state, moved)?;
     }
+    call::left_alone(env, words, state, moved)?;
+    if words.commands.iter().any(|(action, _)| **action == Action::Alarm) {
+        state.progress = Progress::Ended;
+    }
     naming::name(words, &demand, before, state, moved);
     tilted::check_motions(env, words, &demand, before, state, &moved.motions)
 }
@@ -416,22 +420,7 @@ fn miscellaneous(
         if row.loses_position.contains(&true) {
             let own = matches!(moved.motions.as_slice(), [] | [Motion::Uncorrected { .. }]);
             if !own {
-                let message = both!(
-                    "{} moves the axes itself, in a block that moves them too",
-                    "{} сама двигает оси, и кадр двигает их тоже",
-                    words.text(span)
-                );
-                return Err(words
-                    .refuse(
-                        codes::COMBINATION,
-                        message,
-                        span,
-                        both!(
-                            "before or after the motion? controls differ",
-                            "до движения или после? у стоек по-разному"
-                        ),
-                    )
-                    .help(both!("write it in a block of its own", "напишите её отдельным кадром")));
+                return Err(call::moves_itself(words, span));
             }
             moved.motions = leave(env, row, words.block.line, state);
         }

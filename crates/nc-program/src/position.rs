@@ -384,6 +384,7 @@ impl Lost {
             Why::Miscellaneous { code, changes_tool: false } => {
                 both!("M{code} in line {line}", "после M{code} в строке {line}")
             }
+            Why::Call => both!("the call in line {line}", "после вызова в строке {line}"),
             Why::BlockDelete => {
                 both!(
                     "line {line}, which moves or not, depending on the block delete switch",

@@ -120,9 +120,9 @@ fn blocks() {
       3: `X5.` X, Y were expected, in G90: controls differ in where they start otherwise
       help: write X, Y in this block, in G90
     "#);
-    insta::assert_snapshot!(message("fanuc", "M98 P1000\n"), @r#"
-    error[VP0208]: M98 is refused: calls a subprogram
-      1: `M98` not understood
+    insta::assert_snapshot!(message("fanuc", "M198 P1000\n"), @r#"
+    error[VP0208]: M198 is refused: calls a subprogram from another store
+      1: `M198` not understood
       help: let the CAM write the moves of the subprogram in its place
     "#);
     insta::assert_snapshot!(message("fanuc", "G1 X#1\n"), @r#"

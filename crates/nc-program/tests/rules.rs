@@ -65,14 +65,12 @@ fn not_every_x_is_a_coordinate() {
         ("G10 L10 P1\n", 215),
         ("G10 L10 R5.\n", 215),
         ("G91 G10 L10 P1 R5.\n", 215),
-        ("G65 P9810 X10.\n", 208),
         ("G52 X5.\n", 0),
         ("G92 X5.\n", 0),
         ("G68 X0 Y0 R30.\n", 0),
         ("G51 X0 Y0 Z0 P2.\n", 0),
         ("G54.1 P12\n", 214),
         ("G43.4 H1\n", 230),
-        ("M98 P1000 L3\n", 208),
         ("G4 X2. Y3.\n", 223),
         ("G4 X2. P3.\n", 223),
         ("G1 X10. G4 X2.\n", 210),
@@ -93,6 +91,21 @@ fn not_every_x_is_a_coordinate() {
             assert_eq!(refusal("fanuc", &text), (code, 3), "{block}");
         }
     }
+}
+
+/// What the control calls may have moved every axis; its T, H and Z are arguments.
+#[test]
+fn a_call_of_the_control_leaves_no_axis_and_no_motion_code_known() {
+    for call in ["G65 P9810 Z10. T1 H2", "M98 P9100 L3"] {
+        let text = after(&format!("G1 X5. F100.\n{call}\n"));
+        let called = run("fanuc", &text);
+        uncorrected(&called.steps[2].motions[0]);
+        assert_eq!((end("fanuc", &text), called.modal.motion), ([None; 3], MotionMode::None), "{call}");
+        assert_eq!(called.modal.tool_selected, None, "{call}");
+        assert_eq!(refusal("fanuc", &format!("{text}G1 X9.\n")), (213, 4), "{call}");
+        assert_eq!(end("fanuc", &format!("{text}G0 X1. Y2. Z3.\nG1 X9.\n")), at(9.0, 2.0, 3.0), "{call}");
+    }
+    assert_eq!(refusal("fanuc", &after("G1 X5. F100. M98 P9100\n")).0, 226);
 }
 
 #[test]

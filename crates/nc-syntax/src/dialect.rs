@@ -305,6 +305,10 @@ pub enum Action {
     Thread,
     /// G90, G71 and their like on lathes. Written out before anything else, or refused.
     Turning(TurningCycle),
+    /// `#3000=1`: the program ends with an alarm.
+    Alarm,
+    /// G65 P9810: a program that the control holds; the other words are its arguments.
+    Call,
     /// Known, and refused.
     Refuse {
         /// Why.
@@ -721,8 +725,28 @@ pub struct MCode {
     pub switches: Option<Text>,
     /// Switches tool centre point control: what a profile says of the machine's own codes.
     pub tip: Option<TipSwitch>,
+    /// M98: calls a program that the control holds.
+    pub calls: bool,
     /// Refused, with the way out (M98, M99).
     pub refuse: Option<(Text, Text)>,
+}
+
+/// A program or function of the control that is left alone, and what stands anywhere behind it; what a profile says.
+///
+/// ```
+/// // A dialect knows none: they are the machine's.
+/// assert!(nc_dialect::builtin("fanuc").unwrap().calls.is_empty());
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ControlCall {
+    /// `G` or `M`.
+    pub letter: u8,
+    /// Tenths of the code: 650 of G65.
+    pub tenths: u16,
+    /// P, where the code calls programs by it.
+    pub program: Option<u32>,
+    /// X, Y, Z, A, B, C that may stand anywhere afterwards; none: it does no more than pass.
+    pub unknown: [bool; 6],
 }
 
 impl MCode {
@@ -738,6 +762,7 @@ impl MCode {
             changes_tool: false,
             switches: None,
             tip: None,
+            calls: false,
             refuse: None,
         }
     }
@@ -917,6 +942,9 @@ pub struct Flow {
     pub one_value_atan: bool,
     /// Drilling cycles return where M53 and M54 say (Okuma), and are written out.
     pub return_by_m: bool,
+    /// First and last number of the programs that builders and makers of probes keep in the control: called where no
+    /// file has them, they are left alone.
+    pub control_programs: Option<(u32, u32)>,
     /// Some code is [`Action::PolarOn`].
     pub polar_words: bool,
     /// Some command is an [`Action::Called`], and `X=AC(5)`, `X=IC(5)` say a place or an increment.
@@ -1128,6 +1156,8 @@ pub struct Dialect {
     pub writes_lengths: bool,
     /// D1 is the offset of the tool that M6 brought in, D0 none (Sinumerik).
     pub edge_in_d: bool,
+    /// Calls that are left alone, as the machine's profile has them.
+    pub calls: Vec<ControlCall>,
     /// Codes that move the frame.
     pub frames: FrameRules,
     /// Output.

@@ -45,6 +45,7 @@ pub(crate) fn dialect() -> Dialect {
         cycle_levels: CycleLevels::Unstated,
         flow: nc_syntax::dialect::Flow::default(),
         length_of_loaded_tool: false,
+        calls: Vec::new(),
         frames: FrameRules {
             p_selects_numbered: false,
             l20: OffsetL20::Numbered,
