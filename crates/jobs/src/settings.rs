@@ -90,6 +90,7 @@ impl Settings {
         };
         if let Some(mm) = profile.program.arc_tolerance_mm {
             dialect.output.arc_radius_tolerance_mm = mm;
+            dialect.output.arc_radius_tolerance_inch = None;
         }
         let tolerance_um = options.tolerance.unwrap_or(profile.correction.tolerance_um);
         if !(tolerance_um > 0.0 && tolerance_um.is_finite()) {

@@ -153,6 +153,7 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
             both!("expected 0 to {MOST_SHARE} of the radius", "ожидалось от 0 до {MOST_SHARE} радиуса"),
         );
     }
+    let inch = output.arc_radius_tolerance_inch.as_ref().map(|inch| ("arc_radius_tolerance_inch", inch, 0.5));
     for (what, length, most) in [
         ("peck_clearance_mm", &cycles.peck_clearance_mm, 100.0),
         ("chip_retreat_mm", &cycles.chip_retreat_mm, 100.0),

@@ -267,6 +267,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             centre_words: output.centre_words.into_inner(),
             radius_word: output.radius_word,
             arc_radius_tolerance_mm: output.arc_radius_tolerance_mm.into_inner(),
+            arc_radius_tolerance_inch: output.arc_radius_tolerance_inch.map(Spanned::into_inner),
             arc_radius_tolerance_share: output.arc_radius_tolerance_share.map_or(0.0, Spanned::into_inner),
             rotary_feed: output.rotary_feed.map(|counts| match counts {
                 RotaryFeedName::LinearAxes => RotaryFeed::LinearAxes,

@@ -345,6 +345,7 @@ pub(crate) struct OutputRules {
     pub(crate) centre_words: Spanned<bool>,
     pub(crate) radius_word: bool,
     pub(crate) arc_radius_tolerance_mm: Spanned<f64>,
+    pub(crate) arc_radius_tolerance_inch: Option<Spanned<f64>>,
     pub(crate) arc_radius_tolerance_share: Option<Spanned<f64>>,
     pub(crate) rotary_feed: Option<RotaryFeedName>,
 }

@@ -30,7 +30,7 @@ fn arcs() {
     insta::assert_snapshot!(message("fanuc", "G0 X0 Y0 Z0\nG2 X10. I4.\n"), @r#"
     error[VP0205]: the ends of the arc lie at different distances from its centre
       2: `I4.` radius 4 at the start, 6 mm at the end, 0.02 allowed
-      help: correct the end or the centre; I and J are read as measured from the start (G91.1)
+      help: correct the end or the centre (I and J are read as measured from the start (G91.1)); where the control takes more, say so with `arc_tolerance_mm` under `[program]` in the profile
     "#);
 }
 

@@ -51,6 +51,16 @@ fn inch_is_exactly_25_4() {
     assert_eq!(run.steps[0].context.unit_mm.to_bits(), 25.4f64.to_bits());
 }
 
+/// RS274/NGC counts what the radii of an arc may differ by apart in inches.
+#[test]
+fn arcs_in_inches_have_a_tolerance_of_their_own() {
+    let arc = |radius: f64| format!("G20 G90 G17 G54\nG0 X2. Y0. Z1.\nG3 X{} Y0. I-1. J0.\n", 1.0 - radius);
+    for (radius, refused) in [(1.00015, 0), (0.99985, 0), (1.0003, 205)] {
+        let run = run_with(dialect("mach"), &common::setup(), &arc(radius));
+        assert_eq!(run.refused.map_or(0, |(_, why)| why[0].code.0), refused, "{radius}");
+    }
+}
+
 #[test]
 fn not_every_x_is_a_coordinate() {
     let table = [

@@ -860,6 +860,8 @@ pub struct Output {
     pub radius_word: bool,
     /// Largest difference between an arc's radius at its start and at its end that the control takes, mm.
     pub arc_radius_tolerance_mm: f64,
+    /// The same under inches, inch, where the control counts them apart.
+    pub arc_radius_tolerance_inch: Option<f64>,
     /// The same as a share of the radius, where the control takes that too and it is more; 0 for none.
     pub arc_radius_tolerance_share: f64,
     /// What F of G94 counts where rotary axes turn; `None` where the control's manual leaves it open.
@@ -1212,6 +1214,15 @@ impl Dialect {
             .binary_search_by(|entry| entry.name.as_bytes().cmp(&name))
             .ok()
             .map(|at| &self.commands[at])
+    }
+}
+
+impl Output {
+    /// Largest difference of an arc's radii, mm, where one unit of the program is so long.
+    #[must_use]
+    pub fn arc_tolerance_mm(&self, unit_mm: f64) -> f64 {
+        let inches = self.arc_radius_tolerance_inch.filter(|_| unit_mm != 1.0);
+        inches.map_or(self.arc_radius_tolerance_mm, |inches| inches * unit_mm)
     }
 }
 

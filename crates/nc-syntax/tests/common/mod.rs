@@ -64,6 +64,7 @@ pub(crate) fn dialect() -> Dialect {
             centre_words: true,
             radius_word: true,
             arc_radius_tolerance_mm: 0.01,
+            arc_radius_tolerance_inch: None,
             arc_radius_tolerance_share: 0.0,
             rotary_feed: None,
             peck_clearance_mm: 1.0,
