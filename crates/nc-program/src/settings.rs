@@ -583,6 +583,7 @@ fn set<'d>(
         | Action::Preset
         | Action::PresetCancel
         | Action::TiltedPlane
+        | Action::DynamicOffset
         | Action::AlignTool
         | Action::RotationOn
         | Action::ScalingOn
@@ -606,6 +607,8 @@ fn set<'d>(
         | Action::PassWithP
         | Action::ContourTolerance
         | Action::PolarOff
+        | Action::DynamicOffsetOff
+        | Action::Alarm
         | Action::Refuse { .. } => {}
         // Switched behind the tool length.
         Action::Tip(_) => {}

@@ -202,6 +202,10 @@ pub enum Action {
     TipLengthOnVectors,
     /// G68.2: a tilted working plane by its words; X, Y and Z are its coordinates from here on, until G69.
     TiltedPlane,
+    /// G254: the work offset goes with the table to where that is turned; X, Y, Z stay along the machine's axes.
+    DynamicOffset,
+    /// G255
+    DynamicOffsetOff,
     /// G53.1, G53.6: the rotary axes turn until the tool stands upright on the tilted plane.
     AlignTool,
     /// TRAORI, M428 and TRAFOOF, M429: the control moves the tip, or the axes again.

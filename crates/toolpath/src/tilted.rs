@@ -296,10 +296,14 @@ impl RotaryChain {
     /// The tool's direction in the workpiece on an ideal machine, a unit vector from the tip up: Z with all axes at 0.
     #[must_use]
     pub fn tool_direction(&self, rotary_deg: [f64; 3]) -> [f64; 3] {
-        self.0
-            .iter()
-            .rev()
-            .fold(UP, |tool, link| turned(tool, link.direction, link.sense() * rotary_deg[link.axis]))
+        self.in_workpiece(UP, rotary_deg)
+    }
+
+    /// A direction of the tool, or of the machine where no axis turns the tool, in the workpiece on an ideal machine.
+    #[must_use]
+    pub fn in_workpiece(&self, direction: [f64; 3], rotary_deg: [f64; 3]) -> [f64; 3] {
+        let links = self.0.iter().rev();
+        links.fold(direction, |v, link| turned(v, link.direction, link.sense() * rotary_deg[link.axis]))
     }
 
     /// A, B, C, degrees, that bring the tool from where the axes stand to a direction in the workpiece: of both ways and of all
