@@ -592,6 +592,30 @@ pub(crate) fn not_certain(
                 "скажите, какой берёт стойка: `turn = \"shortest\"` или `turn = \"principal\"` в разделе `[kinematics]` профиля"
             ),
         ),
+        NoAngles::HalfTurn(axis) => (
+            both!(
+                "{} is half a turn away, to either side",
+                "до нужного угла {} пол-оборота, в обе стороны",
+                name(axis)
+            ),
+            both!(
+                "turn {} some way by its own word before {before}",
+                "поверните {} хотя бы отчасти её собственным словом до {before}",
+                name(axis)
+            ),
+        ),
+        NoAngles::Travel(axis) => (
+            both!(
+                "by whole turns {} could have a higher or a lower angle than either",
+                "через целые обороты угол {} мог бы быть и больше, и меньше обоих",
+                name(axis)
+            ),
+            both!(
+                "give its travel: `travel_deg = [lowest, highest]` under `[rotary.{}]` in the profile",
+                "задайте её ход: `travel_deg = [наименьший, наибольший]` в разделе `[rotary.{}]` профиля",
+                name(axis)
+            ),
+        ),
         NoAngles::Unknown(axis) => (
             both!("where {} stands before is not known", "где до этого стоит {}, неизвестно", name(axis)),
             both!(
