@@ -77,6 +77,9 @@ impl Settings {
             // The others know no lever.
             _ => false,
         };
+        if engine_id == EngineId::RigidBody && dialect.turning.is_none() {
+            start_anywhere(&profile, engine.as_ref(), &mut setup);
+        }
         setup.lengths_settled = settle_lengths(options, &profile, &mut dialect)?;
         declare_harmless(&profile, &mut dialect)?;
         declare_calls(&profile, &mut dialect)?;
@@ -658,6 +661,14 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
         setup.start_deg = [0, 1, 2].map(|axis| start.rotary_deg[axis].or(setup.start_deg[axis]));
     }
     Ok(setup)
+}
+
+/// Where nothing is corrected no program need say where its axes begin: one place is as good as another.
+fn start_anywhere(profile: &Profile, engine: &dyn Engine, setup: &mut Setup) {
+    if let (false, false, Some(model)) = (profile.has_errors(), setup.tip_at_start, engine.path_model()) {
+        let middle_mm = model.volume().0.map(|range| 0.5 * (range.low + range.high));
+        setup.start_mm = [0, 1, 2].map(|axis| setup.start_mm[axis].or(Some(middle_mm[axis])));
+    }
 }
 
 /// Radii of the noses of turning tools.
