@@ -560,6 +560,14 @@ fn rotary_axes_may_be_said_to_stand_somewhere() {
     let (done, said) = command(&[]);
     assert!(!done && said.contains("VP0213") && said.contains("--start-at A=0,C=0"), "{said}");
     assert!(command(&["--start-at", "A=0,C=0"]).0);
+    // Or of every program of the machine.
+    let profile = std::fs::read_to_string(crate::common::root().join(PROFILE)).expect("readable");
+    let tables = crate::common::root().join("tests/profiles");
+    let said = profile.replace("\"wavy_", &format!("\"{}/wavy_", tables.display()))
+        + "\n[program]\nrotary_start = { A = 0, C = 0 }\n";
+    std::fs::write(place.path("machine.toml"), said).expect("writable");
+    let ran = run(&[&input, "-m", &place.path("machine.toml"), "-d", "fanuc"]);
+    assert!(ran.status.success(), "{}", messages(&ran));
     for (wrong, words) in [("B=0", "no such axis"), ("A=0,A=1", "said twice"), ("W=3", "no axis `W`")] {
         let (done, said) = command(&["--start-at", wrong]);
         assert!(!done && said.contains(words), "{said}");

@@ -607,7 +607,7 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
         has_rotary: profile.has_rotary(),
         rotary_matters: profile.rotary_matters(),
         start_mm: [None; 3],
-        start_deg: [None; 3],
+        start_deg: profile.program.rotary_start_deg,
         tool_change: profile.program.tool_change.map(|change| match change {
             machine_profile::AfterChange::Unknown => AfterChange::Unknown,
             machine_profile::AfterChange::Stays => AfterChange::Stays,

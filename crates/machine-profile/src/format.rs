@@ -467,6 +467,10 @@ pub(crate) struct Program {
     /// Edge of the tool that M6 brings in where the program writes no D (Sinumerik's MD20270): 1, or 0 for none.
     #[schemars(with = "Option<u32>")]
     pub(crate) edge_at_change: Option<Spanned<u32>>,
+    /// Where rotary axes stand when a program begins, degrees, like { A = 0 }; not known where left out.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, f64>")]
+    pub(crate) rotary_start: BTreeMap<String, Spanned<Finite>>,
     /// Largest difference of an arc's radii that the control takes, mm; the dialect's where left out.
     #[schemars(with = "Option<f64>")]
     pub(crate) arc_tolerance_mm: Option<Spanned<Finite>>,

@@ -430,6 +430,7 @@ impl Loader<'_> {
             tool_change,
             arc_tolerance_mm,
             edge_at_change: self.edge_at_change(program),
+            rotary_start_deg: self.rotary_start(program, chain),
             harmless_m_codes,
             calls,
             diameters: program.x.map(|x| matches!(x, XName::Diameter)),
@@ -946,6 +947,25 @@ impl Loader<'_> {
             );
         }
         Some(passes)
+    }
+
+    fn rotary_start(&mut self, program: &format::Program, chain: Option<&Chain>) -> [Option<f64>; 3] {
+        let mut start_deg = [None; 3];
+        for (name, written) in &program.rotary_start {
+            let mut axes = chain.into_iter().flat_map(Chain::axes).filter(|axis| !axis.is_linear());
+            let Finite(deg) = *written.get_ref();
+            match axes.find(|axis| name.len() == 1 && name.starts_with(axis.letter())) {
+                Some(axis) => start_deg[axis.direction()] = Some(deg),
+                None => {
+                    let message =
+                        both!("`{name}` is no rotary axis of the chain", "`{name}` — не поворотная ось цепи");
+                    let help = both!("remove it, or name it in `chain`", "уберите её или назовите в `chain`");
+                    let label = both!("no such axis", "такой оси нет");
+                    self.refuse(written, Diagnostic::error(VALUE, message).help(help), label);
+                }
+            }
+        }
+        start_deg
     }
 
     fn edge_at_change(&mut self, program: &format::Program) -> Option<u32> {

@@ -100,6 +100,8 @@ pub struct ProgramRules {
     pub tool_change: [AfterChange; 3],
     /// The edge that a tool change brings in where no D says one, 0 for none; `None`: not said.
     pub edge_at_change: Option<u32>,
+    /// Where A, B, C stand when a program begins, degrees.
+    pub rotary_start_deg: [Option<f64>; 3],
     /// Numbers of M codes that move neither an axis nor the frame.
     pub harmless_m_codes: Vec<u16>,
     /// Programs and functions of the control that are left alone.

@@ -60,7 +60,7 @@ fn positions() {
     insta::assert_snapshot!(message_with(dialect("fanuc"), &with_c, "G0 X1. Y1. Z5.\n"), @r#"
     error[VP0213]: a motion of linear axes while a rotary axis is unknown
       1: `X1. Y1. Z5.` C not known since the start of the program
-      help: program a rapid `G90 G0 C…` before this block, or say where it stands then, as in `--start-at C=0`
+      help: program a rapid `G90 G0 C…` before this block, or say where it stands then, as in `--start-at C=0`; for all programs `rotary_start = { C = 0 }` under `[program]` in the profile
     "#);
     insta::assert_snapshot!(message_with(dialect("fanuc"), &with_c, "G0 A5.\n"), @r#"
     error[VP0219]: the machine has no axis A
