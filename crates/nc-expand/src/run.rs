@@ -143,6 +143,9 @@ impl<'a> Run<'a, '_> {
                 if next == Next::Ended {
                     return Ok(());
                 }
+                if self.section_ends() {
+                    self.leave(false);
+                }
             }
         }
     }
@@ -448,6 +451,19 @@ impl<'a> Run<'a, '_> {
                     None => true,
                 };
                 if goes { self.jump(source, place, *to, *direction) } else { Ok(()) }
+            }
+            Control::Section { from, to } => {
+                let [first, last] =
+                    [from, to].map(|name| self.labelled(source, place, *name, Direction::Either));
+                let (first, last) = (first?, last?);
+                if first > last || (first..=last).contains(&place.statement) {
+                    return Err(faults::no_call(&both!(
+                        "CALL BLOCK of blocks that do not end, or hold it",
+                        "CALL BLOCK кадров, которые не кончаются или в которых он стоит сам"
+                    )));
+                }
+                let (start, kind) = (Place { statement: first, ..place }, CallKind::Section(*from, last));
+                self.enter(start, kind, 1, None, statement.section, place)
             }
             Control::For { variable, from, to, end } => {
                 let (first, last) = (self.known(from)?, self.known(to)?);

@@ -127,6 +127,11 @@ pub(crate) enum Control {
         to: NameId,
         direction: Direction,
     },
+    /// `CALL BLOCK A TO B`: the blocks from one label to the other, both among them.
+    Section {
+        from: NameId,
+        to: NameId,
+    },
     /// `FOR I=1 TO 5`; the place of ENDFOR.
     For {
         variable: Variable,

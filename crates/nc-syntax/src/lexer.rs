@@ -252,7 +252,11 @@ impl<'d> Lexer<'d> {
             && length > 1
             && name[1..].iter().all(u8::is_ascii_digit)
             && line.get(at + length) != Some(&b'=');
-        if is_siemens_word(name) || call {
+        // `CALL BLOCK A TO B` runs a part of the program; other calls are commands.
+        let behind = skip_spaces(line, at + length);
+        let section = name.eq_ignore_ascii_case(b"CALL")
+            && line[behind..behind + identifier(&line[behind..])].eq_ignore_ascii_case(b"BLOCK");
+        if is_siemens_word(name) || call || section {
             return Some(self.flow(line, at, at + length));
         }
         let number = name.first().is_some_and(|first| first.eq_ignore_ascii_case(&b'R'))
