@@ -433,7 +433,8 @@ fn declare_harmless(profile: &Profile, dialect: &mut Dialect) -> Result<(), Fail
             Ok(at) if dialect.m_codes[at].switches.is_some() => dialect.m_codes[at] = harmless,
             Ok(at) => {
                 let row = &dialect.m_codes[at];
-                let acts = row.ends_program || row.refuse.is_some() || row.loses_position != [false; 3];
+                let acts =
+                    row.ends_program || row.calls || row.refuse.is_some() || row.loses_position != [false; 3];
                 if acts {
                     return Err(Failure::option(
                         both!(
