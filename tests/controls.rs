@@ -123,6 +123,44 @@ fn m_codes_that_the_profile_declares() {
 }
 
 #[test]
+fn calls_that_the_control_has_stay_and_move_what_the_profile_says() {
+    let text = "%\nO1001\nG21 G17 G40 G49 G80 G90\nG0 G54 X10. Y10. S3000 M3\nG43 H1 Z50.\nG65 P9832\n\
+                G65 P9810 Z10. F3000.\nG65 P9833\nG0 X10. Y10. Z50.\nG1 Z-1. F100.\nX60.\nG0 Z50.\nM30\n%\n";
+    let part = Part::new(text);
+    let ran = part.run(CORPUS, &[]);
+    warned_of(&ran, &["VP0147", "VP0147", "VP0147"]);
+    let said = messages(&ran);
+    assert!(said.contains("G65 P9810 is in no file") && said.contains("[calls]"), "{said}");
+    let out = String::from_utf8_lossy(&ran.stdout).into_owned();
+    assert!(out.contains("\nG65 P9832\nG65 P9810 Z10. F3000.\nG65 P9833\n"), "{out}");
+    assert!(!out.contains("PROGRAM FLOW EXPANDED"), "{out}");
+    refused_for(&part.run(CORPUS, &["--strict"]), "VP0147");
+    // A program below the control's own numbers is one that somebody forgot.
+    refused_for(&Part::new(&text.replace("P9833", "P8000")).run(CORPUS, &[]), "VP0127");
+    // Behind the call only what it moves has to be named.
+    let short = Part::new(&text.replace("G0 X10. Y10. Z50.\n", "G0 Z50.\n"));
+    refused_for(&short.run(CORPUS, &[]), "VP0213");
+    let calls = |moves: &str| {
+        format!(
+            "[calls]\n\"G65 P9832\" = \"harmless\"\n\"G65 P9833\" = \"harmless\"\n\"G65 P9810\" = {moves}"
+        )
+    };
+    warned_of(&short.run(&short.profile(&calls("{ unknown = \"Z\" }")), &["--strict"]), &[]);
+    refused_for(&short.run(&short.profile(&calls("{ unknown = \"XZ\" }")), &[]), "VP0213");
+    let none = Part::new(&text.replace("G0 X10. Y10. Z50.\n", ""));
+    warned_of(&none.run(&none.profile(&calls("\"harmless\"")), &["--strict"]), &[]);
+    // What an expanded program computes is no number for a call that stays.
+    let computed = Part::new(&text.replace("G65 P9810 Z10.", "#1=10.\nG65 P9810 Z#1"));
+    refused_for(&computed.run(CORPUS, &[]), "VP0137");
+    // A function of the machine that moves Z.
+    let function = Part::new("G21\nG90 G0 X10. Y10. Z50.\nM200\nG1 Z40. F200.\nM30\n");
+    let profile = function.profile("[calls]\nM200 = { unknown = \"Z\" }");
+    refused_for(&function.run(&profile, &[]), "VP0213");
+    let taken = function.profile("[calls]\nM30 = \"harmless\"");
+    assert_eq!(function.run(&taken, &[]).status.code(), Some(2));
+}
+
+#[test]
 fn a_tool_change_leaves_the_axes_where_the_profile_says() {
     let text = "G21 G90 G54\nG0 X10. Y10. Z50.\nG1 Z45. F300.\nT2 M6\nG1 X60. F200.\nY40.\nM30\n";
     let part = Part::new(text);

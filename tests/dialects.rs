@@ -242,6 +242,9 @@ fn named(row: &Row) -> Option<&'static str> {
     if row.treatment == Treatment::Followed && ["G53.1", "G53.6"].contains(&row.code.as_str()) {
         return Some("`g53_1_turns_by_the_rule_of_the_profile_or_not_at_all` in tests/five_axis.rs");
     }
+    if row.treatment == Treatment::Followed && ["G254", "G255"].contains(&row.code.as_str()) {
+        return Some("`g254_is_the_plane_on_which_the_tool_stands_upright` in tests/five_axis.rs");
+    }
     if row.treatment == Treatment::Followed && row.code == "CYCLE800" {
         return Some("`the_tip_goes_where_the_swivelled_plane_says` in tests/swivel.rs");
     }

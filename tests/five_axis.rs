@@ -416,6 +416,40 @@ fn in_a_tilted_plane_the_tip_goes_where_the_program_says() {
     }
 }
 
+/// Haas' dynamic work offset: the plane along the machine's axes, its zero where the table has turned the work offset.
+#[test]
+fn g254_is_the_plane_on_which_the_tool_stands_upright() {
+    let cut = |text: &str, more: &[&str]| {
+        let place = Place::new(text);
+        let [from, to] = ["in.nc", "out.nc"].map(|name| place.path(name));
+        let with = [&["-m", PROFILE, "--zero", "true"][..], more].concat();
+        let ran = run(&[&[from.as_str(), "-o", &to][..], &with].concat());
+        assert!(ran.status.success(), "{}", messages(&ran));
+        let check = run(&[&["check", &from, &to][..], &with].concat());
+        assert!(check.status.success(), "{}", String::from_utf8_lossy(&check.stdout));
+        let made = std::fs::read_to_string(&to).expect("written");
+        let lines = made.lines().skip_while(|line| !line.starts_with("G0 X0."));
+        lines.take_while(|line| *line != "G49").map(str::to_owned).collect::<Vec<_>>()
+    };
+    for (turned, angles) in [("A-30. C0.", "I0. J30. K0."), ("A-30. C40.", "I-40. J30. K0.")] {
+        let plane = cut(&in_a_plane(turned, &format!("G68.2 X20. Y10. Z5. {angles}")), &[]);
+        // The same zero as a work offset.
+        let program = in_a_plane(turned, "G254").replace("G69", "G255");
+        let haas = ["-d", "haas", "--work-offset", "G54=30,155,185"];
+        assert_eq!(cut(&program, &haas), plane, "{turned}");
+        assert!(plane.len() > 8);
+    }
+    for (turned, blocks, says) in [
+        ("A-30. C0.", "G254\nG0 A-20. X0. Y0. Z50.", "end it with G255 before the turn"),
+        ("A-30.", "G254", "a rotary axis is unknown"),
+        ("A-30. C0.", "G43 H1 G0 Z90.\nG254", "with a tool length in force"),
+    ] {
+        let place = Place::new(&format!("G17 G21 G90 G94 G54\nG0 {turned}\n{blocks}\nM30\n"));
+        let ran = run(&[&place.path("in.nc"), "-m", PROFILE, "-d", "haas"]);
+        assert!(!ran.status.success() && messages(&ran).contains(says), "{blocks}: {}", messages(&ran));
+    }
+}
+
 #[test]
 fn a_plane_that_lies_elsewhere_is_found_whichever_of_its_blocks_says_so() {
     let elsewhere = [
@@ -526,6 +560,14 @@ fn rotary_axes_may_be_said_to_stand_somewhere() {
     let (done, said) = command(&[]);
     assert!(!done && said.contains("VP0213") && said.contains("--start-at A=0,C=0"), "{said}");
     assert!(command(&["--start-at", "A=0,C=0"]).0);
+    // Or of every program of the machine.
+    let profile = std::fs::read_to_string(crate::common::root().join(PROFILE)).expect("readable");
+    let tables = crate::common::root().join("tests/profiles");
+    let said = profile.replace("\"wavy_", &format!("\"{}/wavy_", tables.display()))
+        + "\n[program]\nrotary_start = { A = 0, C = 0 }\n";
+    std::fs::write(place.path("machine.toml"), said).expect("writable");
+    let ran = run(&[&input, "-m", &place.path("machine.toml"), "-d", "fanuc"]);
+    assert!(ran.status.success(), "{}", messages(&ran));
     for (wrong, words) in [("B=0", "no such axis"), ("A=0,A=1", "said twice"), ("W=3", "no axis `W`")] {
         let (done, said) = command(&["--start-at", wrong]);
         assert!(!done && said.contains(words), "{said}");

@@ -56,6 +56,48 @@ fn start_at_is_knowledge_and_no_motion() {
     assert!(said.contains("VP0514") && said.contains("since the frame changed in line 1"), "{said}");
 }
 
+/// A first feed in a new frame that would start off its path is refused whether or not the machine has lost motion.
+#[test]
+fn play_hides_no_start_that_is_off() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("a plain path").to_owned();
+    std::fs::write(path("ex.csv"), "position_mm,EXX_um,EYX_um,EZX_um\n-300,0,0,-60\n300,0,0,60\n")
+        .expect("writable");
+    let program = "G90 G17 G54\nG0 X-100 Y0 Z-60\nG1 Z-50 F200\nG20\nG0 X4 Y1\nG1 Z-1.5 F8\nG1 X5\nM2\n";
+    std::fs::write(path("unit.ngc"), program).expect("writable");
+    for play in ["", "backlash_um = 4\n"] {
+        let axis = |name: &str, more: &str| format!("[axis.{name}]\ntravel_mm = [-300, 300]\n{more}");
+        let axes = [axis("X", "errors = \"ex.csv\"\n"), axis("Y", ""), axis("Z", play)].concat();
+        let profile = format!(
+            "format = 1\nname = \"m\"\ncontrol = \"linuxcnc\"\nchain = \"[w X Y b Z t]\"\n{axes}[work_offsets_mm]\nG54 = [0, 0, 0]\n"
+        );
+        std::fs::write(path("m.toml"), profile).expect("writable");
+        let ran = run(&[&path("unit.ngc"), "-m", &path("m.toml"), "--start-at", "0,0,0"]);
+        let said = messages(&ran);
+        assert!(said.contains("VP0514") && said.contains("40.32 um"), "{play}: {said}");
+        // Named in the new unit it starts where it should.
+        let named = program.replace("G0 X4 Y1", "G0 X4 Y1 Z-1.9685");
+        std::fs::write(path("named.ngc"), named).expect("writable");
+        let ran = run(&[&path("named.ngc"), "-m", &path("m.toml"), "--start-at", "0,0,0"]);
+        assert!(ran.status.success(), "{play}: {}", messages(&ran));
+    }
+}
+
+/// Where nothing is corrected no program need say where it begins: it comes out byte for byte.
+#[test]
+fn a_perfect_machine_asks_nobody_where_it_stands() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let program = folder.path().join("part.ngc");
+    let text = "G21 G90 G54\nG1 Z5 F2540\nG0 X10 Y10\nG1 Z-1 F100\nX20\nM2\n";
+    std::fs::write(&program, text).expect("writable");
+    let program = program.to_str().expect("a plain path");
+    let with =
+        |profile: &str| run(&[program, "-m", profile, "-d", "linuxcnc", "--work-offset", "G54=140,100,120"]);
+    let ran = with("machine-profiles/perfect.toml");
+    assert_eq!(String::from_utf8_lossy(&ran.stdout), text, "{}", messages(&ran));
+    assert!(messages(&with(PROFILE)).contains("VP0213"));
+}
+
 #[test]
 fn a_feed_gets_no_word_for_an_axis_that_is_not_named() {
     let stand = "G0 X10. Y10.\nG43 H1 Z60.\n";

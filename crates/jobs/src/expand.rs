@@ -187,15 +187,13 @@ fn correct_expanded(
         for figure in [&mut figures.largest, &mut figures.before, &mut figures.after] {
             figure.1 = expanded.source_line(figure.1).1;
         }
-        if corrected.text == expanded.text() {
-            corrected.text = text.to_vec();
-        } else if !expanded.warnings().is_empty() {
-            corrected.figures.warnings.extend_from_slice(expanded.warnings());
-            warnings.push(Report {
-                source: Some(Source::whole(name, text)),
-                diagnostics: expanded.warnings().to_vec(),
-            });
-        }
+    }
+    if corrected.text == expanded.text() {
+        corrected.text = text.to_vec();
+    } else if !expanded.warnings().is_empty() {
+        corrected.figures.warnings.extend_from_slice(expanded.warnings());
+        let diagnostics = expanded.warnings().to_vec();
+        warnings.push(Report { source: Some(Source::whole(name, text)), diagnostics });
     }
     Ok(Done { corrected, warnings, lookups: lookups.into_inner() })
 }

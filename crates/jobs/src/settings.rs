@@ -9,7 +9,8 @@ use machine_profile::{BareLengths, Profile, TurningRules};
 use nc_program::{AfterChange, BetweenVectors, Questions, Setup};
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{
-    DrillPecks, DrillR, FlankFrom, MCode, Macros, PointFree, TipSwitch, TurningParameters,
+    Action, CodeEntry, ControlCall, DrillPecks, DrillR, FlankFrom, GCode, MCode, Macros, PointFree,
+    TipSwitch, TurningParameters,
 };
 use rewrite::{Datums, Guards, Job};
 
@@ -80,8 +81,12 @@ impl Settings {
             // The others know no lever.
             _ => false,
         };
+        if engine_id == EngineId::RigidBody && dialect.turning.is_none() {
+            start_anywhere(&profile, engine.as_ref(), &mut setup);
+        }
         setup.lengths_settled = settle_lengths(options, &profile, &mut dialect)?;
         declare_harmless(&profile, &mut dialect)?;
+        declare_calls(&profile, &mut dialect)?;
         declare_switches(&profile, &mut dialect);
         declare_cycles(&profile, &mut dialect);
         let tip = profile.tip_control().filter(|_| engine_id == EngineId::RigidBody);
@@ -92,6 +97,7 @@ impl Settings {
         };
         if let Some(mm) = profile.program.arc_tolerance_mm {
             dialect.output.arc_radius_tolerance_mm = mm;
+            dialect.output.arc_radius_tolerance_inch = None;
         }
         let tolerance_um = options.tolerance.unwrap_or(profile.correction.tolerance_um);
         if !(tolerance_um > 0.0 && tolerance_um.is_finite()) {
@@ -382,6 +388,48 @@ fn settle_lengths(options: &JobOptions, profile: &Profile, dialect: &mut Dialect
     Ok(true)
 }
 
+/// Puts what the profile leaves to the control into the dialect.
+fn declare_calls(profile: &Profile, dialect: &mut Dialect) -> Result<(), Failure> {
+    for call in &profile.program.calls {
+        let (letter, tenths) = (call.letter as u8, call.tenths);
+        let taken = if letter == b'G' {
+            let is_free = |row: &CodeEntry| matches!(row.action, Action::Call | Action::Refuse { .. });
+            let taken = dialect.code(GCode(tenths)).is_some_and(|row| !is_free(row));
+            let others = dialect.codes.iter().filter(|row| row.code != GCode(tenths)).cloned();
+            let own = CodeEntry { code: GCode(tenths), group: 0, action: Action::Call };
+            dialect.codes = others.chain([own]).collect::<Vec<_>>().into();
+            taken
+        } else {
+            let row = MCode { calls: true, ..MCode::harmless(tenths / 10) };
+            match dialect.m_codes.binary_search_by_key(&row.number, |row| row.number) {
+                Err(at) => {
+                    dialect.m_codes.insert(at, row);
+                    false
+                }
+                Ok(at) => {
+                    let is = std::mem::replace(&mut dialect.m_codes[at], row);
+                    is.ends_program || is.changes_tool || is.after_motion
+                }
+            }
+        };
+        if taken {
+            return Err(Failure::option(
+                both!(
+                    "the profile leaves {}{} to the control, which the table of dialect {} knows as something else",
+                    "профиль оставляет {}{} стойке, а в таблице диалекта {} это другое",
+                    call.letter,
+                    tenths / 10,
+                    dialect.name
+                ),
+                both!("remove it from `[calls]` in the profile", "уберите её из раздела `[calls]` профиля"),
+            ));
+        }
+        let unknown = call.unknown;
+        dialect.calls.push(ControlCall { letter, tenths, program: call.program, unknown });
+    }
+    Ok(())
+}
+
 /// Puts the M codes that the profile calls harmless into the dialect, beside those that its table has.
 fn declare_harmless(profile: &Profile, dialect: &mut Dialect) -> Result<(), Failure> {
     for &number in &profile.program.harmless_m_codes {
@@ -391,7 +439,8 @@ fn declare_harmless(profile: &Profile, dialect: &mut Dialect) -> Result<(), Fail
             Ok(at) if dialect.m_codes[at].switches.is_some() => dialect.m_codes[at] = harmless,
             Ok(at) => {
                 let row = &dialect.m_codes[at];
-                let acts = row.ends_program || row.refuse.is_some() || row.loses_position != [false; 3];
+                let acts =
+                    row.ends_program || row.calls || row.refuse.is_some() || row.loses_position != [false; 3];
                 if acts {
                     return Err(Failure::option(
                         both!(
@@ -589,7 +638,7 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
         has_rotary: profile.has_rotary(),
         rotary_matters: profile.rotary_matters(),
         start_mm: [None; 3],
-        start_deg: [None; 3],
+        start_deg: profile.program.rotary_start_deg,
         tool_change: profile.program.tool_change.map(|change| match change {
             machine_profile::AfterChange::Unknown => AfterChange::Unknown,
             machine_profile::AfterChange::Stays => AfterChange::Stays,
@@ -639,9 +688,18 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
                 ),
             ));
         }
-        (setup.start_mm, setup.start_deg) = (start.linear_mm, start.rotary_deg);
+        setup.start_mm = start.linear_mm;
+        setup.start_deg = [0, 1, 2].map(|axis| start.rotary_deg[axis].or(setup.start_deg[axis]));
     }
     Ok(setup)
+}
+
+/// Where nothing is corrected no program need say where its axes begin: one place is as good as another.
+fn start_anywhere(profile: &Profile, engine: &dyn Engine, setup: &mut Setup) {
+    if let (false, false, Some(model)) = (profile.has_errors(), setup.tip_at_start, engine.path_model()) {
+        let middle_mm = model.volume().0.map(|range| 0.5 * (range.low + range.high));
+        setup.start_mm = [0, 1, 2].map(|axis| setup.start_mm[axis].or(Some(middle_mm[axis])));
+    }
 }
 
 /// Radii of the noses of turning tools.

@@ -71,6 +71,10 @@ pub(crate) struct Document {
     /// M codes of this machine.
     #[serde(default)]
     pub(crate) m_codes: MCodes,
+    /// Programs and functions of the control that are left alone, like "G65 P9810", and what they move.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Moves>")]
+    pub(crate) calls: BTreeMap<String, Spanned<Moves>>,
     /// What the control computes with under tool centre point control.
     #[schemars(with = "Option<Kinematics>")]
     pub(crate) kinematics: Option<Spanned<Kinematics>>,
@@ -469,6 +473,10 @@ pub(crate) struct Program {
     pub(crate) edge_at_change: Option<Spanned<u32>>,
     /// The length in force is that of the tool in the spindle, from its change on, whatever H a G43 names.
     pub(crate) t_means_h: Option<bool>,
+    /// Where rotary axes stand when a program begins, degrees, like { A = 0 }; not known where left out.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, f64>")]
+    pub(crate) rotary_start: BTreeMap<String, Spanned<Finite>>,
     /// Largest difference of an arc's radii that the control takes, mm; the dialect's where left out.
     #[schemars(with = "Option<f64>")]
     pub(crate) arc_tolerance_mm: Option<Spanned<Finite>>,
@@ -608,6 +616,27 @@ pub(crate) struct MCodes {
     #[serde(default)]
     #[schemars(with = "Vec<String>")]
     pub(crate) harmless: Vec<Spanned<String>>,
+}
+
+/// What a program or function of the control moves.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "expected { unknown = \"XYZ\" } or \"harmless\"")]
+pub(crate) enum Moves {
+    Nothing(Harmless),
+    Some(Unknown),
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Harmless {
+    Harmless,
+}
+
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Unknown {
+    /// Axes that may stand anywhere behind it, like "XYZ".
+    pub(crate) unknown: String,
 }
 
 /// What runs straight from one end of a block to the other.

@@ -25,7 +25,7 @@ pub use field::MeasuredField;
 pub use load::{Read, load};
 pub use profile::{
     AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics, LatheParts,
-    MeasuringFrame, Nose, Outside, Profile, ProgramRules, TurningRules,
+    LeftAlone, MeasuringFrame, Nose, Outside, Profile, ProgramRules, TurningRules,
 };
 pub use show::{plus_turns, schema};
 pub use tables::ErrorRows;

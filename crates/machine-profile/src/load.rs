@@ -20,7 +20,7 @@ use crate::format::{
 };
 use crate::number::{Finite, Length as WrittenLength};
 use crate::profile::{
-    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics,
+    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics, LeftAlone,
     MeasuringFrame, Outside, Profile, ProgramRules, TurningRules,
 };
 use crate::tables::{ErrorRows, error_rows, traverse};
@@ -144,7 +144,7 @@ impl Loader<'_> {
             .map(|axis| chain.as_ref().is_some_and(|chain| chain.axes().any(|own| own == axis)));
         let (work_offsets, zeros) = self.work_offsets(&document.work_offsets_mm, has_rotary);
         let correction = self.correction(&document.correction);
-        let program = self.program_rules(&document.program, &document.m_codes);
+        let program = self.program_rules(&document, chain.as_ref());
         let kinematics =
             document.kinematics.as_ref().and_then(|written| self.kinematics(written, chain.as_ref()));
         let effects = self.effects(&document.effect);
@@ -270,6 +270,37 @@ impl Loader<'_> {
         numbers
     }
 
+    fn left_alone(&mut self, call: &str, moves: &Spanned<format::Moves>) -> Option<LeftAlone> {
+        let mut unknown = [false; 6];
+        let axes = match moves.get_ref() {
+            format::Moves::Nothing(_) => "",
+            format::Moves::Some(some) => some.unknown.as_str(),
+        };
+        let axis = |letter| "XYZABC".find(letter);
+        let all = axes.chars().all(|letter| axis(letter).is_some());
+        axes.chars().filter_map(axis).for_each(|at| unknown[at] = true);
+        let (code, program) =
+            call.split_once(' ').map_or((call, None), |(code, program)| (code, Some(program)));
+        let number = |text: &str, letter| text.strip_prefix(letter)?.parse::<u32>().ok();
+        let letter = code.chars().next().filter(|letter| matches!(letter, 'G' | 'M'));
+        let tenths = letter.and_then(|letter| u16::try_from(number(code, letter)?.checked_mul(10)?).ok());
+        let program = program.map(|program| number(program, 'P'));
+        if let (Some(letter), Some(tenths), true, None | Some(Some(_))) = (letter, tenths, all, program) {
+            return Some(LeftAlone { letter, tenths, program: program.flatten(), unknown });
+        }
+        let message = both!("`{call}` under [calls] is not understood", "`{call}` в [calls] непонятно");
+        let help = both!(
+            "write a call and axes, like `\"G65 P9810\" = {{ unknown = \"XYZ\" }}`, or `\"M200\" = \"harmless\"`",
+            "напишите вызов и оси, например `\"G65 P9810\" = {{ unknown = \"XYZ\" }}` или `\"M200\" = \"harmless\"`"
+        );
+        let label = both!(
+            "a code with its number, and letters of X Y Z A B C",
+            "функция с номером и буквы из X Y Z A B C"
+        );
+        self.refuse(moves, Diagnostic::error(VALUE, message).help(help), label);
+        None
+    }
+
     fn kinematics(
         &mut self,
         written: &Spanned<format::Kinematics>,
@@ -360,7 +391,8 @@ impl Loader<'_> {
         })
     }
 
-    fn program_rules(&mut self, program: &format::Program, m_codes: &format::MCodes) -> ProgramRules {
+    fn program_rules(&mut self, document: &format::Document, chain: Option<&Chain>) -> ProgramRules {
+        let program = &document.program;
         let bare_lengths = program.decimal.map(|name| match name {
             DecimalName::Increments => BareLengths::Increments,
             DecimalName::Millimetres => BareLengths::Millimetres,
@@ -369,7 +401,8 @@ impl Loader<'_> {
             .tool_change
             .as_ref()
             .map_or([AfterChange::Unknown; 3], |written| self.tool_change(written));
-        let harmless_m_codes = self.m_codes(&m_codes.harmless);
+        let harmless_m_codes = self.m_codes(&document.m_codes.harmless);
+        let calls = document.calls.iter().filter_map(|(call, moves)| self.left_alone(call, moves)).collect();
         let mut arc_tolerance_mm = None;
         if let Some(written) = &program.arc_tolerance_mm {
             let Finite(mm) = *written.get_ref();
@@ -399,7 +432,9 @@ impl Loader<'_> {
             arc_tolerance_mm,
             edge_at_change: self.edge_at_change(program),
             t_means_h: program.t_means_h.unwrap_or_default(),
+            rotary_start_deg: self.rotary_start(program, chain),
             harmless_m_codes,
+            calls,
             diameters: program.x.map(|x| matches!(x, XName::Diameter)),
             g_code_system: program.g_code_system.clone(),
             turning: self.turning_rules(program),
@@ -916,6 +951,25 @@ impl Loader<'_> {
         Some(passes)
     }
 
+    fn rotary_start(&mut self, program: &format::Program, chain: Option<&Chain>) -> [Option<f64>; 3] {
+        let mut start_deg = [None; 3];
+        for (name, written) in &program.rotary_start {
+            let mut axes = chain.into_iter().flat_map(Chain::axes).filter(|axis| !axis.is_linear());
+            let Finite(deg) = *written.get_ref();
+            match axes.find(|axis| name.len() == 1 && name.starts_with(axis.letter())) {
+                Some(axis) => start_deg[axis.direction()] = Some(deg),
+                None => {
+                    let message =
+                        both!("`{name}` is no rotary axis of the chain", "`{name}` — не поворотная ось цепи");
+                    let help = both!("remove it, or name it in `chain`", "уберите её или назовите в `chain`");
+                    let label = both!("no such axis", "такой оси нет");
+                    self.refuse(written, Diagnostic::error(VALUE, message).help(help), label);
+                }
+            }
+        }
+        start_deg
+    }
+
     fn edge_at_change(&mut self, program: &format::Program) -> Option<u32> {
         let written = program.edge_at_change.as_ref()?;
         let edge = *written.get_ref();
@@ -1126,7 +1180,10 @@ impl Loader<'_> {
         CorrectionOptions {
             engine,
             tolerance_um: positive(&written.tolerance_um, "tolerance_um", 1.0, false),
-            accept_um: written.accept_um.as_ref().map(|_| positive(&written.accept_um, "accept_um", 0.0, true)),
+            accept_um: written
+                .accept_um
+                .as_ref()
+                .map(|_| positive(&written.accept_um, "accept_um", 0.0, true)),
             outside: match written.outside {
                 OutsideName::Refuse => Outside::Refuse,
                 OutsideName::Clamp => Outside::Clamp,

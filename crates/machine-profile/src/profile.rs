@@ -78,6 +78,19 @@ pub enum AfterChange {
     At(f64),
 }
 
+/// A program or function of the control, like `G65 P9810`, and the axes that may stand anywhere behind it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeftAlone {
+    /// `G` or `M`.
+    pub letter: char,
+    /// Tenths of the code: 650 of G65.
+    pub tenths: u16,
+    /// P, where the code calls programs by it.
+    pub program: Option<u32>,
+    /// X, Y, Z, A, B, C.
+    pub unknown: [bool; 6],
+}
+
 /// How the machine's programs are to be read, where its control's dialect leaves that open.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProgramRules {
@@ -91,8 +104,12 @@ pub struct ProgramRules {
     pub edge_at_change: Option<u32>,
     /// The length in force is that of the tool in the spindle, whatever H a G43 names.
     pub t_means_h: bool,
+    /// Where A, B, C stand when a program begins, degrees.
+    pub rotary_start_deg: [Option<f64>; 3],
     /// Numbers of M codes that move neither an axis nor the frame.
     pub harmless_m_codes: Vec<u16>,
+    /// Programs and functions of the control that are left alone.
+    pub calls: Vec<LeftAlone>,
     /// Largest difference of an arc's radii that the control takes, mm; `None`: the dialect's.
     pub arc_tolerance_mm: Option<f64>,
     /// X words of a lathe's programs are diameters; `None`: not said.

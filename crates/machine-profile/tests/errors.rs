@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests may stop the test")]
 
 use insta::assert_snapshot;
-use machine_profile::{AfterChange, BareLengths, ProfileError, load};
+use machine_profile::{AfterChange, BareLengths, LeftAlone, ProfileError, load};
 
 fn base() -> String {
     "format = 1\nname = \"test\"\nchain = \"[w X Y b Z t]\"\n\n[axis.X]\ntravel_mm = [0, 400]\n[axis.Y]\ntravel_mm = [0, 280]\n\
@@ -101,7 +101,7 @@ fn unknown_table() {
     assert_snapshot!(told(&format!("{}\n[sqareness]\nEC0Y_urad = 1\n", base())), @r####"
     error[VP0302]: unknown key `sqareness`
       line 12: `sqareness` not a key of this table
-    help: did you mean `squareness`? Known here: format, name, control, chain, interpolation, calibrated, axis, squareness, tracker, field, rotary, spindle, headstock, tailstock, workpiece, tool, work_offsets_mm, correction, program, m_codes, kinematics, effect, setup
+    help: did you mean `squareness`? Known here: format, name, control, chain, interpolation, calibrated, axis, squareness, tracker, field, rotary, spindle, headstock, tailstock, workpiece, tool, work_offsets_mm, correction, program, m_codes, calls, kinematics, effect, setup
     "####);
 }
 
@@ -562,6 +562,10 @@ fn program_rules() {
     assert_eq!(rules("").tool_change, [AfterChange::Unknown; 3]);
     assert_eq!(rules("[program]\ndecimal = \"increments\"").bare_lengths, Some(BareLengths::Increments));
     assert_eq!(rules("[m_codes]\nharmless = [\"M777\", \"m12\"]").harmless_m_codes, [777, 12]);
+    let calls = rules("[calls]\n\"G65 P9810\" = { unknown = \"ZB\" }\nM200 = \"harmless\"").calls;
+    let left = |letter, tenths, program, unknown| LeftAlone { letter, tenths, program, unknown };
+    let moves = [false, false, true, false, true, false];
+    assert_eq!(calls, [left('G', 650, Some(9810), moves), left('M', 2000, None, [false; 6])]);
     let change = |text: &str| rules(&format!("[program]\ntool_change = {text}")).tool_change;
     let at = AfterChange::At;
     assert_eq!(change("{ keeps = \"XYZ\" }"), [AfterChange::Stays; 3]);
@@ -580,6 +584,11 @@ fn program_rules() {
         ("[program]\ntoolchange = 1", "VP0302"),
         ("[m_codes]\nharmless = [\"777\"]", "VP0303"),
         ("[m_codes]\nharmless = [\"M70000\"]", "VP0303"),
+        ("[calls]\n\"G65 9810\" = { unknown = \"Z\" }", "VP0303"),
+        ("[calls]\n\"G65 P9810\" = { unknown = \"ZW\" }", "VP0303"),
+        ("[calls]\n\"L9810\" = \"harmless\"", "VP0303"),
+        ("[calls]\n\"G65 P9810\" = \"moves\"", "VP0303"),
+        ("[calls]\n\"G65 P9810\" = { moves = \"Z\" }", "VP0303"),
     ] {
         let said = told(&format!("{}{text}\n", base()));
         assert!(said.contains(code), "{text}: {said}");

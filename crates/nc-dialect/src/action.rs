@@ -6,7 +6,7 @@ use nc_syntax::dialect::{
 };
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 117] = [
+pub const ACTION_NAMES: [&str; 121] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -124,6 +124,10 @@ pub const ACTION_NAMES: [&str; 117] = [
     "pass-with-words",
     "pass-with-p",
     "contour-tolerance",
+    "alarm",
+    "call",
+    "dynamic-offset",
+    "dynamic-offset-off",
 ];
 
 /// The action of a name, for a code: a work offset is called what its code is called.
@@ -247,6 +251,10 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "pass-with-words" => Action::Pass { takes_words: true },
         "pass-with-p" => Action::PassWithP,
         "contour-tolerance" => Action::ContourTolerance,
+        "alarm" => Action::Alarm,
+        "call" => Action::Call,
+        "dynamic-offset" => Action::DynamicOffset,
+        "dynamic-offset-off" => Action::DynamicOffsetOff,
         _ => return None,
     })
 }

@@ -153,18 +153,27 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
             both!("expected 0 to {MOST_SHARE} of the radius", "ожидалось от 0 до {MOST_SHARE} радиуса"),
         );
     }
+    let inch = output.arc_radius_tolerance_inch.as_ref().map(|inch| ("arc_radius_tolerance_inch", inch, 0.5));
     for (what, length, most) in [
         ("peck_clearance_mm", &cycles.peck_clearance_mm, 100.0),
         ("chip_retreat_mm", &cycles.chip_retreat_mm, 100.0),
         ("arc_radius_tolerance_mm", &output.arc_radius_tolerance_mm, 10.0),
-    ] {
+    ]
+    .into_iter()
+    .chain(inch)
+    {
+        let unit =
+            if what.ends_with("mm") { Text::pair("mm", "мм") } else { Text::pair("inch", "дюйма") };
         let found = *length.get_ref();
         // Written so that NaN is refused too.
         if !(found > 0.0 && found <= most) {
             report(
                 length.span(),
                 both!("{what} = {found} is out of range", "{what} = {found} вне границ"),
-                both!("expected above 0, up to {most} mm", "ожидалось больше 0 и не больше {most} мм"),
+                both!(
+                    "expected above 0, up to {most} {unit}",
+                    "ожидалось больше 0 и не больше {most} {unit:#}"
+                ),
             );
         }
     }

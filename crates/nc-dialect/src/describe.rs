@@ -235,6 +235,12 @@ fn note(action: &Action) -> String {
             "the angles by the profile's `branch` and `turn`; X, Y and Z unknown afterwards".to_owned()
         }
         Action::Pass { takes_words: true } => "its words are arguments, not positions".to_owned(),
+        Action::DynamicOffset => {
+            "as a tilted plane along the machine's axes where the table stands; needs `[kinematics]`".to_owned()
+        }
+        Action::DynamicOffsetOff => "ends G254; X, Y and Z unknown afterwards".to_owned(),
+        Action::Call => "a program of the control, left alone: what it may move is unknown behind it".to_owned(),
+        Action::Alarm => "ends the program with an alarm".to_owned(),
         Action::ContourTolerance => "refused where its second argument may switch TRAORI".to_owned(),
         Action::PassWithP => "its P is its own".to_owned(),
         Action::Pass { takes_words: false } => String::new(),

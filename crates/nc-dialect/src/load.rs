@@ -219,6 +219,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             local_calls: flow.local_calls,
             one_value_atan: flow.one_value_atan,
             return_by_m: flow.return_by_m,
+            control_programs: flow.control_programs,
             polar_words,
             called,
         },
@@ -244,6 +245,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
         t_may_change_tool: tool_length.t_word == TWord::MayChange,
         writes_lengths: tool_length.writes_lengths,
         edge_in_d: tool_length.edge_in_d,
+        calls: Vec::new(),
         frames: FrameRules {
             p_selects_numbered: frames.p_selects_numbered,
             l20: match frames.l20 {
@@ -265,6 +267,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             centre_words: output.centre_words.into_inner(),
             radius_word: output.radius_word,
             arc_radius_tolerance_mm: output.arc_radius_tolerance_mm.into_inner(),
+            arc_radius_tolerance_inch: output.arc_radius_tolerance_inch.map(Spanned::into_inner),
             arc_radius_tolerance_share: output.arc_radius_tolerance_share.map_or(0.0, Spanned::into_inner),
             rotary_feed: output.rotary_feed.map(|counts| match counts {
                 RotaryFeedName::LinearAxes => RotaryFeed::LinearAxes,
@@ -395,6 +398,7 @@ fn m_code(number: u16, key: &Spanned<String>, row: &MRow) -> Result<MCode, Diagn
         changes_tool: row.changes_tool,
         switches: row.switches.as_deref().map(russian::text),
         tip: None,
+        calls: row.calls,
         refuse,
     })
 }
@@ -402,8 +406,8 @@ fn m_code(number: u16, key: &Spanned<String>, row: &MRow) -> Result<MCode, Diagn
 fn command(key: &Spanned<String>, row: &CommandRow) -> Result<Command, Diagnostic> {
     let name = key.get_ref();
     let sound = name.len() > 1
-        && name.starts_with(|c: char| c.is_ascii_uppercase())
-        && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
+        && name.starts_with(|c: char| c.is_ascii_uppercase() || c == '#')
+        && name[1..].chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
     if !sound {
         return Err(Diagnostic::error(
             Code(802),

@@ -189,6 +189,8 @@ pub(crate) struct FlowRules {
     /// Cycles return where M53 and M54 say.
     #[serde(default)]
     pub(crate) return_by_m: bool,
+    /// First and last number of programs that are the control's own.
+    pub(crate) control_programs: Option<(u32, u32)>,
 }
 
 #[derive(Clone, Copy, Default, Deserialize)]
@@ -343,6 +345,7 @@ pub(crate) struct OutputRules {
     pub(crate) centre_words: Spanned<bool>,
     pub(crate) radius_word: bool,
     pub(crate) arc_radius_tolerance_mm: Spanned<f64>,
+    pub(crate) arc_radius_tolerance_inch: Option<Spanned<f64>>,
     pub(crate) arc_radius_tolerance_share: Option<Spanned<f64>>,
     pub(crate) rotary_feed: Option<RotaryFeedName>,
 }
@@ -380,6 +383,8 @@ pub(crate) struct MRow {
     #[serde(default)]
     pub(crate) changes_tool: bool,
     pub(crate) switches: Option<String>,
+    #[serde(default)]
+    pub(crate) calls: bool,
     pub(crate) refuse: Option<String>,
     pub(crate) help: Option<String>,
 }

@@ -10,6 +10,7 @@ use nc_syntax::{Block, Reader};
 
 use crate::codes;
 use crate::faults::{self, Stop, say, whole};
+use crate::flow::variables;
 use crate::jump::CallKind;
 use crate::o_word::{Label, OStatement, OWord};
 use crate::program::Source;
@@ -108,6 +109,73 @@ impl<'a> Run<'a, '_> {
         let program = Program::Number(u32::try_from(program).unwrap_or(u32::MAX));
         let start = self.find_program(source, place.file, program)?;
         self.enter(start, CallKind::Number(program), passes, arguments.as_deref(), statement.section, place)
+    }
+
+    /// True where the control has the program of a call, and no file: the profile says so, or its number does.
+    pub(crate) fn is_left_alone(
+        &mut self,
+        source: &Source<'a>,
+        call: &Call,
+        place: Place,
+    ) -> Result<bool, Stop> {
+        let Ok(Value::Number(number) | Value::Rounded(number)) = self.evaluate(&call.number) else {
+            return Ok(false);
+        };
+        let packed = self.dialect.flow.packed_repeats && call.repeats.is_none() && call.arguments.is_none();
+        let number = if packed && number > 9999.0 { number % 10_000.0 } else { number };
+        let number = if number.fract() == 0.0 { number as u32 } else { return Ok(false) };
+        let own = self.dialect.flow.control_programs;
+        let known =
+            self.declared(call, number) || own.is_some_and(|(first, last)| (first..=last).contains(&number));
+        if call.local || call.program.is_some() || !known {
+            return Ok(false);
+        }
+        match self.find_program(source, place.file, Program::Number(number)) {
+            Err(Stop::Said(said)) if said.0 == codes::PROGRAM_MISSING => Ok(true),
+            _ => Ok(false),
+        }
+    }
+
+    /// The profile says what a call moves.
+    fn declared(&self, call: &Call, number: u32) -> bool {
+        let code = if call.arguments.is_some() { (b'G', 650) } else { (b'M', 980) };
+        let mut calls = self.dialect.calls.iter();
+        calls.any(|row| (row.letter, row.tenths, row.program) == (code.0, code.1, Some(number)))
+    }
+
+    /// A call of what the control has stays as it is written.
+    pub(crate) fn leave_alone(
+        &mut self,
+        source: &Source<'a>,
+        statement: &Statement,
+        call: &Call,
+        place: Place,
+        again: bool,
+    ) -> Result<(), Stop> {
+        let words = source.bytes(statement);
+        if !self.are_untouched(&variables(words)) {
+            return Err(say(
+                codes::ARGUMENT,
+                both!(
+                    "an argument of a program that the control has is computed by this one",
+                    "аргумент программы, которая есть только в стойке, вычисляет эта программа"
+                ),
+                both!("the expanded program sets no variables", "развёрнутая программа переменных не задаёт"),
+                both!(
+                    "write the number, or give the called program's file with `--include DIR`",
+                    "напишите число или дайте файл вызываемой программы ключом `--include DIR`"
+                ),
+            ));
+        }
+        self.copy(source, statement, place, again);
+        self.note(statement);
+        let number = self.known(&call.number)?;
+        if place.file == 0 && !self.declared(call, number as u32) {
+            let code = if call.arguments.is_some() { "G65" } else { "M98" };
+            let span = source.span(statement);
+            self.left_alone.entry(format!("{code} P{number}")).or_insert(span);
+        }
+        Ok(())
     }
 
     /// Arguments of G65 as local variables.

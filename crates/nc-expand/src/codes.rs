@@ -63,3 +63,6 @@ pub const CYCLE_PARAMETER: Code = Code(145);
 /// A call of a cycle by its name, or a dimension by AC and IC, that cannot be written out with certainty.
 /// Remedy: the words it lacks, or its moves.
 pub const CALLED_CYCLE: Code = Code(146);
+/// Doubt: a call of a program that only the control has is left as it is. Remedy: `[calls]` in the profile, or that
+/// program with `--include`.
+pub const LEFT_ALONE: Code = Code(147);

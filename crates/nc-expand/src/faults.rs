@@ -214,6 +214,7 @@ pub(crate) fn no_return(names: &Names, kind: CallKind, macros: Macros) -> Stop {
         CallKind::Number(program) if macros == Macros::Okuma => (program.written(names), "RTS"),
         CallKind::Number(program) => (program.written(names), "M99"),
         CallKind::Block(number) => (format!("N{number}"), "M99"),
+        CallKind::Section(id, _) => (names.name(id).to_ascii_uppercase(), "its last label"),
         CallKind::Program(id) => (names.name(id).to_ascii_uppercase(), "M17"),
         CallKind::Name(id) | CallKind::Routine(id, _) => (format!("o<{}>", names.name(id)), "`endsub`"),
     };
@@ -345,5 +346,27 @@ pub(crate) fn lost_output(span: Range<u64>) -> Diagnostic {
     .help(both!(
         "nothing moves by it; the text is kept as a comment",
         "движения он не вызывает; текст сохранён комментарием"
+    ))
+}
+
+/// * `call` – `G65 P9810`
+pub(crate) fn left_alone(span: Range<u64>, call: &str) -> Diagnostic {
+    Diagnostic::doubt(
+        codes::LEFT_ALONE,
+        both!(
+            "{call} is in no file and stays as it is: places among its words are not corrected, and where it leaves the axes is not known",
+            "{call} нет ни в одном файле, вызов остаётся как есть: места в его словах не исправлены, а где он оставит оси, неизвестно"
+        ),
+    )
+    .at(
+        span,
+        both!(
+            "work offsets, tool lengths, G90, plane and unit behind it are taken for those before it",
+            "смещения нуля, длины, G90, плоскость и единица после него считаются прежними"
+        ),
+    )
+    .help(both!(
+        "say what it moves under `[calls]` in the profile: `\"{call}\" = {{ unknown = \"Z\" }}`, or `= \"harmless\"`; or give its file with `--include DIR`",
+        "скажите в разделе `[calls]` профиля, что он двигает: `\"{call}\" = {{ unknown = \"Z\" }}` или `= \"harmless\"`, либо дайте его файл ключом `--include DIR`"
     ))
 }

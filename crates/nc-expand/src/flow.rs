@@ -1,11 +1,12 @@
 //! Statements of flow and calls: text to what they do.
 
 use diagnostic::{Text, both};
-use nc_syntax::Block;
-use nc_syntax::dialect::{Flow, Macros};
+use nc_syntax::dialect::{Dialect, Flow, Macros};
+use nc_syntax::{Block, ItemKind};
 
 use crate::expression::{Expression, Parser};
 use crate::statement::Control;
+use crate::value::Variable;
 
 /// `#1=…`
 pub(crate) fn assignment(parser: &mut Parser<'_, '_>) -> Result<(Expression, Expression), Text> {
@@ -62,13 +63,30 @@ pub(crate) fn fanuc_flow(parser: &mut Parser<'_, '_>) -> Result<Control, Text> {
     if parser.short_word(b"END") {
         return Ok(Control::EndWhile { number: loop_number(parser)?, start: 0 });
     }
-    for word in [&b"DPRNT"[..], b"BPRNT", b"POPEN", b"PCLOS"] {
-        if parser.word(word) {
-            parser.at = parser.text.len();
-            return Ok(Control::Output);
-        }
-    }
     Err(both!("this is no statement of this dialect", "такого оператора в этом диалекте нет"))
+}
+
+/// The variables that a command of the control reads when it runs, as `DPRNT[X#1[3]]` does.
+pub(crate) fn printed(block: &Block<'_>, dialect: &Dialect) -> Vec<Option<Variable>> {
+    let commands = block.items.iter().filter(|item| item.kind == ItemKind::BracketCommand);
+    let texts = commands.filter(|_| dialect.flow.macros == Macros::Fanuc).map(|item| block.text(item.span));
+    // What is set by its number, as `#3006` is, acts whatever it is set to.
+    texts.filter(|text| !text.starts_with(b"#")).flat_map(variables).collect()
+}
+
+/// The variables that a text names; `None`: one by an expression.
+pub(crate) fn variables(text: &[u8]) -> Vec<Option<Variable>> {
+    let variable = |text: &[u8]| {
+        let digits = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
+        std::str::from_utf8(&text[..digits]).ok()?.parse().ok().map(Variable::Numbered)
+    };
+    text.split(|byte| *byte == b'#').skip(1).map(variable).collect()
+}
+
+/// `#3006=1(TEXT)` at the end of a block: a command of the control that acts and moves nothing.
+pub(crate) fn commanded<'a>(block: &'a [u8], dialect: &Dialect) -> Option<&'a [u8]> {
+    let command = &block[block.iter().rposition(|byte| *byte == b'#')?..];
+    dialect.command(command).filter(|row| row.action.is_none() && row.refuse.is_none()).map(|_| command)
 }
 
 fn loop_number(parser: &mut Parser<'_, '_>) -> Result<u32, Text> {

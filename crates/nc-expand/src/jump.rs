@@ -41,6 +41,8 @@ pub(crate) enum CallKind {
     Block(u64),
     /// `o<name> call`: `endsub` and `return` return.
     Name(NameId),
+    /// CALL BLOCK: to its last block.
+    Section(NameId, u32),
     /// A contour of a cycle, which is read and not called; where it starts in the output.
     Routine(NameId, u64),
 }
@@ -78,14 +80,31 @@ impl<'a> Run<'a, '_> {
         to: NameId,
         direction: Direction,
     ) -> Result<(), Stop> {
+        self.at.statement = self.labelled(source, place, to, direction)?;
+        Ok(())
+    }
+
+    /// True where the last block of a section lies behind.
+    pub(crate) fn section_ends(&self) -> bool {
+        let Some(Frame { kind: CallKind::Section(_, last), back, .. }) = self.frames.last() else {
+            return false;
+        };
+        self.at == Place { statement: last + 1, ..*back }
+    }
+
+    /// The block behind a label.
+    pub(crate) fn labelled(
+        &self,
+        source: &Source<'a>,
+        place: Place,
+        to: NameId,
+        direction: Direction,
+    ) -> Result<u32, Stop> {
         let refuse = |why: Text| {
             faults::label(&self.names.name(to).to_ascii_uppercase(), &both!("label", "метку"), &why)
         };
         match source.named(to, place.statement, direction) {
-            Found::Statement(statement) => {
-                self.at.statement = statement;
-                Ok(())
-            }
+            Found::Statement(statement) => Ok(statement),
             Found::Missing => Err(refuse(both!(
                 "there is no such label in this direction",
                 "в эту сторону такой метки нет"
@@ -112,6 +131,9 @@ impl<'a> Run<'a, '_> {
                 }
                 None => Err(faults::endless()),
             };
+        }
+        if matches!(self.frames.last().map(|frame| frame.kind), Some(CallKind::Section(..))) {
+            return Err(faults::no_call(&both!("a return inside CALL BLOCK", "возврат внутри CALL BLOCK")));
         }
         if matches!(
             self.frames.last().map(|frame| frame.kind),
@@ -186,7 +208,9 @@ impl<'a> Run<'a, '_> {
         let count = self.calls.entry((start.file, start.statement)).or_insert(0);
         *count += 1;
         let (number, of) = match kind {
-            CallKind::Number(_) | CallKind::Program(_) | CallKind::Block(_) => (1, Some(passes)),
+            CallKind::Number(_) | CallKind::Program(_) | CallKind::Block(_) | CallKind::Section(..) => {
+                (1, Some(passes))
+            }
             CallKind::Name(_) | CallKind::Routine(..) => (*count, None),
         };
         self.announce(kind, number, of, caller);
@@ -210,7 +234,7 @@ impl<'a> Run<'a, '_> {
         let name = match kind {
             CallKind::Number(program) => program.written(&self.names),
             CallKind::Block(number) => format!("N{number}"),
-            CallKind::Program(id) => self.names.name(id).to_ascii_uppercase(),
+            CallKind::Program(id) | CallKind::Section(id, _) => self.names.name(id).to_ascii_uppercase(),
             CallKind::Name(id) | CallKind::Routine(id, _) => format!("O<{}>", self.names.name(id)),
         };
         let text = match of {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use diagnostic::{Diagnostic, Text, both};
-use nc_syntax::dialect::{Dialect, Macros};
+use nc_syntax::dialect::{Action, Dialect, Macros};
 use nc_syntax::{Block, ItemKind, Reader};
 
 use crate::codes;
@@ -58,7 +58,7 @@ impl<'a> Source<'a> {
             while reader.next(&mut block) {
                 let at = u32::try_from(statements.len()).unwrap_or(u32::MAX);
                 let (mut kind, mut flags) = compiler.kind(&block);
-                if dialect.flow.macros == Macros::LinuxCnc && aborts(&block) {
+                if aborts(&block, dialect) {
                     kind = Kind::Broken(Box::new(
                         Diagnostic::error(
                             codes::ALARM,
@@ -81,7 +81,7 @@ impl<'a> Source<'a> {
                     Kind::Program(program) => Some(*program),
                     // With a statement beside its number.
                     Kind::Complex(_) | Kind::Broken(_) => compiler.program(&block),
-                    Kind::Copy | Kind::Percent => None,
+                    Kind::Copy | Kind::Print(_) | Kind::Percent => None,
                 };
                 percents += u32::from(matches!(kind, Kind::Percent));
                 if let Some(program) = starts {
@@ -381,10 +381,14 @@ fn control(statement: &mut Statement) -> Option<&mut Control> {
 }
 
 /// LinuxCNC: `(ABORT, text)` ends the program with an error.
-fn aborts(block: &Block<'_>) -> bool {
+fn aborts(block: &Block<'_>, dialect: &Dialect) -> bool {
     block.items.iter().any(|item| {
-        item.kind == ItemKind::Comment && {
-            let text = block.text(item.span);
+        let text = block.text(item.span);
+        let alarm = || dialect.command(text)?.action.as_ref().filter(|does| **does == Action::Alarm);
+        if item.kind == ItemKind::BracketCommand {
+            return alarm().is_some();
+        }
+        dialect.flow.macros == Macros::LinuxCnc && item.kind == ItemKind::Comment && {
             let start: Vec<u8> = text[1..]
                 .iter()
                 .filter(|byte| !byte.is_ascii_whitespace())

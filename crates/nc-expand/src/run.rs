@@ -10,10 +10,11 @@ use nc_syntax::dialect::{Action, Dialect, Macros};
 use crate::evaluate::{Rules, Variables, number};
 use crate::expression::Expression;
 use crate::faults::{self, Stop};
+use crate::flow;
 use crate::jump::{CallKind, Frame};
 use crate::output::{From, Output};
 use crate::program::Source;
-use crate::statement::{Complex, Control, Kind, Statement};
+use crate::statement::{Complex, Control, Direction, Kind, Statement};
 use crate::value::{Names, Value, Variable};
 use crate::variables::Store;
 use crate::{Environment, Expanded, Refusal};
@@ -54,6 +55,8 @@ pub(crate) struct Run<'a, 'e> {
     /// File names that were looked for, and what was found.
     pub(crate) externals: BTreeMap<String, Option<usize>>,
     first_output: Option<std::ops::Range<u64>>,
+    /// The first call of each program that the control has, where no profile says what it moves.
+    pub(crate) left_alone: BTreeMap<String, std::ops::Range<u64>>,
     first_kept: Option<(std::ops::Range<u64>, Variable)>,
     /// Bytes of the output that are contours of cycles.
     pub(crate) routines: Vec<std::ops::Range<u64>>,
@@ -104,6 +107,7 @@ pub(crate) fn run<'a>(
         calls: BTreeMap::new(),
         externals: BTreeMap::new(),
         first_output: None,
+        left_alone: BTreeMap::new(),
         first_kept: None,
         routines: Vec::new(),
         #[cfg(test)]
@@ -138,6 +142,9 @@ impl<'a> Run<'a, '_> {
                 self.beliefs.push(crate::agreement::Belief::of_flow(self.out.text.len() as u64, self.inch));
                 if next == Next::Ended {
                     return Ok(());
+                }
+                if self.section_ends() {
+                    self.leave(false);
                 }
             }
         }
@@ -182,6 +189,12 @@ impl<'a> Run<'a, '_> {
                 if statement.flags.ends && !statement.flags.skip {
                     return Ok(Next::Ended);
                 }
+            }
+            Kind::Print(variables) => {
+                self.started = true;
+                self.print(source, statement, variables, place, again);
+                self.spend(u64::from(again))?;
+                self.bounded()?;
             }
             Kind::Complex(complex) => {
                 if again {
@@ -269,7 +282,7 @@ impl<'a> Run<'a, '_> {
     }
 
     /// Modal facts that computing needs.
-    fn note(&mut self, statement: &Statement) {
+    pub(crate) fn note(&mut self, statement: &Statement) {
         self.started |= statement.flags.words;
         if let Some(inch) = statement.flags.inch {
             self.units(inch);
@@ -301,7 +314,7 @@ impl<'a> Run<'a, '_> {
         self.previous = Some(place);
     }
 
-    fn copy(&mut self, source: &Source<'a>, statement: &Statement, place: Place, again: bool) {
+    pub(crate) fn copy(&mut self, source: &Source<'a>, statement: &Statement, place: Place, again: bool) {
         self.join(place);
         let bytes = source.bytes(statement);
         let from = self.from(statement, place);
@@ -314,6 +327,34 @@ impl<'a> Run<'a, '_> {
         }
     }
 
+    /// A block that prints stays where the control will have its variables as this program leaves them: untouched.
+    fn print(
+        &mut self,
+        source: &Source<'a>,
+        statement: &Statement,
+        variables: &[Option<Variable>],
+        place: Place,
+        again: bool,
+    ) {
+        if self.are_untouched(variables) {
+            return self.copy(source, statement, place, again);
+        }
+        if place.file == 0 {
+            self.first_output.get_or_insert_with(|| source.span(statement));
+        }
+        if !again {
+            self.join(place);
+            let from = self.from(statement, place);
+            self.out.comment(source.bytes(statement).trim_ascii_end(), from);
+        }
+    }
+
+    /// True where the flat program leaves variables as the control will have them.
+    pub(crate) fn are_untouched(&self, variables: &[Option<Variable>]) -> bool {
+        let untouched = |variable: &Variable| self.store.value(*variable) == Ok(Value::Unknown(*variable));
+        variables.iter().all(|variable| variable.as_ref().is_some_and(untouched))
+    }
+
     fn complex(
         &mut self,
         source: &Source<'a>,
@@ -322,6 +363,11 @@ impl<'a> Run<'a, '_> {
         place: Place,
         again: bool,
     ) -> Result<(), Stop> {
+        if let Some(Control::Call(call)) = &complex.control
+            && self.is_left_alone(source, call, place)?
+        {
+            return self.leave_alone(source, statement, call, place, again);
+        }
         if statement.flags.skip && (complex.control.is_some() || !complex.assignments.is_empty()) {
             return Err(faults::block_delete());
         }
@@ -350,17 +396,17 @@ impl<'a> Run<'a, '_> {
         match &complex.control {
             None => Ok(()),
             Some(Control::IfThen(condition, assignments)) => {
-                if self.holds(condition)? {
+                if !self.holds(condition)? {
+                    return Ok(());
+                }
+                if let Some(command) = flow::commanded(bytes, self.dialect) {
+                    self.join(place);
+                    self.out.write(command, from);
+                } else {
                     for (target, value) in assignments {
                         let (variable, value) = (self.target(target)?, self.evaluate(value)?);
                         self.assign(variable, value, source, statement, place)?;
                     }
-                }
-                Ok(())
-            }
-            Some(Control::Output) => {
-                if place.file == 0 {
-                    self.first_output.get_or_insert_with(|| source.span(statement));
                 }
                 Ok(())
             }
@@ -406,6 +452,19 @@ impl<'a> Run<'a, '_> {
                 };
                 if goes { self.jump(source, place, *to, *direction) } else { Ok(()) }
             }
+            Control::Section { from, to } => {
+                let [first, last] =
+                    [from, to].map(|name| self.labelled(source, place, *name, Direction::Either));
+                let (first, last) = (first?, last?);
+                if first > last || (first..=last).contains(&place.statement) {
+                    return Err(faults::no_call(&both!(
+                        "CALL BLOCK of blocks that do not end, or hold it",
+                        "CALL BLOCK кадров, которые не кончаются или в которых он стоит сам"
+                    )));
+                }
+                let (start, kind) = (Place { statement: first, ..place }, CallKind::Section(*from, last));
+                self.enter(start, kind, 1, None, statement.section, place)
+            }
             Control::For { variable, from, to, end } => {
                 let (first, last) = (self.known(from)?, self.known(to)?);
                 self.assign(*variable, Value::Number(first), source, statement, place)?;
@@ -418,7 +477,7 @@ impl<'a> Run<'a, '_> {
                 Ok(())
             }
             Control::EndFor { start } => self.count(source, statement, *start, place),
-            Control::IfThen(..) | Control::Output => Ok(()),
+            Control::IfThen(..) => Ok(()),
         }
     }
 
@@ -538,13 +597,20 @@ impl<'a> Run<'a, '_> {
         if let Some(span) = self.first_output {
             warnings.push(faults::lost_output(span));
         }
+        warnings.extend(self.left_alone.iter().map(|(call, span)| faults::left_alone(span.clone(), call)));
         let files = self.sources[1..].iter().map(|s| (s.name.clone(), s.text.to_vec())).collect();
         let Output { text, segments, .. } = self.out;
         let routines = self.routines;
+        // Where all of it is left alone it is no other program.
+        let same = matches!(main.text, Cow::Borrowed(source) if source == text);
+        let text = match main.text {
+            Cow::Borrowed(source) if same => Cow::Borrowed(source),
+            _ => Cow::Owned(text),
+        };
         Expanded {
-            text: Cow::Owned(text),
+            text,
             files,
-            flow: Some(segments),
+            flow: (!same).then_some(segments),
             shorthand: Vec::new(),
             warnings,
             #[cfg(test)]

@@ -213,6 +213,13 @@ pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, Text> {
             let call = Call { number, program, local: false, repeats, arguments: None };
             Said::Control(Control::Call(Box::new(call)))
         }
+        b"CALL" if parser.word(b"BLOCK") => {
+            let from = label(parser)?;
+            if !parser.word(b"TO") {
+                return Err(both!("TO was expected", "ожидалось TO"));
+            }
+            Said::Control(Control::Section { from, to: label(parser)? })
+        }
         b"ENDFOR" => Said::Control(Control::EndFor { start: 0 }),
         word => match direction(word) {
             Some(direction) => {

@@ -6,7 +6,7 @@ use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value as WordValue
 
 use crate::codes;
 use crate::expression::{Expression, Parser};
-use crate::flow::{Taken, assignment, call_of, fanuc_flow, skip_word};
+use crate::flow::{Taken, assignment, call_of, fanuc_flow, printed, skip_word};
 use crate::o_word::{self, OStatement};
 use crate::okuma;
 use crate::siemens::{self, Said};
@@ -53,6 +53,8 @@ pub(crate) enum Kind {
     Percent,
     /// `O1000`, or `OSUB`, that starts a program.
     Program(Program),
+    /// Prints variables (DPRNT): bytes as they are where the flat program sets none of them.
+    Print(Vec<Option<Variable>>),
     /// Something to do.
     Complex(Box<Complex>),
     /// Cannot be read; told when it is reached.
@@ -125,6 +127,11 @@ pub(crate) enum Control {
         to: NameId,
         direction: Direction,
     },
+    /// `CALL BLOCK A TO B`: the blocks from one label to the other, both among them.
+    Section {
+        from: NameId,
+        to: NameId,
+    },
     /// `FOR I=1 TO 5`; the place of ENDFOR.
     For {
         variable: Variable,
@@ -136,8 +143,6 @@ pub(crate) enum Control {
     EndFor {
         start: u32,
     },
-    /// DPRNT and the like.
-    Output,
 }
 
 /// Where a label is looked for.
@@ -200,7 +205,10 @@ impl Compiler<'_, '_> {
                 Err(diagnostic) => Kind::Broken(diagnostic),
             }
         } else {
-            self.program(block).map_or(Kind::Copy, Kind::Program)
+            match printed(block, self.dialect) {
+                none if none.is_empty() => self.program(block).map_or(Kind::Copy, Kind::Program),
+                variables => Kind::Print(variables),
+            }
         };
         (kind, flags)
     }

@@ -258,7 +258,8 @@ fn refusals() {
         ("linuxcnc", "#1=0\no1 while [#1 LT 1000000000000]\n#1=[#1+1]\no1 endwhile\nM2\n", "VP0130"),
         ("fanuc", "#2001=5\nX#1\nM30\n", "VP0132"),
         ("linuxcnc", "#5221=5\nM2\n", "VP0132"),
-        ("fanuc", "#3000=1 (TOOL BROKEN)\nM30\n", "VP0133"),
+        ("fanuc", "#1=1\nIF[#1EQ1]THEN#3000=1\nM30\n", "VP0133"),
+        ("fanuc", "#1=1\n#3000=1 (TOOL BROKEN)\nM30\n", "VP0133"),
         ("linuxcnc", "#1=1\n(ABORT, no tool)\nM2\n", "VP0133"),
         ("fanuc", "/#1=2\nX#1\nM30\n", "VP0134"),
         ("fanuc", "/M98 P1\nM30\nO1\nM99\n", "VP0134"),
@@ -330,11 +331,41 @@ fn places_lead_back_to_the_source() {
 }
 
 #[test]
+fn a_stop_under_a_condition_stays_where_it_holds() {
+    let text = |value: u8| {
+        let program = format!("#1={value}\nIF[#1EQ1]THEN #3006=1(TURN)\nG0 X#1\n#3006=2(ON)\nM30\n");
+        String::from_utf8(expanded("fanuc", &program, &[], &[]).unwrap().text().to_vec()).unwrap()
+    };
+    assert!(text(1).contains("\n#3006=1(TURN)\n") && text(1).contains("\n#3006=2(ON)\n"), "{}", text(1));
+    assert!(!text(2).contains("\n#3006=1(TURN)\n"), "{}", text(2));
+}
+
+#[test]
+fn call_block_runs_a_part_of_the_program() {
+    let program =
+        "G0 X1\nCALL BLOCK BEG TO FIN\nR1=7\nCALL BLOCK BEG TO FIN\nM30\nBEG: G1 X=R1+1\nX2\nFIN: X3\nX4\n";
+    let text = |program: &str| {
+        let program = format!("R1=5\n{program}");
+        let expanded = expanded("sinumerik", &program, &[], &[])?;
+        let text = String::from_utf8(expanded.text().to_vec()).unwrap();
+        let plain = text.lines().filter(|line| !line.starts_with(';')).map(|line| line.trim().to_owned());
+        Ok::<_, nc_expand::Refusal>(plain.collect::<Vec<_>>())
+    };
+    let words: Vec<String> = text(program).unwrap();
+    let places: Vec<&str> = words.iter().map(|line| line.rsplit([' ', ':']).next().unwrap()).collect();
+    assert_eq!(places, ["X1", "X=6.", "X2", "X3", "X=8.", "X2", "X3", "M30"], "{words:?}");
+    for (from, to) in [("BEG TO FIN", "FIN TO BEG"), ("BEG TO FIN", "BEG TO ALL")] {
+        assert!(text(&program.replacen(from, to, 1)).is_err(), "{to}");
+    }
+}
+
+#[test]
 fn what_is_lost_is_said() {
     let codes = |text: &str| -> Vec<u16> {
         expanded("fanuc", text, &[], &[]).unwrap().warnings().iter().map(|w| w.code.0).collect()
     };
     assert_eq!(codes("#1=2\nX#1\nM30\n"), []);
     assert_eq!(codes("#500=2\nX#500\nM30\n"), [139]);
-    assert_eq!(codes("POPEN\nDPRNT[X#1[3]]\nPCLOS\nX1.\nM30\n"), [140]);
+    assert_eq!(codes("POPEN\nDPRNT[X#1[3]]\nPCLOS\nX1.\nM30\n"), []);
+    assert_eq!(codes("#1=5.\nPOPEN\nDPRNT[X#1[3]]\nPCLOS\nX#1\nM30\n"), [140]);
 }

@@ -59,8 +59,8 @@ pub(crate) fn circular(
     let (start_2d, end_2d) = (local(&from.linear_mm), local(&to.linear_mm));
     let origin = if shift { plane(&frame.offset_mm()) } else { [0.0; 2] };
     let output = &env.dialect.output;
-    let tolerance =
-        Tolerance { absolute_mm: output.arc_radius_tolerance_mm, share: output.arc_radius_tolerance_share };
+    let absolute_mm = output.arc_tolerance_mm(state.units.mm());
+    let tolerance = Tolerance { absolute_mm, share: output.arc_radius_tolerance_share };
     let inch = state.units == Units::Inch;
     let circle = match words.coordinate(b'R', inch) {
         Some(_) if words.has(CENTRE_LETTERS) => {
@@ -257,8 +257,8 @@ fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault) -> Box<Diag
                 ArcCentres::Absolute => both!("absolute (G90.1)", "абсолютные (G90.1)"),
             };
             words.refuse(codes::RADII_DIFFER, message, centre, label).help(both!(
-                "correct the end or the centre; {one} and {two} are read as {mode}",
-                "исправьте конец или центр; {one} и {two} прочитаны как {mode:#}"
+                "correct the end or the centre ({one} and {two} are read as {mode}); where the control takes more, say so with `arc_tolerance_mm` under `[program]` in the profile",
+                "исправьте конец или центр ({one} и {two} прочитаны как {mode:#}); если стойка допускает больше, скажите это ключом `arc_tolerance_mm` в разделе `[program]` профиля"
             ))
         }
         Fault::RadiusTooSmall { radius_mm, chord_mm } => {

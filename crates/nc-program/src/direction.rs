@@ -212,7 +212,7 @@ pub(crate) fn angles(
                 both!("no angles within travel point the tool there", "в пределах хода нет углов с таким направлением инструмента"),
                 both!("check the vector and `travel_deg` of the rotary axes", "проверьте вектор и `travel_deg` поворотных осей"),
             ),
-            NoAngles::TwoWays | NoAngles::Turns(_) => (
+            NoAngles::TwoWays | NoAngles::Turns(_) | NoAngles::HalfTurn(_) | NoAngles::Travel(_) => (
                 both!("two pairs of angles are as near", "две пары углов одинаково близки"),
                 both!("say which one the control takes: `branch = \"A+\"` under `[kinematics]` in the profile; or turn the axes by their own words before", "скажите, какую берёт стойка: `branch = \"A+\"` в разделе `[kinematics]` профиля; или поверните до этого оси их собственными словами"),
             ),

@@ -189,6 +189,7 @@ pub(crate) fn execute(
         Action::MirrorOff => mirror_off(words, span, state)?,
         Action::ProgramFrame { part, adds } => program_frame(words, span, *part, *adds, state)?,
         Action::TiltedPlane => tilted::define(env, words, span, state)?,
+        Action::DynamicOffset => tilted::follow(env, words, span, state)?,
         Action::AlignTool => tilted::align(env, words, span, state)?,
         Action::Swivel => swivel::execute(env, words, span, state)?,
         _ => {}

@@ -6,6 +6,7 @@ use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
 use smallvec::{SmallVec, smallvec};
 use toolpath::{Frame, Kinematics, Motion, Mover, Plane};
 
+use crate::call;
 use crate::codes;
 use crate::curves::{self, CurvePart};
 use crate::delete;
@@ -336,6 +337,10 @@ fn run<'d>(
     if !words.m_codes.is_empty() {
         miscellaneous(env, words, state, moved)?;
     }
+    call::left_alone(env, words, state, moved)?;
+    if words.commands.iter().any(|(action, _)| **action == Action::Alarm) {
+        state.progress = Progress::Ended;
+    }
     naming::name(words, &demand, before, state, moved);
     tilted::check_motions(env, words, &demand, before, state, &moved.motions)
 }
@@ -419,22 +424,7 @@ fn miscellaneous(
         if row.loses_position.contains(&true) {
             let own = matches!(moved.motions.as_slice(), [] | [Motion::Uncorrected { .. }]);
             if !own {
-                let message = both!(
-                    "{} moves the axes itself, in a block that moves them too",
-                    "{} сама двигает оси, и кадр двигает их тоже",
-                    words.text(span)
-                );
-                return Err(words
-                    .refuse(
-                        codes::COMBINATION,
-                        message,
-                        span,
-                        both!(
-                            "before or after the motion? controls differ",
-                            "до движения или после? у стоек по-разному"
-                        ),
-                    )
-                    .help(both!("write it in a block of its own", "напишите её отдельным кадром")));
+                return Err(call::moves_itself(words, span));
             }
             moved.motions = leave(env, row, words.block.line, state);
         }

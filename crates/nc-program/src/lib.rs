@@ -37,6 +37,7 @@
 
 mod alike;
 mod arc;
+mod call;
 mod circular;
 pub mod codes;
 mod curves;

@@ -258,6 +258,8 @@ pub enum Why {
         /// It changes the tool.
         changes_tool: bool,
     },
+    /// A program or function of the control was called.
+    Call,
     /// A motion that block delete may skip.
     BlockDelete,
     /// A tool length that changes: some controls move its axis at once.

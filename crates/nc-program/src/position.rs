@@ -318,9 +318,10 @@ fn unknown(words: &Words<'_, '_, '_>, message: Text, span: Span, lost: &[(char, 
     let start = if lost.iter().all(rotary_from_start) {
         let places: Vec<String> = lost.iter().map(|(name, _)| format!("{name}=0")).collect();
         both!(
-            ", or say where it stands then, as in `--start-at {}`",
-            "; или скажите, где она тогда стоит, например `--start-at {}`",
-            places.join(",")
+            ", or say where it stands then, as in `--start-at {}`; for all programs `rotary_start = {{ {} }}` under `[program]` in the profile",
+            "; или скажите, где она тогда стоит, например `--start-at {}`; для всех программ — `rotary_start = {{ {} }}` в разделе `[program]` профиля",
+            places.join(","),
+            places.join(", ").replace('=', " = ")
         )
     } else {
         Text::EMPTY
@@ -384,6 +385,7 @@ impl Lost {
             Why::Miscellaneous { code, changes_tool: false } => {
                 both!("M{code} in line {line}", "после M{code} в строке {line}")
             }
+            Why::Call => both!("the call in line {line}", "после вызова в строке {line}"),
             Why::BlockDelete => {
                 both!(
                     "line {line}, which moves or not, depending on the block delete switch",

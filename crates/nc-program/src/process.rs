@@ -268,6 +268,8 @@ pub fn said(block: &Block<'_>, dialect: &Dialect, step: &Step) -> BlockSays {
     let row = |word: &Word| word.g_code().and_then(|code| dialect.code(code));
     // The words of a dwell that is no motion are all its own, F and S too.
     let dwell = block.words().any(|word| row(&word).is_some_and(|row| row.action == Action::Dwell));
+    // So are those of a call.
+    let call = block.words().any(|word| row(&word).is_some_and(|row| row.action == Action::Call));
     for item in &block.items {
         match item.kind {
             ItemKind::BracketCommand => {
@@ -278,7 +280,7 @@ pub fn said(block: &Block<'_>, dialect: &Dialect, step: &Step) -> BlockSays {
                 let word = Word { letter, value, span: item.span };
                 let Some(number) = word.number() else { continue };
                 match letter {
-                    b'F' if !dwell => {
+                    b'F' if !dwell && !call => {
                         let inverse = step.context.feed_mode == FeedMode::InverseTime;
                         let unit_mm = if inverse { 1.0 } else { step.context.unit_mm };
                         says.before.push(Said::Feed(number.to_f64() * unit_mm));
@@ -289,7 +291,7 @@ pub fn said(block: &Block<'_>, dialect: &Dialect, step: &Step) -> BlockSays {
                             preparatory(row, block, step, &mut says);
                         }
                     }
-                    _ if LETTERS.contains(&letter) && !(dwell && letter == b'S') => {
+                    _ if LETTERS.contains(&letter) && !call && !(dwell && letter == b'S') => {
                         let argument = Argument::new(letter, number.decimal);
                         says.before.push(Said::Setting(Setting(Kind::Word(argument))));
                     }

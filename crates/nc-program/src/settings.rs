@@ -225,6 +225,10 @@ pub(crate) fn apply<'d>(
                 .help(help.clone()));
         }
     }
+    // T, H and D are arguments of what is called.
+    if words.codes.iter().any(|row| row.entry.action == Action::Call) {
+        return Ok(demand);
+    }
     tool_length::tool(env, words, state)?;
     if let Some(offset) = wanted.offset {
         if let (code, Some(BY_H), span) = offset {
@@ -579,6 +583,7 @@ fn set<'d>(
         | Action::Preset
         | Action::PresetCancel
         | Action::TiltedPlane
+        | Action::DynamicOffset
         | Action::AlignTool
         | Action::RotationOn
         | Action::ScalingOn
@@ -602,6 +607,8 @@ fn set<'d>(
         | Action::PassWithP
         | Action::ContourTolerance
         | Action::PolarOff
+        | Action::DynamicOffsetOff
+        | Action::Alarm
         | Action::Refuse { .. } => {}
         // Switched behind the tool length.
         Action::Tip(_) => {}
@@ -611,7 +618,7 @@ fn set<'d>(
         Action::PolarOn | Action::Turning(_) | Action::Called(_) => {}
         // Read before, since X words of the same block are of the new kind.
         Action::DiameterOn | Action::DiameterOff | Action::DiameterOfAbsolute | Action::SpeedLimit => {}
-        Action::LimitOrPreset | Action::ReturnLevel | Action::Pass { takes_words: true } => {
+        Action::LimitOrPreset | Action::ReturnLevel | Action::Call | Action::Pass { takes_words: true } => {
             return Owner::Arguments;
         }
         Action::Dwell => return Owner::Dwell,

@@ -53,15 +53,20 @@ pub(crate) fn refuse(words: &Words<'_, '_, '_>, span: Span, message: Text, label
 /// What ends a plane in this dialect.
 fn ending(env: &Environment<'_>) -> &'static str {
     let swivels = env.dialect.commands.iter().any(|row| row.action == Some(Action::Swivel));
-    if swivels { "CYCLE800()" } else { "G69" }
+    let follows = env.dialect.codes.iter().any(|row| row.action == Action::DynamicOffset);
+    match (swivels, follows) {
+        (true, _) => "CYCLE800()",
+        (_, true) => "G255",
+        _ => "G69",
+    }
 }
 
 /// Whether a code ends the plane that is in force.
 fn ends(words: &Words<'_, '_, '_>) -> bool {
     let by_command =
         |(action, span): &(&Action, Span)| **action == Action::Swivel && swivel::is_reset(&words.text(*span));
-    words.codes.iter().any(|code| code.entry.action == Action::RotationOff)
-        || words.commands.iter().any(by_command)
+    let off = |action: &Action| matches!(action, Action::RotationOff | Action::DynamicOffsetOff);
+    words.codes.iter().any(|code| off(&code.entry.action)) || words.commands.iter().any(by_command)
 }
 
 /// Refuses what tilts the plane where the profile does not say what the control computes with.
@@ -92,48 +97,7 @@ pub(crate) fn define(
     state: &mut Modal,
 ) -> Outcome<()> {
     let code = words.text(span);
-    declared(env, words, span)?;
-    match state.kinematics {
-        Kinematics::Axes => {}
-        Kinematics::Tip => {
-            let message = both!(
-                "{code} under tool centre point control",
-                "{code} при управлении по вершине инструмента"
-            );
-            let label = both!(
-                "are X, Y and Z in the plane's coordinates then, or in the workpiece's?",
-                "в чьих координатах тогда X, Y и Z: плоскости или детали?"
-            );
-            return Err(refuse(words, span, message, label).help(both!(
-                "switch tool centre point control off before",
-                "отключите до этого управление по вершине инструмента"
-            )));
-        }
-        Kinematics::Plane(_) => {
-            let message = both!("{code} inside a tilted plane", "{code} в наклонной плоскости");
-            return Err(refuse(
-                words,
-                span,
-                message,
-                both!("in the coordinates of which plane?", "в координатах какой плоскости?"),
-            )
-            .help(both!("cancel the plane before with G69", "отмените до этого плоскость функцией G69")));
-        }
-    }
-    if state.tool_length.applied_mm() != [0.0; 3] {
-        let message =
-            both!("{code} with a tool length in force", "{code} при действующей коррекции на длину");
-        return Err(refuse(
-            words,
-            span,
-            message,
-            both!("along which axis is the length then?", "вдоль какой оси тогда длина?"),
-        )
-        .help(both!(
-            "write G49 before it, and G43 with its H behind G53.1, or in the plane",
-            "напишите перед ней G49, а G43 с H — после G53.1 или в плоскости"
-        )));
-    }
+    may_begin(env, words, span, state)?;
     absolute(words, span, state)?;
     // Some posts write `R0.` with each plane.
     if words.coordinate(b'R', false).is_some_and(|angle| angle != 0.0) {
@@ -183,6 +147,93 @@ pub(crate) fn define(
     // Where the words' zero is in the machine with all rotary axes at 0, as no transformation and no length is in force.
     let zero_mm = require_frame(env, words, state)?.to_machine(origin);
     state.plane_begun = None;
+    state.kinematics = Kinematics::Plane(TiltedPlane { turn, zero_mm });
+    lose(words, state);
+    Ok(())
+}
+
+/// A plane begins where neither another one nor a tool length is in force.
+fn may_begin(env: &Environment<'_>, words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<()> {
+    let code = words.text(span);
+    declared(env, words, span)?;
+    match state.kinematics {
+        Kinematics::Axes => {}
+        Kinematics::Tip => {
+            let message = both!(
+                "{code} under tool centre point control",
+                "{code} при управлении по вершине инструмента"
+            );
+            let label = both!(
+                "are X, Y and Z in the plane's coordinates then, or in the workpiece's?",
+                "в чьих координатах тогда X, Y и Z: плоскости или детали?"
+            );
+            return Err(refuse(words, span, message, label).help(both!(
+                "switch tool centre point control off before",
+                "отключите до этого управление по вершине инструмента"
+            )));
+        }
+        Kinematics::Plane(_) => {
+            let message = both!("{code} inside a tilted plane", "{code} в наклонной плоскости");
+            return Err(refuse(
+                words,
+                span,
+                message,
+                both!("in the coordinates of which plane?", "в координатах какой плоскости?"),
+            )
+            .help(both!("cancel the plane before with G69", "отмените до этого плоскость функцией G69")));
+        }
+    }
+    if state.tool_length.applied_mm() != [0.0; 3] {
+        let message =
+            both!("{code} with a tool length in force", "{code} при действующей коррекции на длину");
+        return Err(refuse(
+            words,
+            span,
+            message,
+            both!("along which axis is the length then?", "вдоль какой оси тогда длина?"),
+        )
+        .help(both!(
+            "write G49 before it, and G43 with its H behind G53.1, or in the plane",
+            "напишите перед ней G49, а G43 с H — после G53.1 или в плоскости"
+        )));
+    }
+    Ok(())
+}
+
+/// G254: the work offset's zero is where the table has turned it, X, Y, Z are along the machine's axes: a plane on
+/// which the tool stands upright where the table stands.
+pub(crate) fn follow(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    span: Span,
+    state: &mut Modal,
+) -> Outcome<()> {
+    may_begin(env, words, span, state)?;
+    if words.has(AXIS_LETTERS) {
+        let label = both!("before or behind the motion?", "до движения или после?");
+        return Err(stray(words, span, AXIS_LETTERS, label)
+            .help(both!("write the code alone in its block", "напишите функцию отдельным кадром")));
+    }
+    let chain = &env.setup.rotary_chain;
+    if !chain.0.iter().all(|link| link.carries_workpiece) {
+        let message = both!(
+            "{} on a machine that turns the tool",
+            "{} на станке, который поворачивает инструмент",
+            words.text(span)
+        );
+        let label = both!(
+            "what follows the head, the offset or the tool?",
+            "что следует за головкой: смещение нуля или инструмент?"
+        );
+        return Err(refuse(words, span, message, label)
+            .help(both!("write G234 in its place", "напишите вместо неё G234")));
+    }
+    require_rotary(words, &state.axes)?;
+    let stand_deg = state.axes.rotary.map(|axis| axis.known().unwrap_or(0.0));
+    let columns = [0, 1, 2]
+        .map(|axis| chain.in_workpiece([0, 1, 2].map(|i| f64::from(u8::from(i == axis))), stand_deg));
+    let turn = [0, 1, 2].map(|row| columns.map(|column| column[row]));
+    let zero_mm = require_frame(env, words, state)?.to_machine([0.0; 3]);
     state.kinematics = Kinematics::Plane(TiltedPlane { turn, zero_mm });
     lose(words, state);
     Ok(())
@@ -541,6 +592,30 @@ pub(crate) fn not_certain(
                 "скажите, какой берёт стойка: `turn = \"shortest\"` или `turn = \"principal\"` в разделе `[kinematics]` профиля"
             ),
         ),
+        NoAngles::HalfTurn(axis) => (
+            both!(
+                "{} is half a turn away, to either side",
+                "до нужного угла {} пол-оборота, в обе стороны",
+                name(axis)
+            ),
+            both!(
+                "turn {} some way by its own word before {before}",
+                "поверните {} хотя бы отчасти её собственным словом до {before}",
+                name(axis)
+            ),
+        ),
+        NoAngles::Travel(axis) => (
+            both!(
+                "by whole turns {} could have a higher or a lower angle than either",
+                "через целые обороты угол {} мог бы быть и больше, и меньше обоих",
+                name(axis)
+            ),
+            both!(
+                "give its travel: `travel_deg = [lowest, highest]` under `[rotary.{}]` in the profile",
+                "задайте её ход: `travel_deg = [наименьший, наибольший]` в разделе `[rotary.{}]` профиля",
+                name(axis)
+            ),
+        ),
         NoAngles::Unknown(axis) => (
             both!("where {} stands before is not known", "где до этого стоит {}, неизвестно", name(axis)),
             both!(
@@ -668,16 +743,19 @@ pub(crate) fn check_motions(
                     "на одних стойках плоскость поворачивается вместе с ней, на других нет"
                 ),
             )
-            .help(if ending(env) == "G69" {
-                both!(
+            .help(match ending(env) {
+                "G69" => both!(
                     "turn the axis before G68.2, or let G53.1 do it",
                     "поверните ось до G68.2 или предоставьте это G53.1"
-                )
-            } else {
-                both!(
+                ),
+                "G255" => both!(
+                    "end it with G255 before the turn, and write G254 again behind it",
+                    "отмените до поворота функцией G255, а после снова напишите G254"
+                ),
+                _ => both!(
                     "end the plane with CYCLE800() before it, or let CYCLE800 turn the axis",
                     "отмените перед этим плоскость: CYCLE800() — или предоставьте поворот CYCLE800"
-                )
+                ),
             }));
     }
     if motions.iter().all(|motion| matches!(motion, Motion::Uncorrected { .. })) {

@@ -30,7 +30,7 @@ fn arcs() {
     insta::assert_snapshot!(message("fanuc", "G0 X0 Y0 Z0\nG2 X10. I4.\n"), @r#"
     error[VP0205]: the ends of the arc lie at different distances from its centre
       2: `I4.` radius 4 at the start, 6 mm at the end, 0.02 allowed
-      help: correct the end or the centre; I and J are read as measured from the start (G91.1)
+      help: correct the end or the centre (I and J are read as measured from the start (G91.1)); where the control takes more, say so with `arc_tolerance_mm` under `[program]` in the profile
     "#);
 }
 
@@ -60,7 +60,7 @@ fn positions() {
     insta::assert_snapshot!(message_with(dialect("fanuc"), &with_c, "G0 X1. Y1. Z5.\n"), @r#"
     error[VP0213]: a motion of linear axes while a rotary axis is unknown
       1: `X1. Y1. Z5.` C not known since the start of the program
-      help: program a rapid `G90 G0 C…` before this block, or say where it stands then, as in `--start-at C=0`
+      help: program a rapid `G90 G0 C…` before this block, or say where it stands then, as in `--start-at C=0`; for all programs `rotary_start = { C = 0 }` under `[program]` in the profile
     "#);
     insta::assert_snapshot!(message_with(dialect("fanuc"), &with_c, "G0 A5.\n"), @r#"
     error[VP0219]: the machine has no axis A
@@ -120,9 +120,9 @@ fn blocks() {
       3: `X5.` X, Y were expected, in G90: controls differ in where they start otherwise
       help: write X, Y in this block, in G90
     "#);
-    insta::assert_snapshot!(message("fanuc", "M98 P1000\n"), @r#"
-    error[VP0208]: M98 is refused: calls a subprogram
-      1: `M98` not understood
+    insta::assert_snapshot!(message("fanuc", "M198 P1000\n"), @r#"
+    error[VP0208]: M198 is refused: calls a subprogram from another store
+      1: `M198` not understood
       help: let the CAM write the moves of the subprogram in its place
     "#);
     insta::assert_snapshot!(message("fanuc", "G1 X#1\n"), @r#"

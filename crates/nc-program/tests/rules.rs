@@ -51,6 +51,16 @@ fn inch_is_exactly_25_4() {
     assert_eq!(run.steps[0].context.unit_mm.to_bits(), 25.4f64.to_bits());
 }
 
+/// RS274/NGC counts what the radii of an arc may differ by apart in inches.
+#[test]
+fn arcs_in_inches_have_a_tolerance_of_their_own() {
+    let arc = |radius: f64| format!("G20 G90 G17 G54\nG0 X2. Y0. Z1.\nG3 X{} Y0. I-1. J0.\n", 1.0 - radius);
+    for (radius, refused) in [(1.00015, 0), (0.99985, 0), (1.0003, 205)] {
+        let run = run_with(dialect("mach"), &common::setup(), &arc(radius));
+        assert_eq!(run.refused.map_or(0, |(_, why)| why[0].code.0), refused, "{radius}");
+    }
+}
+
 #[test]
 fn not_every_x_is_a_coordinate() {
     let table = [
@@ -65,14 +75,12 @@ fn not_every_x_is_a_coordinate() {
         ("G10 L10 P1\n", 215),
         ("G10 L10 R5.\n", 215),
         ("G91 G10 L10 P1 R5.\n", 215),
-        ("G65 P9810 X10.\n", 208),
         ("G52 X5.\n", 0),
         ("G92 X5.\n", 0),
         ("G68 X0 Y0 R30.\n", 0),
         ("G51 X0 Y0 Z0 P2.\n", 0),
         ("G54.1 P12\n", 214),
         ("G43.4 H1\n", 230),
-        ("M98 P1000 L3\n", 208),
         ("G4 X2. Y3.\n", 223),
         ("G4 X2. P3.\n", 223),
         ("G1 X10. G4 X2.\n", 210),
@@ -93,6 +101,21 @@ fn not_every_x_is_a_coordinate() {
             assert_eq!(refusal("fanuc", &text), (code, 3), "{block}");
         }
     }
+}
+
+/// What the control calls may have moved every axis; its T, H and Z are arguments.
+#[test]
+fn a_call_of_the_control_leaves_no_axis_and_no_motion_code_known() {
+    for call in ["G65 P9810 Z10. T1 H2", "M98 P9100 L3"] {
+        let text = after(&format!("G1 X5. F100.\n{call}\n"));
+        let called = run("fanuc", &text);
+        uncorrected(&called.steps[2].motions[0]);
+        assert_eq!((end("fanuc", &text), called.modal.motion), ([None; 3], MotionMode::None), "{call}");
+        assert_eq!(called.modal.tool_selected, None, "{call}");
+        assert_eq!(refusal("fanuc", &format!("{text}G1 X9.\n")), (213, 4), "{call}");
+        assert_eq!(end("fanuc", &format!("{text}G0 X1. Y2. Z3.\nG1 X9.\n")), at(9.0, 2.0, 3.0), "{call}");
+    }
+    assert_eq!(refusal("fanuc", &after("G1 X5. F100. M98 P9100\n")).0, 226);
 }
 
 #[test]

@@ -77,6 +77,16 @@ fn the_direction_asks_for_an_angle_of_the_reference_axis() {
 }
 
 #[test]
+fn what_is_missing_is_named() {
+    let mut wide = setup();
+    wide.rotary_chain.0[1].travel_deg = [f64::NEG_INFINITY, f64::INFINITY];
+    let program = "G17 G71 G90 G54\nG0 A=0 C=0\nCYCLE800(0,\"\",0,57,0,0,0,20,0,0,0,0,0,-1)\n";
+    let (_, why) = run_with(dialect("sinumerik"), &wide, program).refused.expect("refused");
+    let said = format!("{:?}", why[0]);
+    assert!(why[0].code.0 == 232 && said.contains("travel_deg") && !said.contains("turn = "), "{said}");
+}
+
+#[test]
 fn one_on_top_of_another_counts_in_the_first() {
     let first = "CYCLE800(0,\"\",0,57,0,0,20,-15,0,0,0,0,0,-1)\n";
     let (both, _) = plane(&format!("{first}CYCLE800(0,\"\",1,57,0,10,0,-10,0,0,0,0,0,-1)"));

@@ -202,6 +202,10 @@ pub enum Action {
     TipLengthOnVectors,
     /// G68.2: a tilted working plane by its words; X, Y and Z are its coordinates from here on, until G69.
     TiltedPlane,
+    /// G254: the work offset goes with the table to where that is turned; X, Y, Z stay along the machine's axes.
+    DynamicOffset,
+    /// G255
+    DynamicOffsetOff,
     /// G53.1, G53.6: the rotary axes turn until the tool stands upright on the tilted plane.
     AlignTool,
     /// TRAORI, M428 and TRAFOOF, M429: the control moves the tip, or the axes again.
@@ -305,6 +309,10 @@ pub enum Action {
     Thread,
     /// G90, G71 and their like on lathes. Written out before anything else, or refused.
     Turning(TurningCycle),
+    /// `#3000=1`: the program ends with an alarm.
+    Alarm,
+    /// G65 P9810: a program that the control holds; the other words are its arguments.
+    Call,
     /// Known, and refused.
     Refuse {
         /// Why.
@@ -721,8 +729,28 @@ pub struct MCode {
     pub switches: Option<Text>,
     /// Switches tool centre point control: what a profile says of the machine's own codes.
     pub tip: Option<TipSwitch>,
+    /// M98: calls a program that the control holds.
+    pub calls: bool,
     /// Refused, with the way out (M98, M99).
     pub refuse: Option<(Text, Text)>,
+}
+
+/// A program or function of the control that is left alone, and what stands anywhere behind it; what a profile says.
+///
+/// ```
+/// // A dialect knows none: they are the machine's.
+/// assert!(nc_dialect::builtin("fanuc").unwrap().calls.is_empty());
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ControlCall {
+    /// `G` or `M`.
+    pub letter: u8,
+    /// Tenths of the code: 650 of G65.
+    pub tenths: u16,
+    /// P, where the code calls programs by it.
+    pub program: Option<u32>,
+    /// X, Y, Z, A, B, C that may stand anywhere afterwards; none: it does no more than pass.
+    pub unknown: [bool; 6],
 }
 
 impl MCode {
@@ -738,6 +766,7 @@ impl MCode {
             changes_tool: false,
             switches: None,
             tip: None,
+            calls: false,
             refuse: None,
         }
     }
@@ -772,7 +801,8 @@ pub struct LatheSign {
     pub mill: Text,
 }
 
-/// A command by name: a word of letters (Sinumerik `SCALE`) or the first word in brackets (Balt-System `(UAO,1)`).
+/// A command by name: a word of letters (Sinumerik `SCALE`), the first word in brackets (Balt-System `(UAO,1)`), or a
+/// variable of the control that acts when it is set (Fanuc `#3006=1`).
 ///
 /// A command that is not in the table is refused: it may move the frame.
 ///
@@ -834,6 +864,8 @@ pub struct Output {
     pub radius_word: bool,
     /// Largest difference between an arc's radius at its start and at its end that the control takes, mm.
     pub arc_radius_tolerance_mm: f64,
+    /// The same under inches, inch, where the control counts them apart.
+    pub arc_radius_tolerance_inch: Option<f64>,
     /// The same as a share of the radius, where the control takes that too and it is more; 0 for none.
     pub arc_radius_tolerance_share: f64,
     /// What F of G94 counts where rotary axes turn; `None` where the control's manual leaves it open.
@@ -916,6 +948,9 @@ pub struct Flow {
     pub one_value_atan: bool,
     /// Drilling cycles return where M53 and M54 say (Okuma), and are written out.
     pub return_by_m: bool,
+    /// First and last number of the programs that builders and makers of probes keep in the control: called where no
+    /// file has them, they are left alone.
+    pub control_programs: Option<(u32, u32)>,
     /// Some code is [`Action::PolarOn`].
     pub polar_words: bool,
     /// Some command is an [`Action::Called`], and `X=AC(5)`, `X=IC(5)` say a place or an increment.
@@ -1127,6 +1162,8 @@ pub struct Dialect {
     pub writes_lengths: bool,
     /// D1 is the offset of the tool that M6 brought in, D0 none (Sinumerik).
     pub edge_in_d: bool,
+    /// Calls that are left alone, as the machine's profile has them.
+    pub calls: Vec<ControlCall>,
     /// Codes that move the frame.
     pub frames: FrameRules,
     /// Output.
@@ -1173,14 +1210,23 @@ impl Dialect {
     /// The table's row for a command: `text` is a [`crate::ItemKind::BracketCommand`]'s bytes, brackets included.
     #[must_use]
     pub fn command(&self, text: &[u8]) -> Option<&Command> {
-        let start = text.iter().position(u8::is_ascii_alphabetic)?;
-        let length =
-            text[start..].iter().take_while(|byte| byte.is_ascii_alphanumeric() || **byte == b'_').count();
+        let start = text.iter().position(|byte| byte.is_ascii_alphabetic() || *byte == b'#')?;
+        let inside = |byte: &&u8| byte.is_ascii_alphanumeric() || **byte == b'_';
+        let length = 1 + text[start + 1..].iter().take_while(inside).count();
         let name = text[start..start + length].to_ascii_uppercase();
         self.commands
             .binary_search_by(|entry| entry.name.as_bytes().cmp(&name))
             .ok()
             .map(|at| &self.commands[at])
+    }
+}
+
+impl Output {
+    /// Largest difference of an arc's radii, mm, where one unit of the program is so long.
+    #[must_use]
+    pub fn arc_tolerance_mm(&self, unit_mm: f64) -> f64 {
+        let inches = self.arc_radius_tolerance_inch.filter(|_| unit_mm != 1.0);
+        inches.map_or(self.arc_radius_tolerance_mm, |inches| inches * unit_mm)
     }
 }
 

@@ -252,7 +252,11 @@ impl<'d> Lexer<'d> {
             && length > 1
             && name[1..].iter().all(u8::is_ascii_digit)
             && line.get(at + length) != Some(&b'=');
-        if is_siemens_word(name) || call {
+        // `CALL BLOCK A TO B` runs a part of the program; other calls are commands.
+        let behind = skip_spaces(line, at + length);
+        let section = name.eq_ignore_ascii_case(b"CALL")
+            && line[behind..behind + identifier(&line[behind..])].eq_ignore_ascii_case(b"BLOCK");
+        if is_siemens_word(name) || call || section {
             return Some(self.flow(line, at, at + length));
         }
         let number = name.first().is_some_and(|first| first.eq_ignore_ascii_case(&b'R'))
@@ -299,7 +303,7 @@ impl<'d> Lexer<'d> {
         let run = letters(&line[at..]);
         let name = &line[at..at + run];
         if is_flow_word(name) || (self.fanuc && is_short_flow_word(name)) {
-            return Some(self.flow(line, at, at + run));
+            return Some(self.macro_statement(line, at, at + run));
         }
         if line.get(at + run) == Some(&b'=')
             && let Some((_, letter)) =
@@ -411,7 +415,7 @@ impl<'d> Lexer<'d> {
             b'_' | b'$' if self.siemens => self
                 .statement(line, at)
                 .unwrap_or_else(|| (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at))),
-            b'#' => self.flow(line, at, at + 1),
+            b'#' => self.macro_statement(line, at, at + 1),
             b',' => self.comma_word(line, at),
             b'<' => match angle_name(&line[at..]) {
                 Ok((_, name)) => (ItemKind::Name, at + name.len()),
@@ -520,6 +524,16 @@ impl<'d> Lexer<'d> {
             };
         }
         (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at))
+    }
+
+    /// A statement, or a command where the dialect's table has it by its first word: `#3006=1`, `DPRNT[X#1[3]]`.
+    fn macro_statement(&self, line: &[u8], at: usize, least: usize) -> (ItemKind, usize) {
+        match self.flow(line, at, least) {
+            (ItemKind::Flow, end) if self.commands.iter().any(|command| names(command, &line[at..])) => {
+                (ItemKind::BracketCommand, end)
+            }
+            found => found,
+        }
     }
 
     /// A statement to the next comment; brackets must close within it.

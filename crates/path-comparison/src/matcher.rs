@@ -408,7 +408,8 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     fn record(&mut self, item: Item) {
         let Item::Feed(feed) = item else { return };
         let (minutes, way_mm) = feed.timed();
-        let Feeding { line, way, off_mm: before_mm, made_off_mm: after_mm, made: made_mm, limit_mm, .. } = *feed;
+        let Feeding { line, way, off_mm: before_mm, made_off_mm: after_mm, made: made_mm, limit_mm, .. } =
+            *feed;
         let after_line = feed.made_line;
         self.result.leans_before.note(feed.leans_rad, line);
         self.result.leans_after.note(feed.made_leans_rad, line);

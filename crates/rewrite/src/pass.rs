@@ -476,7 +476,7 @@ pub(crate) fn info(
         datum_mm,
         offset: context.offset,
         centre_words: output.centre_words,
-        arc_radius_tolerance_mm: output.arc_radius_tolerance_mm,
+        arc_radius_tolerance_mm: output.arc_tolerance_mm(context.unit_mm),
         retreats: retreats(job.dialect),
         reserved_mm: 0.0,
     }

@@ -180,6 +180,10 @@ pub enum NoAngles {
     Free(usize),
     /// Whole turns of this axis are not said.
     Turns(usize),
+    /// The nearest place of this axis is half a turn away, to either side.
+    HalfTurn(usize),
+    /// Whole turns away this axis has a higher angle, or a lower one, which nothing within its travel excludes.
+    Travel(usize),
     /// Where this axis stands nobody knows, and the rule asks for it.
     Unknown(usize),
     /// The tool stands along this axis, which would have to turn before the other tilts the tool: by so many degrees.
@@ -278,7 +282,7 @@ impl RotaryLink {
                 let nearest = principal + 360.0 * turns.round();
                 if (turns - turns.floor() - 0.5).abs() < SLACK_DEG {
                     // Half a turn this way or that.
-                    return Err(NoAngles::Turns(self.axis));
+                    return Err(NoAngles::HalfTurn(self.axis));
                 }
                 // Beyond travel the next one inwards.
                 let beyond = if nearest < low - SLACK_DEG { 360.0 } else { -360.0 };
@@ -296,10 +300,14 @@ impl RotaryChain {
     /// The tool's direction in the workpiece on an ideal machine, a unit vector from the tip up: Z with all axes at 0.
     #[must_use]
     pub fn tool_direction(&self, rotary_deg: [f64; 3]) -> [f64; 3] {
-        self.0
-            .iter()
-            .rev()
-            .fold(UP, |tool, link| turned(tool, link.direction, link.sense() * rotary_deg[link.axis]))
+        self.in_workpiece(UP, rotary_deg)
+    }
+
+    /// A direction of the tool, or of the machine where no axis turns the tool, in the workpiece on an ideal machine.
+    #[must_use]
+    pub fn in_workpiece(&self, direction: [f64; 3], rotary_deg: [f64; 3]) -> [f64; 3] {
+        let links = self.0.iter().rev();
+        links.fold(direction, |v, link| turned(v, link.direction, link.sense() * rotary_deg[link.axis]))
     }
 
     /// A, B, C, degrees, that bring the tool from where the axes stand to a direction in the workpiece: of both ways and of all
@@ -329,7 +337,7 @@ impl RotaryChain {
                 Ok(angles) => found.push(angles),
                 Err(NoAngles::OutOfReach) => {}
                 // Half a turn away to either side, as the other way is wherever the tool tilts alone.
-                Err(why @ NoAngles::Turns(_)) => tied = Some(why),
+                Err(why @ NoAngles::HalfTurn(_)) => tied = Some(why),
                 Err(why) => return Err(why),
             }
         }
@@ -509,7 +517,7 @@ impl RotaryChain {
                 };
                 let link = if first.axis == reference { first } else { second };
                 if [one_deg, other_deg].into_iter().any(|deg| link.has_other_turns(deg)) {
-                    return Err(NoAngles::Turns(reference));
+                    return Err(NoAngles::Travel(reference));
                 }
                 if (one_deg - other_deg).abs() < NEARER_DEG {
                     return Err(NoAngles::TwoWays);
@@ -640,7 +648,7 @@ mod tests {
         let (taken, tied) = if one.is_ok() { (one, other) } else { (other, one) };
         let taken = taken.expect("certain");
         assert!(taken[2].abs() < 1e-9 && (taken[0].abs() - 30.0).abs() < 1e-9, "{taken:?}");
-        assert!(matches!(tied, Err(NoAngles::Turns(2))), "{tied:?}");
+        assert!(matches!(tied, Err(NoAngles::HalfTurn(2))), "{tied:?}");
     }
 
     #[test]
@@ -664,7 +672,7 @@ mod tests {
                 true,
                 TiltRule { reference: Some(2), ..rule }
             ),
-            Err(NoAngles::Turns(2))
+            Err(NoAngles::Travel(2))
         );
         // Where only one way is within travel it is taken, whichever was asked for.
         let mut short = chain;

@@ -51,6 +51,23 @@ impl Profile {
                 codes.join(", ")
             )?;
         }
+        let stands = |(axis, deg): (char, Option<f64>)| deg.map(|deg| format!("{axis}{deg}"));
+        let start: Vec<String> = "ABC".chars().zip(rules.rotary_start_deg).filter_map(stands).collect();
+        if !start.is_empty() {
+            tell!(out, language, "start        {}", "начало       {}", start.join(" "))?;
+        }
+        for call in &rules.calls {
+            let axes: String =
+                "XYZABC".chars().zip(call.unknown).filter(|(_, is)| *is).map(|(axis, _)| axis).collect();
+            let program = call.program.map_or_else(String::new, |program| format!(" P{program}"));
+            let code = format!("{}{}{program}", call.letter, call.tenths / 10);
+            let left = if axes.is_empty() {
+                both!("moves nothing", "ничего не двигает")
+            } else {
+                both!("may move {axes}", "может двигать {axes}")
+            };
+            tell!(out, language, "left alone   {code} {left}", "без правки   {code} {left:#}")?;
+        }
         Ok(())
     }
 

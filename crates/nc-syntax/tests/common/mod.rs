@@ -45,6 +45,7 @@ pub(crate) fn dialect() -> Dialect {
         cycle_levels: CycleLevels::Unstated,
         flow: nc_syntax::dialect::Flow::default(),
         length_of_loaded_tool: false,
+        calls: Vec::new(),
         frames: FrameRules {
             p_selects_numbered: false,
             l20: OffsetL20::Numbered,
@@ -63,6 +64,7 @@ pub(crate) fn dialect() -> Dialect {
             centre_words: true,
             radius_word: true,
             arc_radius_tolerance_mm: 0.01,
+            arc_radius_tolerance_inch: None,
             arc_radius_tolerance_share: 0.0,
             rotary_feed: None,
             peck_clearance_mm: 1.0,

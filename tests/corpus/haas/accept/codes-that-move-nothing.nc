@@ -2,6 +2,7 @@
 O01104 (relays, conveyor, coolant, air and messages)
 G17 G21 G40 G49 G54 G80 G90
 G0 X10. Y10. Z60. M31
+M12
 M21
 M22
 M23
