@@ -45,9 +45,9 @@ fn a_feed_outside_the_volume() {
      --> /part.nc:3:4
       |
     3 | G1 X300. F100.
-      |    ^^^^^ axis X would be commanded to 440.000 mm, calibrated is 0 to 400 mm
+      |    ^^^^^ axis X would be commanded to 440.133 mm, calibrated is 0 to 400 mm
       |
-    help: place the workpiece inside the volume: `--work-offset` with X moved by -40.000 mm or further, or accept the nearest point's correction with `--outside clamp`
+    help: place the workpiece inside the volume: `--work-offset` with X moved by -40.133 mm or further, or accept the nearest point's correction with `--outside clamp`
     ");
 }
 
@@ -286,7 +286,7 @@ fn options_that_cannot_be() {
     insta::assert_snapshot!(trial.refused_path(&good, &["--dialect", "fanux"]), @"
     exit status 2
     error[VP0002]: there is no dialect `fanux`
-    help: one of: balt-system, centroid, fanuc, fanuc-lathe, haas, linuxcnc, linuxcnc-lathe, mach, mitsubishi, okuma, perspektiva, sinumerik, sinumerik-turn; or the path of a grammar file ending in .toml
+    help: did you mean fanuc? one of: balt-system, centroid, fanuc, fanuc-lathe, haas, linuxcnc, linuxcnc-lathe, mach, mitsubishi, okuma, perspektiva, sinumerik, sinumerik-turn; or the path of a grammar file ending in .toml
     ");
     insta::assert_snapshot!(trial.refused_path(&good, &["--work-offset", "G54=1,2"]), @"
     exit status 2

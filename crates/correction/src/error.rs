@@ -91,12 +91,11 @@ pub enum CorrectionError {
 }
 
 impl CorrectionError {
-    /// How far the path would be off, mm, where that is all that is wrong.
+    /// How far the path would be off, mm, where that is all that is wrong. What lost motion moves sideways is not: behind it the
+    /// axes stand elsewhere than is reckoned with, and what comes then is off by more.
     pub(crate) fn off_mm(&self) -> Option<f64> {
         match self {
             Self::MustNotSplit { distance_um }
-            | Self::TurnedFrame { distance_um, .. }
-            | Self::Sideways { distance_um, .. }
             | Self::Unnamed { distance_um, .. }
             | Self::NotWithinTolerance { distance_um, .. } => Some(1e-3 * distance_um),
             _ => None,
