@@ -610,7 +610,7 @@ pub fn check_control(path: &Path, profile: &Profile) -> Result<(), Failure> {
     let label = both!("names no control", "не называет стойку");
     let bytes = std::fs::read(path).map_err(|error| Failure::unread(&lines::name(path), &error))?;
     Err(Failure::Usage(vec![Report {
-        source: Some(Source::whole(&lines::name(path), bytes.as_slice())),
+        source: Some(Source::whole(lines::name(path), bytes.as_slice())),
         diagnostics: vec![no_dialect(Code(303), name).at(at.clone(), label)],
     }]))
 }

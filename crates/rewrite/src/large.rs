@@ -164,7 +164,7 @@ impl<R: Read + Seek + Send, O: Fn() -> R + Sync> Source<'_, O> {
         };
         let Written { bytes, hash, changed } = sink.finish(again).map_err(LargeEnd::Unwritten)?;
         tally.evidence.refusal(&questions).map_err(|finding| self.refused_as_a_whole(*finding))?;
-        let mut warnings = tally.warnings(&self.job);
+        let mut warnings = tally.warnings(self.job);
         warnings.extend(tally.evidence.doubts(&questions));
         let mut figures = tally.figures;
         figures.warnings = warnings.iter().map(|(warning, _)| warning.clone()).collect();
