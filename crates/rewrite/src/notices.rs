@@ -7,7 +7,7 @@ use diagnostic::{Code, Diagnostic, Severity, Speaks, Text, both};
 use machine_model::SolveError;
 use nc_program::Context;
 use nc_syntax::Block;
-use toolpath::{AXIS_NAMES, Motion};
+use toolpath::{AXIS_NAMES, Feed, Motion, Shape};
 
 use crate::job::{
     ACCEPTED, COMPENSATED, DIRECTION, DIRECTION_HELD, DIRECTION_IN_PLANE, Held, LEANING_CYCLE, LEANS,
@@ -363,4 +363,16 @@ pub(crate) fn refusal(
             .help(both!("the engine's model jumps here (interval methods do at their nodes) or the profile's minimum_segment_mm is too long: use `--engine rigid-body` or `tracker`, or raise `--tolerance`", "модель метода здесь скачет (интервальные — в узлах) или minimum_segment_mm профиля слишком велик: возьмите `--engine rigid-body` или `tracker` или увеличьте `--tolerance`")),
     };
     vec![diagnostic]
+}
+
+/// An arc whose radii differ by less is as round as words of two decimals make it, mm.
+pub(crate) const SPIRAL_MM: f64 = 0.01;
+
+/// By how much the radii of an arc differ between its start and its end, mm.
+pub(crate) fn radii_apart_mm(motion: &Motion) -> Option<f64> {
+    let Motion::Feed(Feed { start, end, shape: Shape::Arc(arc), .. }) = motion else { return None };
+    let [u, v, _] = arc.plane.axes();
+    let radius_mm =
+        |place: &[f64; 3]| units::math::hypot(place[u] - arc.centre_mm[0], place[v] - arc.centre_mm[1]);
+    Some((radius_mm(&start.linear_mm) - radius_mm(&end.linear_mm)).abs())
 }

@@ -5,14 +5,14 @@ use diagnostic::{Diagnostic, both};
 use nc_program::{Context, CurvePart, Questions};
 use nc_syntax::{Block, Letters, Reader};
 use smallvec::SmallVec;
-use toolpath::{Feed, FeedRate, Hole, Motion, Shape};
+use toolpath::{Feed, FeedRate, Hole, Motion};
 
 use crate::cutter;
 use crate::datum::{LastDatum, going_on};
 use crate::feed;
 use crate::job::Job;
 use crate::nose::{nose_mm, reserved_mm};
-use crate::notices::{hole_skipped, refusal};
+use crate::notices::{SPIRAL_MM, hole_skipped, radii_apart_mm, refusal};
 use crate::state::State;
 use crate::tally::{Tally, raise};
 use crate::words::{Editing, MotionCodes, Original, direction_goals, letters, retreats, stated};
@@ -413,18 +413,6 @@ impl Pass<'_> {
             }
         }
     }
-}
-
-/// An arc whose radii differ by less is as round as words of two decimals make it, mm.
-const SPIRAL_MM: f64 = 0.01;
-
-/// By how much the radii of an arc differ between its start and its end, mm.
-fn radii_apart_mm(motion: &Motion) -> Option<f64> {
-    let Motion::Feed(Feed { start, end, shape: Shape::Arc(arc), .. }) = motion else { return None };
-    let [u, v, _] = arc.plane.axes();
-    let radius_mm =
-        |place: &[f64; 3]| units::math::hypot(place[u] - arc.centre_mm[0], place[v] - arc.centre_mm[1]);
-    Some((radius_mm(&start.linear_mm) - radius_mm(&end.linear_mm)).abs())
 }
 
 /// Decimals of X, Y, Z in the units in force.
