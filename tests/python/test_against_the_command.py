@@ -96,7 +96,7 @@ def test_check_is_the_command():
     path = "samples/plate_linuxcnc.nc"
     posted = Path(path).read_bytes()
     corrected = vpost.correct(posted, STAN, dialect="linuxcnc").text
-    for text, passed in ((corrected, True), (corrected.replace(b"X118.901", b"X118.801"), False)):
+    for text, passed in ((corrected, True), (corrected.replace(b"X119.034", b"X118.934"), False)):
         checked = vpost.check(posted, text, STAN, dialect="linuxcnc", names=(path, "standard input"))
         command = run("check", path, "-", "-m", STAN, "-d", "linuxcnc", stdin=text)
         assert checked.passed is passed and bool(checked.findings) is not passed

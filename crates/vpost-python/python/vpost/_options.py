@@ -37,6 +37,8 @@ def options(
     dialect: Optional[Path] = None,
     engine: Optional[str] = None,
     tolerance_um: Optional[float] = None,
+    accept_um: Optional[float] = None,
+    zero: Optional[str] = None,
     work_offset: Optional[Offsets] = None,
     tool: Optional[Lengths] = None,
     start_at: Optional[Sequence[float]] = None,
@@ -56,8 +58,12 @@ def options(
         words.append(f"--engine={engine}")
     if tolerance_um is not None:
         words.append(f"--tolerance={number(tolerance_um, 'tolerance_um')}")
-    for name, zero in (work_offset or {}).items():
-        words.append(f"--work-offset={name}={three(zero, name)}")
+    if accept_um is not None:
+        words.append(f"--accept={number(accept_um, 'accept_um')}")
+    if zero is not None:
+        words.append(f"--zero={zero}")
+    for name, place in (work_offset or {}).items():
+        words.append(f"--work-offset={name}={three(place, name)}")
     for name, length in (tool or {}).items():
         text = number(length, name) if isinstance(length, (int, float)) else three(length, name)
         words.append(f"--tool={name}={text}")

@@ -72,6 +72,10 @@ class Checked:
     text: str
     #: What the command warns of.
     warnings: Tuple[Message, ...]
+    #: Lines that cannot be held within the tolerance, and were held against what is proven of them.
+    accepted_lines: int = 0
+    #: Touched zeros from which deviations count.
+    datums: Tuple[Dict[str, Any], ...] = ()
 
 
 @overload
@@ -135,4 +139,5 @@ def check(
     figures = json.loads(result)
     del figures["schema"]
     figures["findings"] = tuple(figures["findings"])
+    figures["datums"] = tuple(figures.get("datums", ()))
     return Checked(text=text, warnings=messages(told), **figures)
