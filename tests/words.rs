@@ -1,6 +1,6 @@
 //! Words that nobody wrote: none in a rapid, none for an axis that the program has not named in the frame in force.
 
-use crate::common::{messages, run};
+use crate::common::{messages, root, run};
 
 const PROFILE: &str = "tests/profiles/corpus.toml";
 const HEAD: &str = "G21 G90 G17 G54\n";
@@ -83,7 +83,7 @@ fn play_hides_no_start_that_is_off() {
     }
 }
 
-/// Where nothing is corrected no program need say where it begins: it comes out byte for byte.
+/// Where nothing is corrected no program need say where it begins: it comes out byte for byte. Play is something.
 #[test]
 fn a_perfect_machine_asks_nobody_where_it_stands() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -96,6 +96,16 @@ fn a_perfect_machine_asks_nobody_where_it_stands() {
     let ran = with("machine-profiles/perfect.toml");
     assert_eq!(String::from_utf8_lossy(&ran.stdout), text, "{}", messages(&ran));
     assert!(messages(&with(PROFILE)).contains("VP0213"));
+    let perfect = std::fs::read_to_string(root().join("machine-profiles/perfect.toml")).expect("readable");
+    for axis in ["X", "Y", "Z"] {
+        let table = format!("[axis.{axis}]\n");
+        assert!(perfect.contains(&table), "{table}");
+        let machine = folder.path().join("play.toml");
+        let play = perfect.replace(&table, &format!("{table}backlash_um = 6.0\n"));
+        std::fs::write(&machine, play).expect("writable");
+        let ran = with(machine.to_str().expect("a plain path"));
+        assert!(messages(&ran).contains("error[VP0213]"), "{axis}: {}", messages(&ran));
+    }
 }
 
 #[test]

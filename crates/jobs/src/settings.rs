@@ -696,7 +696,8 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
 
 /// Where nothing is corrected no program need say where its axes begin: one place is as good as another.
 fn start_anywhere(profile: &Profile, engine: &dyn Engine, setup: &mut Setup) {
-    if let (false, false, Some(model)) = (profile.has_errors(), setup.tip_at_start, engine.path_model()) {
+    let asks = profile.has_errors() || setup.rotary_matters || setup.tip_at_start;
+    if let (false, Some(model)) = (asks, engine.path_model()) {
         let middle_mm = model.volume().0.map(|range| 0.5 * (range.low + range.high));
         setup.start_mm = [0, 1, 2].map(|axis| setup.start_mm[axis].or(Some(middle_mm[axis])));
     }

@@ -15,7 +15,7 @@ impl Profile {
             return self.doubts_of_field();
         }
         let mut doubts = self.odd_sizes();
-        if engine != EngineId::Tracker && !self.holds_errors() {
+        if engine != EngineId::Tracker && !self.has_errors() {
             let message = both!(
                 "the profile holds no errors: nothing is corrected by it",
                 "в профиле нет погрешностей: по нему ничего не исправляется"
@@ -59,8 +59,9 @@ impl Profile {
         self.tables().flat_map(of_table).collect()
     }
 
-    /// True where the model that is not a tracker's or a field's errs at all.
-    fn holds_errors(&self) -> bool {
+    /// True where the rigid-body model errs anywhere: nothing is corrected by a profile that has none, tables of zeros or not.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
         let table =
             |(_, _, tables): (_, _, &AxisTables)| tables.nodes().iter().any(|q| tables.at(*q) != [0.0; 6]);
         let rotary = |axis: Axis| {

@@ -318,15 +318,6 @@ impl Profile {
         has
     }
 
-    /// True where the machine has errors of any kind.
-    #[must_use]
-    pub fn has_errors(&self) -> bool {
-        self.description.squareness != machine_model::Squareness::default()
-            || self.rows.iter().any(Option::is_some)
-            || !self.effects.is_empty()
-            || self.rotary_matters()
-    }
-
     /// True where what the linear axes must be told depends on where the rotary axes stand: a rotary axis
     /// with errors, or one that turns the tool while linear axes have errors (the tool is their lever).
     #[must_use]
