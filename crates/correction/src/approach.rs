@@ -182,11 +182,7 @@ impl<'m> Corrector<'m> {
         }
         if block.named != [true; 3] {
             // What keeps the tool away may be an axis that must not have a word.
-            let exact = block.program(&self.solve(&machine.state, start)?);
-            let stands = self.standing_program(block);
-            let off_mm = |i: usize| stands[i].map_or(0.0, |stands| (stands - exact[i]).abs());
-            let unnamed = (0..3).filter(|i| !block.named[*i]).map(|i| (i, off_mm(i)));
-            return match unnamed.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            return match self.furthest_without_word(block, &machine.state, start, block.named) {
                 Some((axis, mm)) if mm > limit_mm => {
                     Err(CorrectionError::Unnamed { axis, distance_um: mm * 1e3 })
                 }

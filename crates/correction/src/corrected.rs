@@ -39,8 +39,8 @@ pub struct Correction {
     pub leaning_mm: Option<f64>,
     /// Nobody knows on which side of its play an axis stands: the tool is off by up to this much besides, mm.
     pub unknown_side_mm: f64,
-    /// The tolerance cannot be held: what is proven instead, mm.
-    pub accepted_mm: Option<f64>,
+    /// The tolerance cannot be held: [`Correction::after_mm`] is what is proven instead.
+    pub accepted: bool,
     /// Rotary axes turned on the way.
     pub turned: Option<Turned>,
     /// Where the tool points, on a machine that turns it.

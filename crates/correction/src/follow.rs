@@ -1,6 +1,6 @@
 //! What following a motion needs besides the corrector.
 
-use machine_model::{Singularity, Vector};
+use machine_model::{Command, Singularity, Vector};
 use toolpath::{Division, Feed};
 
 use crate::corrected::Corrected;
@@ -152,16 +152,27 @@ impl Corrector<'_> {
         if block.named == [true; 3] {
             return None;
         }
-        let standing = self.standing_program(block);
         let ends = [(0.0, block.named), (1.0, block.may_have_words())];
         let off = ends.into_iter().filter_map(|(s, may)| {
             let mut state = follow.machine.state;
             state.rotary_rad = part.rotary_rad(s).unwrap_or(state.rotary_rad);
-            let wanted = block.program(&self.solve(&state, part.at(s)).ok()?);
-            let off = |i: usize| (wanted[i] - standing[i].unwrap_or(wanted[i])).abs();
-            (0..3).filter(|i| !may[*i]).map(|i| (i, off(i))).max_by(|a, b| a.1.total_cmp(&b.1))
+            self.furthest_without_word(block, &state, part.at(s), may)
         });
         off.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Of the axes that must not have a word the one that stands furthest from where a place asks for it, mm.
+    pub(crate) fn furthest_without_word(
+        &self,
+        block: &Block,
+        state: &Command,
+        place: Vector,
+        may: [bool; 3],
+    ) -> Option<(usize, f64)> {
+        let standing = self.standing_program(block);
+        let wanted = block.program(&self.solve(state, place).ok()?);
+        let off = |i: usize| (wanted[i] - standing[i].unwrap_or(wanted[i])).abs();
+        (0..3).filter(|i| !may[*i]).map(|i| (i, off(i))).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// An axis that the block names first: where on its way it is at a place in between, no block has said.

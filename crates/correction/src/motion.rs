@@ -46,7 +46,7 @@ impl Corrector<'_> {
             let corrected = self.correct_within(motion, block);
             self.options.tolerance_mm = tolerance_mm;
             let mut corrected = corrected.ok()?;
-            corrected.correction.accepted_mm = Some(corrected.correction.after_mm);
+            corrected.correction.accepted = true;
             Some(corrected)
         })
     }

@@ -66,6 +66,11 @@ impl Notice {
         }
     }
 
+    /// The same, told where it was largest.
+    fn at_its_largest(&self) -> Self {
+        Self { first: self.at_largest.clone(), ..self.clone() }
+    }
+
     /// What is to be said where it happened; the message is made of how often, and of the largest, um.
     fn warning(
         &self,
@@ -124,8 +129,7 @@ impl Notices {
             both!("the programmed contour was corrected, not the path of the tool's centre", "исправлен запрограммированный контур, а не путь центра инструмента"),
             both!("between the two lies the tool radius times the error's change per mm (1 um per mm of radius at 1 mrad); post with compensation computed in CAM where that matters, or give the profile the cutter's radius (`radii_mm`), a turning tool's nose", "между ними — радиус инструмента, умноженный на изменение погрешности на миллиметр (1 мкм на мм радиуса при 1 мрад); где это важно, считайте коррекцию в CAM или задайте в профиле радиус фрезы (`radii_mm`), токарному резцу — радиус при вершине"),
         );
-        let largest = Notice { first: self.beside.at_largest.clone(), ..self.beside.clone() };
-        let beside = largest.warning(
+        let beside = self.beside.at_its_largest().warning(
             COMPENSATED,
             |count, um| both!("{count} motion(s) under cutter compensation, the tool's centre off by up to {um:.2} um more", "движения при коррекции на радиус: {count}, центр инструмента отклоняется ещё до {um:.2} мкм"),
             both!("the largest; the contour was corrected, and the machine's error is another one radius beside it", "наибольшее; исправлен контур, а на радиус в стороне погрешность станка другая"),
@@ -137,8 +141,7 @@ impl Notices {
             both!("the first; the middle of the play was taken, since nothing before tells from where the axis came", "первое; взята середина люфта: по предыдущим кадрам не узнать, откуда пришла ось"),
             both!("say with `--start-at X,Y,Z` where the axes stand at the start; behind a reference return, a tool change (M6) or `/`, feed the axis to its place from one side first", "скажите ключом `--start-at X,Y,Z`, где стоят оси в начале; после выхода в исходное положение, смены инструмента (M6) или `/` сначала подведите ось рабочим ходом с одной стороны"),
         );
-        let largest = Notice { first: self.spirals.at_largest.clone(), ..self.spirals.clone() };
-        let spirals = largest.warning(
+        let spirals = self.spirals.at_its_largest().warning(
             SPIRAL,
             |count, um| both!("{count} arc(s) end off their circle, the largest by {:.3} mm", "дуги кончаются не на своей окружности, наибольшее отклонение {:.3} мм: {count}", um * 1e-3),
             both!("the largest; the control cuts a spiral from the one radius to the other, and that is the path", "наибольшее; стойка ведёт по спирали от одного радиуса к другому: это и есть путь"),
@@ -161,8 +164,7 @@ impl Notices {
 
     /// What was written although the tolerance cannot be held.
     fn beyond(&self) -> Option<Warning> {
-        let largest = Notice { first: self.accepted.at_largest.clone(), ..self.accepted.clone() };
-        let (warning, line) = largest.warning(
+        let (warning, line) = self.accepted.at_its_largest().warning(
             ACCEPTED,
             |count, um| {
                 both!(
@@ -198,9 +200,7 @@ impl Notices {
                 "скажите, где его касались (`touched_at` в профиле, `--touched-at G54=X,Y,Z`), или что он точный (`--zero true`)"
             ),
         );
-        let guess = &self.touched_by_guess;
-        let largest = Notice { first: guess.at_largest.clone(), ..guess.clone() };
-        let by_guess = largest.warning(
+        let by_guess = self.touched_by_guess.at_its_largest().warning(
             TOUCHED_BY_GUESS,
             |_, um| {
                 both!(

@@ -385,10 +385,10 @@ impl Pass<'_> {
                 notices.clamped.see(&span, line, 0.0);
             }
             let unsure_mm = correction.unknown_side_mm;
-            if let Some(off_mm) = correction.accepted_mm {
-                notices.accepted.see(&span, line, off_mm);
+            if correction.accepted {
+                notices.accepted.see(&span, line, correction.after_mm);
             }
-            if correction.accepted_mm.is_some() || unsure_mm > 0.0 {
+            if correction.accepted || unsure_mm > 0.0 {
                 figures.accepted.push((line, correction.after_mm + unsure_mm));
             }
             if let Some(lean) = correction.leaning_mm {

@@ -563,7 +563,7 @@ fn zero_points(study: &Study, language: Language) -> Markup {
             (say!(
                 language,
                 "The offset to enter is minus the error: the machine goes too far by the error, so the zero point goes back by it. Do this or correct programs, not both; and only to a zero that an outside instrument found: one that was touched off on this machine has its error at that place in it already.",
-                "Вводится погрешность с обратным знаком: станок уходит на погрешность дальше, поэтому нулевая точка отводится на неё назад. Либо так, либо исправлять программы, но не то и другое вместе."
+                "Вводится погрешность с обратным знаком: станок уходит на погрешность дальше, поэтому нулевая точка отводится на неё назад. Либо так, либо исправлять программы, но не то и другое вместе; и только для нуля, найденного внешним прибором: в нуле, найденном касанием на этом станке, его погрешность в этом месте уже есть."
             ))
         }
         @for part in &study.parts { (zero_points_of(study, part, language)) }
