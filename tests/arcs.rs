@@ -1,22 +1,8 @@
 //! Arcs whose radii differ at start and end: judged as the control does, and written so that it takes them.
 
-use crate::common::{messages, root, run};
+use crate::common::{Place, messages, root, run};
 
 const CROOKED: &str = "tests/profiles/corpus.toml";
-
-struct Place(tempfile::TempDir);
-
-impl Place {
-    fn new() -> Self {
-        Self(tempfile::tempdir().expect("a temporary folder"))
-    }
-
-    fn write(&self, name: &str, text: &str) -> String {
-        let path = self.0.path().join(name);
-        std::fs::write(&path, text).expect("writable");
-        path.to_str().expect("a plain path").to_owned()
-    }
-}
 
 /// A profile beside the tables of the crooked one, with more in it.
 fn profile(place: &Place, change: impl Fn(String) -> String) -> String {

@@ -1,21 +1,9 @@
 //! What must stay one block: feeds under cutter compensation, which the control offsets block by block; and holes that are
 //! left at feed, where nothing hides what a turn does.
 
-use crate::common::{messages, run};
-
-struct Place(tempfile::TempDir);
+use crate::common::{Place, messages, run};
 
 impl Place {
-    fn new() -> Self {
-        Self(tempfile::tempdir().expect("a temporary folder"))
-    }
-
-    fn write(&self, name: &str, text: &str) -> String {
-        let path = self.0.path().join(name);
-        std::fs::write(&path, text).expect("writable");
-        path.to_str().expect("a plain path").to_owned()
-    }
-
     /// A straight machine, with more said of its axes.
     fn machine(&self, play_um: f64, of_z: &str) -> String {
         let axis = |name: &str, more: &str| {

@@ -1,24 +1,12 @@
 //! What a control brings along and a program does not say, what cannot be held within the tolerance, and whether the numbers
 //! of `check` are true.
 
-use crate::common::{messages, root, run};
+use crate::common::{Place, messages, root, run};
 
 const STAN: &str = "machine-profiles/stan_s500.toml";
 const OFFSET: &str = "G54=140,100,100";
 
-struct Place(tempfile::TempDir);
-
 impl Place {
-    fn new() -> Self {
-        Self(tempfile::tempdir().expect("a temporary folder"))
-    }
-
-    fn write(&self, name: &str, text: &str) -> String {
-        let path = self.0.path().join(name);
-        std::fs::write(&path, text).expect("writable");
-        path.to_str().expect("a plain path").to_owned()
-    }
-
     /// The corrected program, and what was said of it.
     fn corrected(&self, program: &str, arguments: &[&str]) -> (String, String) {
         let input = self.write("in.nc", program);

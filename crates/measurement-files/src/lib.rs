@@ -46,6 +46,6 @@ pub use columns::Column;
 pub use points::Points;
 pub use refusal::{Codes, Refusal};
 pub use sheet::{Kind, Row, Sheet};
-pub use sizes::OddSizes;
+pub use sizes::{OddSizes, micro};
 pub use text::{Piece, decoded, numbered, utf8_or_1251};
 pub use unit::{Quantity, Unit};

@@ -12,6 +12,12 @@ pub struct OddSizes {
     pub help: Text,
 }
 
+/// Factor from mm or rad to what is printed, and its unit.
+#[must_use]
+pub fn micro(is_length: bool) -> (f64, Text) {
+    if is_length { (1e3, Text::pair("um", "мкм")) } else { (1e6, Text::pair("urad", "мкрад")) }
+}
+
 impl OddSizes {
     /// Of values in mm or rad that a source has of an error function, 0 to 5; `None` where they are of the usual size.
     #[must_use]
@@ -38,8 +44,7 @@ impl OddSizes {
             );
             return Some(Self { are_small: true, message, help });
         }
-        let (scale, unit) =
-            if is_length { (1e3, both!("um", "мкм")) } else { (1e6, both!("urad", "мкрад")) };
+        let (scale, unit) = micro(is_length);
         (large > high).then(|| Self {
             are_small: false,
             message: both!(

@@ -25,7 +25,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use diagnostic::{Text, both};
+use diagnostic::both;
+use measurement_files::micro;
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
@@ -93,9 +94,4 @@ pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -
         CalibrateCommand::RTest(a) => rtest::run(a, shared, messages),
         CalibrateCommand::Turning(a) => turning::run(a, shared, messages),
     }
-}
-
-/// Factor from mm or rad to what is printed, and its unit.
-fn micro(is_length: bool) -> (f64, Text) {
-    if is_length { (1e3, Text::pair("um", "мкм")) } else { (1e6, Text::pair("urad", "мкрад")) }
 }
