@@ -149,6 +149,10 @@ fn calls_that_the_control_has_stay_and_move_what_the_profile_says() {
     refused_for(&short.run(&short.profile(&calls("{ unknown = \"XZ\" }")), &[]), "VP0213");
     let none = Part::new(&text.replace("G0 X10. Y10. Z50.\n", ""));
     warned_of(&none.run(&none.profile(&calls("\"harmless\"")), &["--strict"]), &[]);
+    // An entry without a program is for all that no other entry names.
+    let all = short.profile("[calls]\nG65 = \"harmless\"\n\"G65 P9810\" = { unknown = \"XZ\" }");
+    refused_for(&short.run(&all, &[]), "VP0213");
+    warned_of(&none.run(&none.profile("[calls]\nG65 = \"harmless\""), &["--strict"]), &[]);
     // What an expanded program computes is no number for a call that stays.
     let computed = Part::new(&text.replace("G65 P9810 Z10.", "#1=10.\nG65 P9810 Z#1"));
     refused_for(&computed.run(CORPUS, &[]), "VP0137");

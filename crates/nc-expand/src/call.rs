@@ -138,9 +138,8 @@ impl<'a> Run<'a, '_> {
 
     /// The profile says what a call moves.
     fn declared(&self, call: &Call, number: u32) -> bool {
-        let code = if call.arguments.is_some() { (b'G', 650) } else { (b'M', 980) };
-        let mut calls = self.dialect.calls.iter();
-        calls.any(|row| (row.letter, row.tenths, row.program) == (code.0, code.1, Some(number)))
+        let (letter, tenths) = if call.arguments.is_some() { (b'G', 650) } else { (b'M', 980) };
+        self.dialect.control_call(letter, tenths, Some(number)).is_some()
     }
 
     /// A call of what the control has stays as it is written.

@@ -30,10 +30,7 @@ pub(crate) fn left_alone(
         return Ok(());
     };
     let program = words.whole(b'P')?;
-    let declared = env.dialect.calls.iter().find(|call| {
-        (call.letter, call.tenths) == (letter, tenths) && (call.program.is_none() || call.program == program)
-    });
-    let unknown = declared.map_or([true; 6], |call| call.unknown);
+    let unknown = env.dialect.control_call(letter, tenths, program).map_or([true; 6], |call| call.unknown);
     if !unknown.contains(&true) {
         return Ok(());
     }

@@ -1221,6 +1221,18 @@ impl Dialect {
     }
 }
 
+impl Dialect {
+    /// What the profile says of a call that is left alone; an entry without a program is for all of its code's.
+    ///
+    /// * `letter`, `tenths` – of the code, as [`ControlCall`] has them
+    #[must_use]
+    pub fn control_call(&self, letter: u8, tenths: u16, program: Option<u32>) -> Option<&ControlCall> {
+        let of_code = self.calls.iter().filter(|call| (call.letter, call.tenths) == (letter, tenths));
+        let of_program = |call: &&ControlCall| call.program.is_none() || call.program == program;
+        of_code.filter(of_program).max_by_key(|call| call.program.is_some())
+    }
+}
+
 impl Output {
     /// Largest difference of an arc's radii, mm, where one unit of the program is so long.
     #[must_use]
