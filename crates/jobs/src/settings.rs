@@ -20,8 +20,8 @@ use crate::options::{self, JobOptions};
 use crate::stored::Stored;
 use crate::{conditions, datums, lines, profile};
 
-/// Where the tolerance cannot be held, so many of it are written where nobody says another limit: what a reversal of an axis
-/// with everyday play leaves beside a corner.
+/// Where the tolerance cannot be held, so many of it are written where nobody says another limit: beyond, it is no matter of
+/// rounding and of short pieces any more.
 const ACCEPTED: f64 = 5.0;
 
 /// Everything a job on a program needs.
