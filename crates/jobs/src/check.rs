@@ -53,8 +53,8 @@ pub struct Outcome {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub datums: Vec<DatumUsed>,
     /// Lines that cannot be held within the tolerance; held against what the correction proves of them.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub accepted_lines: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub accepted_lines: Option<usize>,
     /// The same in words.
     #[serde(skip)]
     pub counted_from: Vec<Text>,
@@ -87,7 +87,7 @@ impl Outcome {
             deviation_before_line: comparison.before.line,
             deviation_after_um: um(comparison.after.largest_mm),
             deviation_after_line: comparison.after.line,
-            accepted_lines: *accepted,
+            accepted_lines: Some(*accepted).filter(|lines| *lines > 0),
             counted_from: datums::said(datums),
             datums: DatumUsed::all(datums),
             findings: findings.clone(),
@@ -122,11 +122,10 @@ impl Outcome {
                 self.tilt_after_line.unwrap_or_default(),
             ));
         }
-        if self.accepted_lines > 0 {
+        if let Some(lines) = self.accepted_lines {
             text.push(&both!(
-                "{} line(s) cannot be held within the tolerance of {} um, and are held against what is proven of them (--accept)\n",
-                "строки, которые в допуске {1} мкм не удержать: {0}; сравниваются с тем, что для них доказано (--accept)\n",
-                self.accepted_lines,
+                "{lines} line(s) cannot be held within the tolerance of {} um, and are held against what is proven of them (--accept)\n",
+                "строки, которые в допуске {} мкм не удержать: {lines}; сравниваются с тем, что для них доказано (--accept)\n",
                 self.tolerance_um
             ));
         }
@@ -139,10 +138,6 @@ impl Outcome {
         text.push(&if self.passed { PASSED } else { FAILED });
         text
     }
-}
-
-fn is_zero(count: &usize) -> bool {
-    *count == 0
 }
 
 const PASSED: Text = Text::pair("passed\n", "проверка пройдена\n");

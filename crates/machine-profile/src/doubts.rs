@@ -59,7 +59,7 @@ impl Profile {
         self.tables().flat_map(of_table).collect()
     }
 
-    /// True where the rigid-body model errs anywhere: nothing is corrected by a profile that has none, tables of zeros or not.
+    /// True where the rigid-body model errs anywhere; by a profile without errors nothing is corrected.
     #[must_use]
     pub fn has_errors(&self) -> bool {
         let table =

@@ -6,12 +6,12 @@ use calibration::change::{by_function, compare};
 use diagnostic::{Language, Text, both};
 use machine_model::{Range, Vector, Volume};
 use machine_profile::Profile;
+use measurement_files::micro;
 
 use crate::message::Failure;
 use crate::{file, profile};
 
 use super::codes::question;
-use super::micro;
 use crate::number::short;
 
 /// Prints the comparison.

@@ -6,8 +6,7 @@ use calibration::rotary_ballbar::{RotaryCalibration, Test};
 use calibration::rotary_sequence::{Sequence, approximation_mm, sequence};
 use diagnostic::{Text, both};
 use machine_model::{Axis, Description, Vector};
-
-use super::micro;
+use measurement_files::micro;
 
 /// The pairs of axes of the planes XY, ZX, YZ.
 pub(super) const SCALES: [&str; 3] = ["X-Y", "Z-X", "Y-Z"];

@@ -8,6 +8,7 @@ use calibration::measured_line::{AxisOnNodes, Gauge, Zero};
 use diagnostic::{Diagnostic, Text, both};
 use machine_model::{Axis, Interpolation, Six, Squareness, Table};
 use machine_profile::Calibrated;
+use measurement_files::micro;
 use measurement_files::series::{Origin, Series, Told};
 
 use crate::arguments::Shared;
@@ -20,7 +21,7 @@ use super::options::{Between, Directions, Interferometer, Reference, Slopes};
 use super::output::{Output, warn};
 use super::page::{Positions, Read};
 use super::squareness::{Asked, Functions};
-use super::{iso_report, micro, plausibility, sources, squareness};
+use super::{iso_report, plausibility, sources, squareness};
 use crate::number::short;
 
 /// `vpost calibrate interferometer`

@@ -26,7 +26,6 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 
 use diagnostic::both;
-use measurement_files::micro;
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
@@ -55,7 +54,7 @@ pub enum CalibrateCommand {
     Ballbar(ballbar::Ballbar),
     /// Ball deviations at angles of A, B, C, by R-test or by probe and sphere: location errors and error functions of rotary axes.
     #[command(name = "rtest")]
-    RTest(rtest::RTest),
+    RTest(options::RTest),
     /// Measured test pieces of a lathe: taper, bow, squareness, sizes of the tools, growth and wear.
     Turning(turning::Turning),
 }

@@ -1,5 +1,7 @@
 //! Options of `vpost calibrate interferometer`.
 
+use std::path::PathBuf;
+
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use machine_model::Interpolation;
@@ -157,4 +159,24 @@ impl Between {
             Self::Monotone => Interpolation::Monotone,
         }
     }
+}
+
+/// `vpost calibrate rtest FILES… -m PROFILE -o OUT`
+#[derive(Debug, Args)]
+pub struct RTest {
+    /// Ball deviations (CSV): run, one mounting of the ball; x_mm … z_mm, a_deg … c_deg commanded; dx_um dy_um dz_um, workpiece
+    /// frame; tool_x_mm …, dir_a …, u_um or u_x_um …, repeat, temp_c where known.
+    #[arg(value_name = "ROWS.csv", required = true)]
+    pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub target: Target,
+    /// The rows are places at which a touch probe was centred on a sphere fixed to the workpiece: no dx_um dy_um dz_um.
+    #[arg(long)]
+    pub sphere: bool,
+    /// Rows that no fit sees judge the profile; one that makes them worse is not written.
+    #[arg(long, value_name = "HELD.csv")]
+    pub holdout: Option<PathBuf>,
+    /// Write what was found, with covariance, as JSON.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
 }

@@ -6,11 +6,10 @@ use diagnostic::{Diagnostic, Text, both};
 
 use crate::message::{Failure, Messages};
 
-use measurement_files::OddSizes;
 use measurement_files::series::{Origin, Series};
+use measurement_files::{OddSizes, micro};
 
 use super::codes::{AXES, MISSING, RUNS, UNITS};
-use super::micro;
 use super::output::warn;
 use crate::number::short;
 

@@ -9,7 +9,7 @@ use clap::Args;
 use diagnostic::{Diagnostic, Speaks, Text, both};
 use machine_model::{Axis, Vector};
 use machine_profile::Calibrated;
-use measurement_files::{Row, Sheet};
+use measurement_files::{Row, Sheet, micro};
 
 use crate::arguments::Shared;
 use crate::conditions::conditions;
@@ -17,7 +17,6 @@ use crate::file;
 use crate::message::{Failure, Messages, Report};
 
 use super::codes::{CELL, DOUBTFUL, OUTLIER, UNFIT, failure, question};
-use super::micro;
 use super::output::{Output, Target, warn};
 use super::sources;
 

@@ -3,11 +3,8 @@
 mod report;
 mod rows;
 
-use std::path::PathBuf;
-
 use calibration::Base;
 use calibration::rtest::{HeldOut, RotaryTables, Term, calibrate};
-use clap::Args;
 use diagnostic::{Diagnostic, Speaks, Text, both};
 use machine_model::{Description, RigidBody};
 use machine_profile::Calibrated;
@@ -17,28 +14,9 @@ use crate::file;
 use crate::message::{Failure, Messages, Report};
 
 use super::codes::{AXES, CONTRADICTED, DOUBTFUL, OPEN, OUTLIER, UNFIT, UNSAID, failure, question};
-use super::output::{Output, Target, error_table, warn};
+use super::options::RTest;
+use super::output::{Output, error_table, warn};
 use rows::Rows;
-
-/// `vpost calibrate rtest FILES… -m PROFILE -o OUT`
-#[derive(Debug, Args)]
-pub struct RTest {
-    /// Ball deviations (CSV): run, one mounting of the ball; x_mm … z_mm, a_deg … c_deg commanded; dx_um dy_um dz_um, workpiece
-    /// frame; tool_x_mm …, dir_a …, u_um or u_x_um …, repeat, temp_c where known.
-    #[arg(value_name = "ROWS.csv", required = true)]
-    pub files: Vec<PathBuf>,
-    #[command(flatten)]
-    pub target: Target,
-    /// The rows are places at which a touch probe was centred on a sphere fixed to the workpiece: no dx_um dy_um dz_um.
-    #[arg(long)]
-    pub sphere: bool,
-    /// Rows that no fit sees judge the profile; one that makes them worse is not written.
-    #[arg(long, value_name = "HELD.csv")]
-    pub holdout: Option<PathBuf>,
-    /// Write what was found, with covariance, as JSON.
-    #[arg(long, value_name = "FILE")]
-    pub json: Option<PathBuf>,
-}
 
 /// What is left of the readings, in units of their stated uncertainty, is a contradiction above this.
 const CONTRADICTION: f64 = 5.0;

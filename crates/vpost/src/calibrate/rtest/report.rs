@@ -4,11 +4,11 @@ use calibration::rtest::{
     Basis, FoundTerm, HeldOut, ON_AXIS_MM, RotaryTables, Term, TurnedAxis, WrittenTable,
 };
 use diagnostic::{Text, both};
+use measurement_files::micro;
 use serde_json::{Value, json};
 
 use crate::number::short;
 
-use super::super::micro;
 use super::rows::Rows;
 
 const FUNCTIONS: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];

@@ -11,12 +11,11 @@ use measurement_files::{Row, Sheet};
 
 use crate::arguments::Shared;
 use crate::calibrate::codes::{AXES, CELL, UNITS, question};
+use crate::calibrate::options::RTest;
 use crate::calibrate::output::Output;
 use crate::calibrate::sources;
 use crate::conditions::conditions;
 use crate::message::Failure;
-
-use super::RTest;
 
 const COLUMNS: &str = "run x_mm y_mm z_mm a_deg b_deg c_deg dx_um dy_um dz_um tool_x_mm tool_y_mm tool_z_mm dir_x dir_y dir_z \
                        dir_a dir_b dir_c u_um u_x_um u_y_um u_z_um repeat temp_c time_s load_kg feed_mm_min note";
