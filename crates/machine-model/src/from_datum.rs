@@ -24,7 +24,7 @@ use crate::{
 /// // X is too long by 0.02 %. Touched at X50, where it stands 10 µm farther, X50 is right and X100 10 µm off.
 /// let at = |x: f64| Command { linear_mm: Vector::new(x, 0.0, 0.0), ..Command::default() };
 /// let datum_mm = machine.error_mm(&at(50.0));
-/// let machine = FromDatum::new(Box::new(machine)).unwrap();
+/// let machine = FromDatum::new(Box::new(machine)).ok().expect("a model of paths");
 /// assert_eq!(machine.error_mm(&Command { datum_mm, ..at(50.0) }), Vector::zeros());
 /// assert!((machine.error_mm(&Command { datum_mm, ..at(100.0) }).x - 0.010).abs() < 1e-12);
 /// ```
