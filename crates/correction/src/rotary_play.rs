@@ -6,13 +6,14 @@
 //! itself. What the tables of both directions differ by moves the tool at once: by half of that it is led aside before.
 //! Equation (25), with the angle for the place.
 
-use machine_model::{Command, Play, RotaryPlay, Vector};
+use machine_model::{Command, Play, RotaryPlay, SAME_PLACE_RAD, Vector};
 use smallvec::SmallVec;
 use toolpath::Partial;
 
 use crate::corrector::Corrector;
 use crate::curve::Curve;
 use crate::deviation::{Begun, Machine, Pair, Verdict};
+use crate::direction::heading;
 use crate::error::CorrectionError;
 use crate::follow::Follow;
 use crate::turning::RotaryWords;
@@ -69,7 +70,9 @@ impl<'m> Corrector<'m> {
         let mut play = self.play;
         play.turn(model, &to, [true; 3]);
         let way = to_rad - from.rotary_rad;
-        let heading = [0, 1, 2].map(|axis| i8::from(way[axis] > 0.0) - i8::from(way[axis] < 0.0));
+        // A rounding turns nothing: an axis whose word says its place again may differ from it by a last bit.
+        let turns = |axis: usize| way[axis].abs() > SAME_PLACE_RAD;
+        let heading = [0, 1, 2].map(|axis| if turns(axis) { heading(0.0, way[axis], 0) } else { 0 });
         let to_go = self.play.rotary_lag_rad(model, from, heading);
         let (mut direction, mut corners) = (self.play.rotary_side(), [None; 3]);
         for axis in (0..3).filter(|axis| heading[*axis] != 0) {

@@ -207,8 +207,23 @@ fn a_table_that_moves_sideways_is_met_halfway() {
     assert!(matches!(refused, CorrectionError::Sideways { .. }), "{refused:?}");
 }
 
+/// C's angle comes out of a sum with a last bit more than its word has: saying it again turns nothing back.
+#[test]
+fn a_last_bit_is_no_reversal() {
+    let stands = 60.727 + 4.0 * f64::EPSILON * 60.0;
+    let places = [
+        at([302.811, 297.999, 400.0], -10.607, 51.906),
+        at([302.811, 297.999, 400.0], -4.801, stands),
+        at([302.811, 297.999, 400.0], -4.794, stands),
+        at([302.811, 297.999, 400.0], -5.265, 60.745),
+    ];
+    let reversal = Reversal { play_urad: [5.0, 0.0], sideways_mm: -0.001_926 };
+    let (off, lines) = furthest(reversal, &places, true).unwrap();
+    assert!(off <= ALLOWED_MM && lines == 4, "{off} mm, {lines} lines");
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
     fn the_tip_follows_whatever_turns_back(
@@ -229,14 +244,7 @@ proptest! {
         }
         // A reversal inside the play moves nothing at once.
         let play_c = if sideways_mm == 0.0 { play_c } else { 0.0 };
-        let (off, lines) = match furthest(Reversal { play_urad: [play_a, play_c], sideways_mm }, &places, true) {
-            Ok(done) => done,
-            // Half of it and the rounding of the words are more than the tolerance: refused, not guessed.
-            Err(CorrectionError::NotWithinTolerance { .. }) if sideways_mm.abs() > 0.0018 => return Ok(()),
-            Err(error) => panic!("{error}"),
-        };
-        // 7e-6 mm were seen above it: half of what the tables differ by is met at the start of a turn, and C has gone on by the
-        // step of its word before its side is taken.
-        prop_assert!(off <= ALLOWED_MM + 1e-5, "{off} mm, {lines} lines");
+        let (off, lines) = furthest(Reversal { play_urad: [play_a, play_c], sideways_mm }, &places, true).unwrap();
+        prop_assert!(off <= ALLOWED_MM, "{off} mm, {lines} lines");
     }
 }
