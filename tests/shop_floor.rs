@@ -146,3 +146,45 @@ fn a_program_that_was_not_corrected_is_measured_truly() {
     assert_eq!(checked["deviation_after_line"], checked["deviation_before_line"]);
     assert_eq!(checked["findings"][0], "this program was not corrected: it bears no mark of vpost");
 }
+
+/// Linear axes that were to stand follow a crooked table, and F would count their micrometres: the time is told.
+#[test]
+fn a_turn_at_feed_rate_takes_the_time_it_took() {
+    let program =
+        "G21 G90 G94 G17 G40 G49\nG0 X10 Y5 Z150 A0 C0\nG1 Z120 F500\nG1 A30 F300\nG1 C40\nX20 F500\nM30\n";
+    let place = Place::new();
+    let more = ["-m", "samples/profiles/tilting_table.toml", "-d", "linuxcnc"];
+    let (out, _) = place.corrected(program, &more);
+    let told: Vec<&str> =
+        blocks(&out).into_iter().filter(|block| block.starts_with("G9") || block.contains(" F1")).collect();
+    // 30 degrees at 300 a minute are a tenth of it; 40 in two halves of 4/60.
+    assert_eq!(told[..2], ["G93", "G1 X10.012 Y4.986 Z119.977 A30 F10"], "{out}");
+    assert_eq!(told.iter().filter(|block| block.ends_with(" F15")).count(), 2, "{out}");
+    assert_eq!(told.iter().filter(|block| **block == "G94 F300").count(), 2, "{out}");
+    assert_eq!(place.check(program, &out, &more)["passed"], true);
+    for (from, to) in [(" F15", " F9"), ("G93\n", ""), ("G94 F300", "G95 F300")] {
+        assert_eq!(place.check(program, &out.replace(from, to), &more)["passed"], false, "{from} -> {to}");
+    }
+    // What no two controls do alike is not told: F while the tip stands.
+    let program =
+        "G17 G90 G54 G21\nG0 A0. C0.\nG234 H1\nG0 X20. Y10. Z40. C30.\nG1 Z5. F900.\nA-20. C50. F200.\nM30\n";
+    let said = place.refused(program, &["-m", "tests/profiles/five_axis.toml", "-d", "haas"]);
+    assert!(said.contains("VP0532") && said.contains("in.nc:6:1"), "{said}");
+}
+
+/// No F of more digits than controls read: play is taken up slower, and what is cut finer than that is refused.
+#[test]
+fn inverse_time_stays_within_what_a_control_reads() {
+    let program = |feed: u32| {
+        format!(
+            "G54 G21 G90 G17 G40 G49\nG0 X10. Y5. Z150. A0. C0.\nG93\nG1 Z120. F4\nG1 A30. X40. F{feed}\nG94\nM30\n"
+        )
+    };
+    let place = Place::new();
+    let more = ["-m", "samples/profiles/tilting_table.toml", "-d", "fanuc"];
+    let (out, _) = place.corrected(&program(30_000), &more);
+    let feeds = out.lines().filter_map(|line| line.rsplit_once(" F")?.1.parse::<f64>().ok());
+    assert!(feeds.fold(0.0, f64::max) < 99_999.999, "{out}");
+    let said = place.refused(&program(60_000), &more);
+    assert!(said.contains("VP0532") && said.contains("99999.999"), "{said}");
+}

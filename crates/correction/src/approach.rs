@@ -17,10 +17,6 @@ use crate::follow::Whole;
 use crate::grid::{Block, Goal};
 use crate::{Piece, PieceKind};
 
-/// No line of an approach takes less than this share of its motion's time where that is told as inverse-time feed: a few
-/// micrometres at the motion's own speed would be words of many digits, and slower is no harm.
-const LEAST_SHARE: f64 = 1e-3;
-
 /// More than what rounding adds in the figures of a line of an approach, mm.
 const ROUNDING_MM: f64 = 1e-8;
 
@@ -340,7 +336,7 @@ impl<'m> Corrector<'m> {
             }
             // No rotary axis turns on it, whatever the block's words say.
             let rotary = machine.turns.then_some([Goal::Stays; 3]);
-            let share = share.max(LEAST_SHARE);
+            let share = share.max(block.least_share);
             corrected.pieces.push(Piece { kind: PieceKind::Line, axes, rotary, share });
             corrected.correction.approach = true;
         }

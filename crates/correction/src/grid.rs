@@ -77,6 +77,9 @@ pub struct Block {
     pub retreats: PeckRetreats,
     /// What of the tolerance something else takes, mm: a tool that touches beside the tip which is corrected.
     pub reserved_mm: f64,
+    /// No line on the way to a start takes less than this share of its motion's time where that is told as inverse time: a
+    /// few micrometres at the motion's own speed would be an F of many digits, and slower is no harm.
+    pub least_share: f64,
 }
 
 impl Default for Block {
@@ -104,6 +107,7 @@ impl Default for Block {
             arc_radius_tolerance_mm: 0.02,
             retreats: PeckRetreats { clearance_mm: 0.5, chip_mm: 0.5 },
             reserved_mm: 0.0,
+            least_share: 1e-3,
         }
     }
 }

@@ -23,9 +23,6 @@ use crate::pointing::{GUARD_RAD, Leans};
 use crate::turning::RotaryWords;
 use crate::{Piece, PieceKind};
 
-/// No turn that is put before a motion takes less than this share of its time under G93.
-const LEAST_SHARE: f64 = 1e-3;
-
 /// How the output's rotary axes stand against the program's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Directions {
@@ -340,7 +337,7 @@ impl<'m> Corrector<'m> {
         let axes = self.go(block, &linear_mm, &wanted, &crate::corrector::Freedom::of(block.named));
         self.gone(&state);
         let share = if length_mm > 0.0 { way_mm / length_mm } else { 1.0 };
-        let share = share.max(LEAST_SHARE);
+        let share = share.max(block.least_share);
         self.lead = Some(Piece { kind: PieceKind::Line, axes, rotary: Some(words), share });
         Ok(())
     }

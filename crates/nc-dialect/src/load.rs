@@ -273,11 +273,15 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
                 RotaryFeedName::LinearAxes => RotaryFeed::LinearAxes,
                 RotaryFeedName::AllAxes => RotaryFeed::AllAxes,
             }),
+            largest_inverse_feed: output.largest_inverse_feed.map_or(FIVE_DIGITS, Spanned::into_inner),
             peck_clearance_mm: cycles.peck_clearance_mm.into_inner(),
             chip_retreat_mm: cycles.chip_retreat_mm.into_inner(),
         },
     }
 }
+
+/// What every control reads of an F of G93: Mitsubishi's and Hurco's manuals and some posts say a digit more.
+const FIVE_DIGITS: f64 = 99_999.999;
 
 /// Digits (and point) behind the letter.
 fn number_behind(key: &str, letter: char) -> Option<&str> {

@@ -348,6 +348,7 @@ pub(crate) struct OutputRules {
     pub(crate) arc_radius_tolerance_inch: Option<Spanned<f64>>,
     pub(crate) arc_radius_tolerance_share: Option<Spanned<f64>>,
     pub(crate) rotary_feed: Option<RotaryFeedName>,
+    pub(crate) largest_inverse_feed: Option<Spanned<f64>>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Deserialize)]

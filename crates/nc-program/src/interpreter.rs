@@ -12,8 +12,8 @@ use crate::curves::{self, CurvePart};
 use crate::delete;
 use crate::direction::DirectionWords;
 use crate::modal::{
-    ArcCentres, Aside, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Naming,
-    Progress, ReturnLevel, Shifts, Stated, ToolLength, Transform, Units, Why, WorkOffset, XWords,
+    ArcCentres, Aside, Axes, Axis, Compensation, Distance, FeedMode, LastFeed, Lost, Modal, MotionMode,
+    Naming, Progress, ReturnLevel, Shifts, Stated, ToolLength, Transform, Units, Why, WorkOffset, XWords,
 };
 use crate::motion::{self, Moved};
 use crate::naming;
@@ -25,7 +25,6 @@ use crate::tilted;
 use crate::tip;
 use crate::turning;
 use crate::words::{Outcome, Words};
-use nc_syntax::Letters;
 
 /// What a block means.
 #[derive(Clone, Debug, PartialEq)]
@@ -135,7 +134,7 @@ impl<'d> Interpreter<'d> {
             },
             speed_limited: false,
             feed_mode: FeedMode::PerMinute,
-            feed_is_inverse_time: false,
+            last_feed: LastFeed::Unknown,
             arc_centres: ArcCentres::Incremental,
             compensation: Compensation::Off,
             offset: Offset::default(),
@@ -313,8 +312,9 @@ fn run<'d>(
     if env.dialect.turning.is_some() {
         turning::check(env, words, &demand, state)?;
     }
-    state.feed_is_inverse_time = state.feed_mode == FeedMode::InverseTime
-        || (state.feed_is_inverse_time && (demand.owner == Owner::Dwell || !words.has(Letters::of(b"F"))));
+    let own_feed = words.number(b'F').filter(|_| demand.owner != Owner::Dwell);
+    state.last_feed =
+        before.last_feed.after(before.feed_mode, state, own_feed.map(|(number, _)| number.decimal));
     tip::check(words, &demand, before, state)?;
     tilted::check(env, words, &demand, before, state)?;
     curves::check(env, words, before, state)?;

@@ -70,7 +70,7 @@ pub use direction::DirectionWords;
 pub use evidence::{Evidence, Finding, Place, Questions};
 pub use frames::name_of as work_offset_name;
 pub use interpreter::{Context, Interpreter, Step};
-pub use modal::{Compensation, Modal, ToolLength, WorkOffset};
+pub use modal::{Compensation, LastFeed, Modal, ToolLength, Units, WorkOffset};
 pub use offset::Offset;
 pub use plain::{PlainEnd, PlainFeeds};
 pub use settings::Owner;

@@ -114,6 +114,39 @@ pub enum FeedMode {
     PerRevolution,
 }
 
+/// What the last F said.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum LastFeed {
+    /// Nothing that can be said again.
+    #[default]
+    Unknown,
+    /// A speed per minute, in the unit that was in force.
+    PerMinute(Decimal, Units),
+    /// An inverse time.
+    Inverse,
+}
+
+impl LastFeed {
+    /// Behind a block; `said`: its own F.
+    pub(crate) fn after(self, before: FeedMode, state: &Modal, said: Option<Decimal>) -> Self {
+        match (state.feed_mode, said) {
+            (FeedMode::InverseTime, _) => Self::Inverse,
+            (FeedMode::PerMinute, Some(feed)) => Self::PerMinute(feed, state.units),
+            (mode, None) if mode == before || self == Self::Inverse => self,
+            _ => Self::Unknown,
+        }
+    }
+
+    /// Where the one or the other holds.
+    pub(crate) fn either(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Inverse, _) | (_, Self::Inverse) => Self::Inverse,
+            _ if self == other => self,
+            _ => Self::Unknown,
+        }
+    }
+}
+
 /// What I J K are measured from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArcCentres {
@@ -440,8 +473,8 @@ pub struct Modal {
     pub speed_limited: bool,
     /// G93 G94 G95.
     pub feed_mode: FeedMode,
-    /// The last F was one of G93.
-    pub feed_is_inverse_time: bool,
+    /// What the last F said.
+    pub last_feed: LastFeed,
     /// G90.1 G91.1.
     pub arc_centres: ArcCentres,
     /// G40 G41 G42.

@@ -11,7 +11,9 @@ use crate::curves::{self, CurvePart};
 use crate::cycle;
 use crate::direction::{self, DirectionWords};
 use crate::frames::{self, settle};
-use crate::modal::{Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Units, Why};
+use crate::modal::{
+    Axes, Axis, Compensation, Distance, FeedMode, LastFeed, Lost, Modal, MotionMode, Units, Why,
+};
 use crate::offset;
 use crate::position::{end, known_axes, require_frame, require_known, require_rotary};
 use crate::settings::{Demand, Environment, Owner};
@@ -390,7 +392,7 @@ pub(crate) fn feed_rate(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<Fee
 
 /// Behind G93 a feed needs an F: what the last one is in another unit, controls answer with a stop or in silence.
 pub(crate) fn own_feed(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
-    if !state.feed_is_inverse_time {
+    if state.last_feed != LastFeed::Inverse {
         return Ok(());
     }
     Err(words

@@ -7,9 +7,10 @@
 use nc_syntax::dialect::{GCode, Numbers};
 use nc_syntax::{PlainLine, PlainWord};
 use toolpath::{Division, Feed, FeedRate, Frame, Position, Shape};
+use units::decimal::Decimal;
 
 use crate::interpreter::{Context, Interpreter, context};
-use crate::modal::{Axis, Compensation, Distance, FeedMode, Modal, MotionMode, Naming, Progress};
+use crate::modal::{Axis, Compensation, Distance, FeedMode, LastFeed, Modal, MotionMode, Naming, Progress};
 use crate::motion::Moved;
 use crate::settings::Environment;
 
@@ -49,6 +50,8 @@ pub struct PlainEnd {
     pub names: [bool; 3],
     /// Some of them without a decimal point.
     pub bare: bool,
+    /// Its F.
+    pub feed: Option<Decimal>,
 }
 
 impl Plain {
@@ -69,7 +72,7 @@ impl Plain {
             && modal.offset.is_off()
             && modal.transform.is_none()
             && modal.unsettled == [false; 3]
-            && !modal.feed_is_inverse_time
+            && modal.last_feed != LastFeed::Inverse
             && !modal.edge_unsaid
             && modal.named == [Naming::Named; 3]
             && modal.frame.as_ref().is_some_and(Frame::is_shift)
@@ -102,17 +105,18 @@ impl PlainFeeds {
     pub fn end_of(&self, line: &PlainLine<'_>, start_mm: [f64; 3]) -> Option<PlainEnd> {
         // Each axis by itself: what is stored by a number found out is waited for when all are read together.
         let ([mut x, mut y, mut z], mut names) = (start_mm, [false; 3]);
-        let mut bare = false;
+        let (mut bare, mut feed) = (false, None);
         for word in line.words() {
             match word.letter() {
                 b'X' => (x, names[0]) = (self.place(word, 0, x, &mut bare), true),
                 b'Y' => (y, names[1]) = (self.place(word, 1, y, &mut bare), true),
                 b'Z' => (z, names[2]) = (self.place(word, 2, z, &mut bare), true),
+                b'F' => feed = Some(word.number().decimal),
                 b'G' if word.number().tenths() != Some(self.code.0) => return None,
                 _ => {}
             }
         }
-        (names != [false; 3]).then_some(PlainEnd { end_mm: [x, y, z], names, bare })
+        (names != [false; 3]).then_some(PlainEnd { end_mm: [x, y, z], names, bare, feed })
     }
 
     /// Where a word brings its axis from `start_mm`, mm.
@@ -153,9 +157,12 @@ impl Interpreter<'_> {
         Some((feeds, [x, y, z]))
     }
 
-    /// Executes a plain line that leads to `end_mm` ([`PlainFeeds::end_of`]).
+    /// Executes plain lines, of which this is the last and `feed` the last F ([`PlainFeeds::end_of`]).
     #[inline]
-    pub fn go_to(&mut self, end_mm: [f64; 3]) {
-        self.modal.axes.linear = end_mm.map(Axis::At);
+    pub fn go_to(&mut self, end: &PlainEnd, feed: Option<Decimal>) {
+        self.modal.axes.linear = end.end_mm.map(Axis::At);
+        if feed.is_some() {
+            self.modal.last_feed = self.modal.last_feed.after(self.modal.feed_mode, &self.modal, feed);
+        }
     }
 }

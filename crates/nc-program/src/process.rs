@@ -219,6 +219,15 @@ impl Process {
         Self { cycle, ..self.clone() }
     }
 
+    /// The same for a motion of which the time is known, by F of G93 or of G94.
+    #[must_use]
+    pub fn by_time(&self, dialect: &Dialect) -> Self {
+        let told = [Action::FeedInverseTime, Action::FeedPerMinute];
+        let mut timed = self.clone();
+        timed.modes.retain(|mode| dialect.code(mode.code).is_none_or(|row| !told.contains(&row.action)));
+        timed
+    }
+
     /// The same while a thread is cut by `block`: its code and its own words are part of the process.
     #[must_use]
     pub fn in_thread(&self, code: GCode, block: &Block<'_>) -> Self {

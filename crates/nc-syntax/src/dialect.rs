@@ -870,6 +870,8 @@ pub struct Output {
     pub arc_radius_tolerance_share: f64,
     /// What F of G94 counts where rotary axes turn; `None` where the control's manual leaves it open.
     pub rotary_feed: Option<RotaryFeed>,
+    /// Largest F of G93 that the control reads, 1/min.
+    pub largest_inverse_feed: f64,
     /// Distance above the last depth where a G83 peck resumes feeding when written as moves, mm.
     pub peck_clearance_mm: f64,
     /// Retreat of a G73 peck when written as moves, mm.

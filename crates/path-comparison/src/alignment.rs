@@ -74,8 +74,14 @@ struct Excused {
 impl Excused {
     /// What of two processes is still compared.
     fn pair(&self, wanted: &Process, commanded: &Process) -> [Process; 2] {
-        [wanted, commanded]
-            .map(|process| Process { compensated: process.compensated.filter(|_| !self.blocks), ..*process })
+        // A speed is as good as the time that it comes to, which is compared by itself.
+        let by_time = wanted.is_timed && commanded.is_timed && commanded.feed.is_none();
+        [wanted, commanded].map(|process| Process {
+            number: process.number,
+            feed: process.feed.filter(|_| !by_time),
+            is_timed: false,
+            compensated: process.compensated.filter(|_| !self.blocks),
+        })
     }
 }
 

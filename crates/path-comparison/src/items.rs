@@ -56,6 +56,8 @@ pub(crate) fn behind_a_switch(model: &dyn PathModel, before: Option<Play>) -> Op
 pub(crate) struct Process {
     pub(crate) number: u32,
     pub(crate) feed: Option<f64>,
+    /// What time a motion takes is known.
+    pub(crate) is_timed: bool,
     /// Of feeds in a row under cutter compensation the how-manieth: each is a process of its own.
     pub(crate) compensated: Option<u32>,
 }
@@ -63,7 +65,7 @@ pub(crate) struct Process {
 impl Process {
     /// Of what is no feed.
     fn of_number(number: u32) -> Self {
-        Self { number, feed: None, compensated: None }
+        Self { number, feed: None, is_timed: false, compensated: None }
     }
 }
 
@@ -549,7 +551,8 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             self.compensated += 1;
         }
         let block = Some(self.compensated).filter(|_| compensated && matches!(motion, Motion::Feed(_)));
-        let process = Process { number, feed, compensated: block };
+        let is_timed = matches!(motion, Motion::Feed(Feed { rate: FeedRate::InverseTime(_), .. }));
+        let process = Process { number, feed, is_timed, compensated: block };
         let common = Common { line, process, limit_mm, tool_mm, datum_mm, dwell };
         self.feeds += usize::from(matches!(motion, Motion::Feed(_) | Motion::Hole(_)));
         match motion {

@@ -233,7 +233,10 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             // It has brought the tool to the start of the run.
             Reached::OnTheWay => self.result.approaches += 1,
             Reached::At(ahead, _) => {
-                if let Some(minutes) = minutes {
+                if process.feed.is_some() {
+                    // Told by a speed, which is compared.
+                    self.time.made = [f64::NAN; 2];
+                } else if let Some(minutes) = minutes {
                     self.compare_time(minutes, way_mm, short, ahead, line);
                 }
             }

@@ -136,17 +136,19 @@ impl Pass<'_> {
                     both!("correct without `--guard`", "исправляйте без `--guard`"),
                 );
             }
-            if !self.out.is_empty() && !self.out.ends_with(b"\n") && !self.out.ends_with(b"\r") {
-                self.out.extend_from_slice(b"\n");
-            }
-            let end = nc_syntax::line_ending(block.bytes);
-            for line in lines {
-                self.out.extend_from_slice(line.as_bytes());
-                self.out.extend_from_slice(end);
-                self.tally.figures.blocks_out += 1;
-            }
+            lines.iter().for_each(|line| self.insert(line, block));
             self.state.guarded.asked.push(asked);
         }
         Ok(())
+    }
+
+    /// A line that the program did not have, beside a block.
+    pub(crate) fn insert(&mut self, line: &str, block: &Block<'_>) {
+        if !self.out.is_empty() && !self.out.ends_with(b"\n") && !self.out.ends_with(b"\r") {
+            self.out.push(b'\n');
+        }
+        self.out.extend_from_slice(line.as_bytes());
+        self.out.extend_from_slice(nc_syntax::line_ending(block.bytes));
+        self.tally.figures.blocks_out += 1;
     }
 }

@@ -15,10 +15,7 @@ use crate::nose::{nose_mm, reserved_mm};
 use crate::notices::{SPIRAL_MM, hole_skipped, radii_apart_mm, refusal};
 use crate::state::State;
 use crate::tally::{Tally, raise};
-use crate::words::{Editing, MotionCodes, Original, direction_goals, letters, retreats, stated};
-
-/// What stands for a block; a hole written as moves has four.
-type Pieces = SmallVec<[nc_emit::Piece; 4]>;
+use crate::words::{Editing, MotionCodes, Original, Pieces, finer_than_words, letters, retreats, stated};
 
 /// A pass over blocks.
 pub(crate) struct Pass<'a> {
@@ -117,12 +114,13 @@ impl Pass<'_> {
         info.reframed = context.unnamed.map(|lost| lost.is_some_and(|lost| lost.line == block.line));
         if let [Motion::Feed(feed)] = motions {
             finer_than_words(&mut info, feed);
+            info.least_share = feed::least_share(self.job.dialect, feed, info.least_share);
         }
         // A repeated cycle is one block while each of its holes may stay as it is, else one block a hole.
         let before = (motions.len() > 1).then(|| self.state.corrector.clone());
         let mut pieces = Pieces::new();
         let mut corrections: SmallVec<[Correction; 1]> = SmallVec::new();
-        let mut untouched = true;
+        let (mut untouched, mut by_time) = (true, None);
         for motion in motions {
             let last_mm = &mut self.state.datum_mm;
             let motion = &going_on(&self.job.models, motion, context, info.datum_mm, last_mm);
@@ -138,23 +136,15 @@ impl Pass<'_> {
                 .map_err(|error| refusal(&error, motion, block, context))?;
             corrected.correction.after_mm += info.reserved_mm;
             untouched &= corrected.pieces.is_empty();
-            if let Some(turned) = &corrected.correction.turned {
-                feed::require_same(self.job.dialect, turned, motion, block, context)?;
-            }
+            let modal = self.state.interpreter.modal();
+            by_time = feed::require_same(self.job.dialect, modal, &corrected, motion, block, context)?;
             corrections.push(corrected.correction);
             if motions.len() == 1 && !corrected.pieces.is_empty() {
                 let mut editing = self.editing(context, letters, motion);
                 editing.rotary_decimals = info.rotary_decimals;
-                let only = corrected.pieces.len() == 1;
-                for (k, piece) in corrected.pieces.iter().enumerate() {
-                    if let (Some(named), Some(goals)) = (context.direction, piece.rotary) {
-                        let written = named.letters().map(|letter| letters.contains(letter));
-                        let (chain, own) = (&self.job.setup.rotary_chain, (rotary_end_deg(motion), written));
-                        let goals = direction_goals(chain, goals, &info, &mut at_deg, own);
-                        editing.direction = Some((named, goals));
-                    }
-                    pieces.push(editing.edit(piece, k == 0, only));
-                }
+                editing.by_time = by_time.map(|by_time| by_time.per_minute);
+                let chain = &self.job.setup.rotary_chain;
+                pieces = editing.edit_only(&corrected.pieces, motion, &info, chain, &mut at_deg);
             }
         }
         if let (false, Some(before)) = (untouched, before) {
@@ -169,6 +159,9 @@ impl Pass<'_> {
             return Err(vec![hole_skipped(block)]);
         }
         let length = self.out.len();
+        let [before, behind] =
+            by_time.map(|by_time| by_time.lines()).map_or([None, None], |lines| lines.map(Some));
+        before.iter().for_each(|line| self.insert(line, block));
         if untouched {
             self.pass(block, context, motions)?;
         } else {
@@ -177,6 +170,7 @@ impl Pass<'_> {
                 .rewrite(block, &pieces, &mut self.out)
                 .map_err(|diagnostic| vec![diagnostic])?;
         }
+        behind.iter().for_each(|line| self.insert(line, block));
         self.note(block, context, motions, &corrections, pieces.len().max(1), self.out.len() > length);
         Ok(())
     }
@@ -339,6 +333,7 @@ impl Pass<'_> {
                 Motion::Feed(Feed { rate: FeedRate::InverseTime(f), .. }) => Some(*f),
                 _ => None,
             },
+            by_time: None,
             decimals_feed: self.job.dialect.output.decimals_feed,
             dwell: match motion {
                 Motion::Hole(hole) => hole.cycle.dwell,
@@ -421,15 +416,6 @@ fn decimals(job: &Job<'_>, context: &Context) -> [u8; 3] {
     if inch { [job.dialect.output.decimals_inch; 3] } else { job.decimals_mm }
 }
 
-/// Where the rotary axes stand behind a motion by the program, degrees.
-fn rotary_end_deg(motion: &Motion) -> [f64; 3] {
-    match motion {
-        Motion::Feed(feed) => feed.end.rotary_deg,
-        Motion::Hole(hole) => hole.at_r.rotary_deg,
-        Motion::Rapid { end, .. } | Motion::Uncorrected { end, .. } => end.rotary_deg,
-    }
-}
-
 /// Decimals of a degree to which a direction is corrected that is written as a vector.
 const OF_A_VECTOR: u8 = 6;
 
@@ -466,25 +452,7 @@ pub(crate) fn info(
         centre_words: output.centre_words,
         arc_radius_tolerance_mm: output.arc_tolerance_mm(context.unit_mm),
         retreats: retreats(job.dialect),
-        reserved_mm: 0.0,
-    }
-}
-
-/// Words of rotary axes may be finer than the output step: what is left of them behind a split is too.
-fn finer_than_words(info: &mut correction::Block, feed: &Feed) {
-    /// No angle is programmed finer.
-    const MOST: u8 = 9;
-    for axis in 0..3 {
-        let [from, to] = [feed.start, feed.end].map(|place| place.rotary_deg[axis]);
-        let word = if info.incremental == [true; 3] { to - from } else { to };
-        let whole = |decimals: u8| {
-            let steps = word * f64::from(10u32.pow(u32::from(decimals)));
-            (steps - steps.round()).abs() < 1e-9 * steps.abs().max(1.0)
-        };
-        while from != to && info.rotary_decimals[axis] < MOST && !whole(info.rotary_decimals[axis]) {
-            info.rotary_decimals[axis] += 1;
-            info.rotary_step[axis] *= 10;
-        }
+        ..correction::Block::default()
     }
 }
 

@@ -79,12 +79,13 @@ impl Pass<'_> {
             }
             if let Some(run) = &run {
                 start_mm = found[done - 1].end_mm;
-                self.state.interpreter.go_to(start_mm);
+                let feed = found[..done].iter().rev().find_map(|end| end.feed);
+                self.state.interpreter.go_to(&found[done - 1], feed);
                 self.write_run(&lines, &found, run, info.decimals)?;
             }
             if done < count {
                 let end_mm = found[done].end_mm;
-                self.state.interpreter.go_to(end_mm);
+                self.state.interpreter.go_to(&found[done], found[done].feed);
                 if done + 1 < count {
                     reader.unread(&lines[done + 1]);
                 }

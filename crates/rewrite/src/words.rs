@@ -5,6 +5,7 @@ use nc_emit::{Piece, WordEdit, WordEdits};
 use nc_program::{Context, DirectionWords};
 use nc_syntax::dialect::{Action, Dialect, GCode};
 use nc_syntax::{Block, Letters};
+use smallvec::SmallVec;
 use toolpath::{Feed, Motion, PeckRetreats, RotaryChain, Shape};
 use units::decimal::Decimal;
 
@@ -91,7 +92,7 @@ pub(crate) const VECTOR_DECIMALS: u8 = 7;
 ///
 /// * `goals` – of A, B, C, of which `at_deg` is where they stand, and then where the piece leads
 /// * `own` – where the block's own direction leads, degrees, and which of its words are written
-pub(crate) fn direction_goals(
+fn direction_goals(
     chain: &RotaryChain,
     goals: [Goal; 3],
     block: &correction::Block,
@@ -118,6 +119,9 @@ pub(crate) fn direction_goals(
     chain.tool_direction(*at_deg).map(|part| Goal::Steps(units::decimal::round(part * scale)))
 }
 
+/// What stands for a block; a hole written as moves has four.
+pub(crate) type Pieces = SmallVec<[Piece; 4]>;
+
 /// Writes pieces of one motion as edits of its block.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Editing<'a> {
@@ -135,6 +139,8 @@ pub(crate) struct Editing<'a> {
     pub direction: Option<(DirectionWords, [Goal; 3])>,
     /// F under G93 and the decimals it is written with.
     pub inverse_time: Option<f64>,
+    /// The same where the program's F is a speed.
+    pub by_time: Option<f64>,
     pub decimals_feed: u8,
     /// P of the cycle, where a dwell must be written.
     pub dwell: Option<Decimal>,
@@ -214,13 +220,61 @@ impl Editing<'_> {
                 None
             }
         };
-        if let (Some(rate), false, PieceKind::Line | PieceKind::Arc { .. }) =
-            (self.inverse_time, only, piece.kind)
-        {
+        let rate = self.by_time.or(self.inverse_time.filter(|_| !only));
+        if let (Some(rate), PieceKind::Line | PieceKind::Arc { .. }) = (rate, piece.kind) {
             let steps = f64::from(10u32.pow(u32::from(self.decimals_feed)));
             let counts = units::decimal::counts(rate / piece.share.max(1e-9), steps).unwrap_or(i64::MAX);
             edited.words.push((b'F', WordEdit::Write { counts, decimals: self.decimals_feed }));
         }
         edited
+    }
+
+    /// The pieces of the only motion of a block.
+    ///
+    /// * `at_deg` – where the rotary axes stand before each
+    pub(crate) fn edit_only(
+        mut self,
+        pieces: &[correction::Piece],
+        motion: &Motion,
+        info: &correction::Block,
+        chain: &RotaryChain,
+        at_deg: &mut [f64; 3],
+    ) -> Pieces {
+        let edit = |(k, piece): (usize, &correction::Piece)| {
+            if let (Some(named), Some(goals)) = (self.context.direction, piece.rotary) {
+                let written = named.letters().map(|letter| self.letters.contains(letter));
+                let own = (rotary_end_deg(motion), written);
+                self.direction = Some((named, direction_goals(chain, goals, info, at_deg, own)));
+            }
+            self.edit(piece, k == 0, pieces.len() == 1)
+        };
+        pieces.iter().enumerate().map(edit).collect()
+    }
+}
+
+/// Words of rotary axes may be finer than the output step: what is left of them behind a split is too.
+pub(crate) fn finer_than_words(info: &mut correction::Block, feed: &Feed) {
+    /// No angle is programmed finer.
+    const MOST: u8 = 9;
+    for axis in 0..3 {
+        let [from, to] = [feed.start, feed.end].map(|place| place.rotary_deg[axis]);
+        let word = if info.incremental == [true; 3] { to - from } else { to };
+        let whole = |decimals: u8| {
+            let steps = word * f64::from(10u32.pow(u32::from(decimals)));
+            (steps - steps.round()).abs() < 1e-9 * steps.abs().max(1.0)
+        };
+        while from != to && info.rotary_decimals[axis] < MOST && !whole(info.rotary_decimals[axis]) {
+            info.rotary_decimals[axis] += 1;
+            info.rotary_step[axis] *= 10;
+        }
+    }
+}
+
+/// Where the rotary axes stand behind a motion by the program, degrees.
+fn rotary_end_deg(motion: &Motion) -> [f64; 3] {
+    match motion {
+        Motion::Feed(feed) => feed.end.rotary_deg,
+        Motion::Hole(hole) => hole.at_r.rotary_deg,
+        Motion::Rapid { end, .. } | Motion::Uncorrected { end, .. } => end.rotary_deg,
     }
 }

@@ -112,7 +112,7 @@ fn ends(text: &[u8], job: &Job<'_>) {
                 reader.unread(&line);
                 break;
             };
-            interpreter.go_to(black_box(end.end_mm));
+            interpreter.go_to(black_box(&end), end.feed);
         }
         if !reader.next(&mut block) {
             return;

@@ -67,6 +67,7 @@ pub(crate) fn dialect() -> Dialect {
             arc_radius_tolerance_inch: None,
             arc_radius_tolerance_share: 0.0,
             rotary_feed: None,
+            largest_inverse_feed: 99_999.999,
             peck_clearance_mm: 1.0,
             chip_retreat_mm: 0.5,
         },

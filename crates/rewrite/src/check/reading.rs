@@ -8,13 +8,14 @@ use machine_model::{Command, SolveError, Vector};
 use nc_expand::Expanded;
 use nc_program::process::{BlockSays, Deed, Process, Said, said};
 use nc_program::{Context, Interpreter};
-use nc_syntax::dialect::{Action, GCode};
+use nc_syntax::dialect::{Action, Dialect, GCode};
 use nc_syntax::{Block, Reader};
 use path_comparison::{Act, LEVER_MM, Pointing, Step};
 use smallvec::SmallVec;
 use toolpath::{Division, Feed, FeedRate, Motion, Position, Shape};
 
 use crate::datum::{Datum, LastDatum, going_on};
+use crate::feed::minutes;
 use crate::job::Job;
 use crate::notices::other_tool;
 
@@ -81,8 +82,8 @@ pub(super) struct Program<'a, 'n> {
     interpreter: Interpreter<'a>,
     numbers: &'n std::cell::RefCell<Numbers>,
     process: Process,
-    /// The number of the process, while it is what it was.
-    process_number: Option<u32>,
+    /// The number of the process, and of the same for what is known by its time, while they are what they were.
+    process_numbers: Option<[u32; 2]>,
     feed: Option<f64>,
     datum: LastDatum,
     /// [`Command::datum_mm`] of the last motion.
@@ -107,6 +108,27 @@ pub(super) struct Program<'a, 'n> {
     report_at: u64,
     /// What a line of a file is called.
     line_name: fn((usize, u64)) -> u64,
+}
+
+/// It takes a time that is known.
+fn is_timed(motion: &Motion) -> bool {
+    matches!(motion, Motion::Feed(Feed { rate: FeedRate::InverseTime(_), .. }))
+}
+
+/// Where rotary axes turn a program may be told by its time what the other tells by a speed.
+fn by_time(dialect: &Dialect, mut motion: Motion, context: &Context, feed: Option<f64>) -> Motion {
+    if let (Motion::Feed(turning), Some(feed)) = (&mut motion, feed)
+        && (turning.rate, turning.shape) == (FeedRate::PerMinute, Shape::Line)
+        && turning.start.rotary_deg != turning.end.rotary_deg
+    {
+        let [linear_mm, turned_deg] =
+            [|place: &Position| place.linear_mm, |place: &Position| place.rotary_deg]
+                .map(|of| (Vector::from(of(&turning.end)) - Vector::from(of(&turning.start))).norm());
+        if let Some(minutes) = minutes(dialect, context, [linear_mm, turned_deg], feed / context.unit_mm) {
+            turning.rate = FeedRate::InverseTime(1.0 / minutes);
+        }
+    }
+    motion
 }
 
 /// Room above what the correction proves of a motion: it adds in another order, mm.
@@ -140,7 +162,7 @@ impl<'a, 'n> Program<'a, 'n> {
             interpreter: Interpreter::new(job.dialect, job.setup),
             numbers,
             process: Process::at_start(job.dialect),
-            process_number: None,
+            process_numbers: None,
             feed: None,
             datum: LastDatum::default(),
             datum_mm: None,
@@ -209,13 +231,14 @@ impl<'a, 'n> Program<'a, 'n> {
             (self.job.options.tolerance_mm + rounding_mm(self.job, context)).max(stated_mm) * self.wider;
         says.before.into_iter().for_each(|said| self.say(said, line, limit_mm));
         if self.process.move_by(&context.kinematics) {
-            self.process_number = None;
+            self.process_numbers = None;
         }
         for motion in motions {
             if let Some(unknown) = self.other_tool(block, motion, context) {
                 (self.refused, self.ended) = (Some(vec![unknown]), true);
                 return;
             }
+            let told = by_time(self.job.dialect, *motion, context, self.feed);
             let (process, dwell) = match motion {
                 Motion::Hole(hole) => {
                     let process = self.process.in_cycle(self.interpreter.modal().cycle.as_ref());
@@ -228,13 +251,9 @@ impl<'a, 'n> Program<'a, 'n> {
                     let process = self.process.in_thread(code, block);
                     (self.numbers.borrow_mut().of_process(&process), None)
                 }
-                _ => (self.number(), None),
+                _ => (self.in_force()[usize::from(is_timed(&told))], None),
             };
-            let feed = if matches!(motion, Motion::Feed(Feed { rate: FeedRate::InverseTime(_), .. })) {
-                None
-            } else {
-                self.feed
-            };
+            let feed = self.feed.filter(|_| !is_timed(motion));
             let (tool_mm, kinematics) = (context.tool_mm, context.kinematics);
             let datum_mm = self.datum.error_mm(self.job.datums, self.job.machine(), context);
             let cuts = matches!(motion, Motion::Feed(_) | Motion::Hole(_));
@@ -246,11 +265,11 @@ impl<'a, 'n> Program<'a, 'n> {
                     touched.borrow_mut().push((datum.error_mm, context.clone()));
                 }
             }
-            let motion = &going_on(&self.job.models, motion, context, datum_mm, &mut self.datum_mm);
-            let act = Act::Motion { motion: *motion, tool_mm, datum_mm, kinematics, feed, dwell };
-            let pointing = self.pointing(motion, context);
+            let motion = going_on(&self.job.models, &told, context, datum_mm, &mut self.datum_mm);
+            let act = Act::Motion { motion, tool_mm, datum_mm, kinematics, feed, dwell };
+            let pointing = self.pointing(&motion, context);
             // Where directions are compared they are by themselves.
-            let turned_mm = if pointing.is_some() { 0.0 } else { self.turn_rounding_mm(motion) };
+            let turned_mm = if pointing.is_some() { 0.0 } else { self.turn_rounding_mm(&motion) };
             let limit_mm = (limit_mm * limit_mm + turned_mm * turned_mm).sqrt();
             self.ready.push(Step {
                 act,
@@ -269,10 +288,10 @@ impl<'a, 'n> Program<'a, 'n> {
             Said::Feed(feed) => self.feed = Some(feed),
             Said::Setting(setting) => {
                 self.process.set(setting);
-                self.process_number = None;
+                self.process_numbers = None;
             }
             Said::Deed(deed) => {
-                let process = self.number();
+                let [process, _] = self.in_force();
                 let act = Act::Deed(self.numbers.borrow_mut().of_deed(&deed));
                 self.ready.push(Step { act, line, process, limit_mm, compensated: false, pointing: None });
             }
@@ -313,9 +332,12 @@ impl<'a, 'n> Program<'a, 'n> {
         })
     }
 
-    /// The number of the process in force.
-    fn number(&mut self) -> u32 {
-        *self.process_number.get_or_insert_with(|| self.numbers.borrow_mut().of_process(&self.process))
+    /// The numbers of the process in force and of the same for a motion that is known by its time.
+    fn in_force(&mut self) -> [u32; 2] {
+        *self.process_numbers.get_or_insert_with(|| {
+            let by_time = self.process.by_time(self.job.dialect);
+            [&self.process, &by_time].map(|process| self.numbers.borrow_mut().of_process(process))
+        })
     }
 
     /// The refusal of a cut with a tool that the model knows nothing of.
