@@ -171,6 +171,11 @@ fn text(arguments: &New, machine: &Answers, language: Language) -> Result<String
         "Machine coordinates of the program's zero.",
         "Координаты станка, где нуль программы."
     );
+    let touched = say!(
+        language,
+        "How it was found: touched off on this machine, which adds its error there; \"true\": by an outside instrument.",
+        "Как он найден: касанием на этом станке, тогда в нём его погрешность; \"true\" — внешним прибором."
+    );
     let _ = write!(
         text,
         "\n# {signs}\n\
@@ -183,6 +188,10 @@ fn text(arguments: &New, machine: &Answers, language: Language) -> Result<String
          # {tip}\n\
          # default_mm = [0, 0, 0]\n\
          # lengths_mm = {{ H1 = 120.0 }}\n\
+         \n\
+         [program]\n\
+         # {touched}\n\
+         # zero = \"touched\"\n\
          \n\
          # {zero}\n\
          [work_offsets_mm]\n\
