@@ -71,7 +71,6 @@ const PHRASES: &[(&str, &str)] = &[
     ("Grbl 1.1, grblHAL, FluidNC, TinyG", "Grbl 1.1, grblHAL, FluidNC, TinyG"),
     ("The control starts in G0 G17 G21 G54 G90 G91.1 G94 with no offset in force: start.codes.", "При включении действуют G0 G17 G21 G54 G90 G91.1 G94, без коррекций: start.codes."),
     ("Cycles, G43 and cutter compensation are taken as LinuxCNC takes them, where the control has them (grblHAL, FluidNC): codes.", "Циклы, G43 и коррекция на радиус читаются как в LinuxCNC, где они у стойки есть (grblHAL, FluidNC): codes."),
-    ("A block may have 79 bytes, the line buffer of Grbl 1.1; the others take more: output.max_block_bytes.", "В кадре до 79 байт, это буфер строки Grbl 1.1; другие принимают больше: output.max_block_bytes."),
     ("The end of an arc may lie up to 0.005 mm or 0.1 % of the radius off it (Grbl 1.1, error 33): output.arc_radius_tolerance_mm, output.arc_radius_tolerance_share.", "Конец дуги может отходить от радиуса до 0.005 мм или 0.1 % радиуса (Grbl 1.1, ошибка 33): output.arc_radius_tolerance_mm, output.arc_radius_tolerance_share."),
     ("F counts the way of all axes, a degree of a rotary one as a millimetre (planners of Grbl and TinyG): output.rotary_feed.", "F считает путь всех осей, градус поворотной — как миллиметр (планировщики Grbl и TinyG): output.rotary_feed."),
     ("$H and G28.2 bring axes to their switches, wherever those are: commands.$H, codes.G28.2.", "$H и G28.2 выводят оси на датчики, где бы те ни стояли: commands.$H, codes.G28.2."),
