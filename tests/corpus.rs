@@ -3,12 +3,13 @@
 
 use crate::common::{files, have_interpreter, messages, referee, root, run};
 
-const DIALECTS: [&str; 10] = [
+const DIALECTS: [&str; 11] = [
     "fanuc",
     "haas",
     "mitsubishi",
     "okuma",
     "mach",
+    "grbl",
     "perspektiva",
     "linuxcnc",
     "balt-system",

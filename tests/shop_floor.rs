@@ -133,6 +133,25 @@ fn what_cannot_be_held_is_written_and_said_or_refused() {
     assert_eq!(place.check(UNNAMED, &out, &[&more[..], &["--accept", "0"]].concat())["passed"], false);
 }
 
+/// The figure of the message is all that the tool is off, of two axes here, so that accepting it is enough.
+#[test]
+fn a_program_that_begins_with_a_feed_is_written_as_near_as_the_message_says() {
+    let place = Place::new();
+    let leaning = SQUARE.replace("EA0Z_urad = 140", "EA0Z_urad = 140, EB0Z_urad = 110");
+    let machine = place.write("leaning.toml", &leaning);
+    let program = "G21 G90\nG1 Z2.5 F700\nG0 X33 Y21\nG1 Z-1.5 F90\nX61\nM2\n";
+    let more = ["-m", machine.as_str(), "-d", "linuxcnc", "--start-at", "95,88,157.5"];
+    let said = place.refused(program, &more);
+    // Over 95 mm of Z X leans by 10.45 um and Y by 13.3; the rest is the steps of the output.
+    assert!(said.starts_with("error[VP0514]: the tool would be 17.36 um off"), "{said}");
+    let um = said.split("`--accept ").nth(1).and_then(|rest| rest.split('`').next()).expect("a figure");
+    let more = [&more[..], &["--accept", um]].concat();
+    let (out, said) = place.corrected(program, &more);
+    assert!(said.contains("warning[VP0528]: 1 motion(s)"), "{said}");
+    assert!(!blocks(&out)[1].contains(['X', 'Y']), "{out}");
+    assert_eq!(place.check(program, &out, &more)["passed"], true);
+}
+
 /// A program held against itself is off by what its machine does, in each motion, and no more.
 #[test]
 fn a_program_that_was_not_corrected_is_measured_truly() {

@@ -24,30 +24,43 @@ impl Corrector<'_> {
     /// # Errors
     /// [`CorrectionError`] where the promise cannot be kept; nothing of the motion may be used then.
     pub fn correct(&mut self, motion: &Motion, block: &Block) -> Result<Corrected, CorrectionError> {
-        if self.options.accept_mm <= self.options.tolerance_mm {
-            return self.correct_within(motion, block);
-        }
         let before = self.clone();
         self.correct_within(motion, block).or_else(|error| {
-            if error.off_mm().is_none_or(|off_mm| off_mm > self.options.accept_mm) {
-                return Err(error);
-            }
-            self.correct_beyond(&before, motion, block).ok_or(error)
+            let Options { tolerance_mm, accept_mm, .. } = self.options;
+            let wider = WIDER.map(|times| times * tolerance_mm).into_iter().filter(|mm| *mm < accept_mm);
+            let within = error.off_mm().is_some_and(|off_mm| off_mm <= accept_mm);
+            let held = within.then(|| self.held_within(wider.chain([accept_mm]), &before, motion, block));
+            held.flatten().map(|(_, corrected)| corrected).ok_or_else(|| {
+                let CorrectionError::Unnamed { axis, distance_um } = error else { return error };
+                // What this axis alone is off is less than what would have to be accepted.
+                let least_mm = (1e-3 * distance_um).max(accept_mm);
+                let wider = [1.0].into_iter().chain(WIDER).map(|times| times * least_mm);
+                let held = self.held_within(wider, &before, motion, block);
+                let off_mm = held.map(|(mm, held)| {
+                    Some(held.correction.after_mm).filter(|mm| *mm > accept_mm).unwrap_or(mm)
+                });
+                CorrectionError::Unnamed { axis, distance_um: off_mm.map_or(distance_um, |mm| 1e3 * mm) }
+            })
         })
     }
 
-    /// The same by the narrowest of wider tolerances that holds.
-    fn correct_beyond(&mut self, before: &Self, motion: &Motion, block: &Block) -> Option<Corrected> {
-        let Options { tolerance_mm, accept_mm, .. } = self.options;
-        let wider = WIDER.map(|times| times * tolerance_mm).into_iter().filter(|mm| *mm < accept_mm);
-        wider.chain([accept_mm]).find_map(|mm| {
+    /// The same by the narrowest of wider tolerances that holds, and that tolerance, mm.
+    fn held_within(
+        &mut self,
+        wider_mm: impl IntoIterator<Item = f64>,
+        before: &Self,
+        motion: &Motion,
+        block: &Block,
+    ) -> Option<(f64, Corrected)> {
+        let tolerance_mm = self.options.tolerance_mm;
+        wider_mm.into_iter().find_map(|mm| {
             self.clone_from(before);
             self.options.tolerance_mm = mm;
             let corrected = self.correct_within(motion, block);
             self.options.tolerance_mm = tolerance_mm;
             let mut corrected = corrected.ok()?;
             corrected.correction.accepted = true;
-            Some(corrected)
+            Some((mm, corrected))
         })
     }
 

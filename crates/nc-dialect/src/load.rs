@@ -410,7 +410,7 @@ fn m_code(number: u16, key: &Spanned<String>, row: &MRow) -> Result<MCode, Diagn
 fn command(key: &Spanned<String>, row: &CommandRow) -> Result<Command, Diagnostic> {
     let name = key.get_ref();
     let sound = name.len() > 1
-        && name.starts_with(|c: char| c.is_ascii_uppercase() || c == '#')
+        && name.starts_with(|c: char| c.is_ascii_uppercase() || matches!(c, '#' | '$'))
         && name[1..].chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
     if !sound {
         return Err(Diagnostic::error(

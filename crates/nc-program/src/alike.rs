@@ -120,7 +120,7 @@ const CONTROLS: [Control; 6] = [
     },
     Control {
         name: "LinuxCNC",
-        dialects: &["linuxcnc", "linuxcnc-lathe", "mach"],
+        dialects: &["grbl", "linuxcnc", "linuxcnc-lathe", "mach"],
         signs: &[
             Sign::Numbered("O", " SUB"),
             Sign::Numbered("O", " CALL"),

@@ -1212,7 +1212,7 @@ impl Dialect {
     /// The table's row for a command: `text` is a [`crate::ItemKind::BracketCommand`]'s bytes, brackets included.
     #[must_use]
     pub fn command(&self, text: &[u8]) -> Option<&Command> {
-        let start = text.iter().position(|byte| byte.is_ascii_alphabetic() || *byte == b'#')?;
+        let start = text.iter().position(|byte| byte.is_ascii_alphabetic() || matches!(byte, b'#' | b'$'))?;
         let inside = |byte: &&u8| byte.is_ascii_alphanumeric() || **byte == b'_';
         let length = 1 + text[start + 1..].iter().take_while(inside).count();
         let name = text[start..start + length].to_ascii_uppercase();

@@ -416,6 +416,10 @@ impl<'d> Lexer<'d> {
                 .statement(line, at)
                 .unwrap_or_else(|| (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at))),
             b'#' => self.macro_statement(line, at, at + 1),
+            b'$' => match self.commands.iter().find(|command| names(command, &line[at..])) {
+                Some(command) => (ItemKind::BracketCommand, end_of_command(command, line, at)),
+                None => (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at)),
+            },
             b',' => self.comma_word(line, at),
             b'<' => match angle_name(&line[at..]) {
                 Ok((_, name)) => (ItemKind::Name, at + name.len()),

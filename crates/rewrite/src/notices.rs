@@ -321,8 +321,8 @@ pub(crate) fn refusal(
         CorrectionError::TooManyPecks { .. } => Diagnostic::error(TOO_MANY_PECKS, error.text())
             .at(word(b'Q').unwrap_or(whole), both!("far below what a drill bites", "столько сверло не снимает"))
             .help(both!("correct Q: it is the depth of one peck", "исправьте Q: это глубина одного прохода")),
-        CorrectionError::Unnamed { axis, .. } => {
-            let name = AXIS_NAMES[*axis];
+        CorrectionError::Unnamed { axis, distance_um } => {
+            let (name, um) = (AXIS_NAMES[*axis], distance_um.ceil());
             let since = context.unnamed[*axis].map_or(Text::EMPTY, |lost| both!(" since {}", " {:#}", lost.since()));
             let all = (0..3).filter(|i| context.unnamed[*i].is_some() || i == axis);
             let words: Vec<String> = all.map(|i| stands_at(i, motion, context)).collect();
@@ -335,7 +335,7 @@ pub(crate) fn refusal(
                     both!("write what changes {name} in a block of its own, and behind it a rapid that names {name}", "напишите то, что меняет {name}, отдельным кадром, а за ним быстрый ход, в котором названа {name}")
                 } else {
                     let words = words.join(" ");
-                    both!("before this block say once where the tool is to be, as in `G90 G0 {words}`", "скажите один раз перед этим кадром, где быть инструменту, например `G90 G0 {words}`")
+                    both!("before this block say once where the tool is to be, as in `G90 G0 {words}`; or accept it so with `--accept {um}`", "скажите один раз перед этим кадром, где быть инструменту, например `G90 G0 {words}`; или примите такое отклонение: `--accept {um}`")
                 })
         }
         CorrectionError::TurnedFrame { .. } => Diagnostic::error(nc_program::codes::FRAME, error.text())
