@@ -74,8 +74,12 @@ struct Excused {
 impl Excused {
     /// What of two processes is still compared.
     fn pair(&self, wanted: &Process, commanded: &Process) -> [Process; 2] {
-        [wanted, commanded]
-            .map(|process| Process { compensated: process.compensated.filter(|_| !self.blocks), ..*process })
+        let both_call = wanted.cycle.is_some() && commanded.cycle.is_some();
+        [wanted, commanded].map(|process| Process {
+            compensated: process.compensated.filter(|_| !self.blocks),
+            cycle: process.cycle.filter(|_| both_call),
+            ..*process
+        })
     }
 }
 

@@ -58,12 +58,14 @@ pub(crate) struct Process {
     pub(crate) feed: Option<f64>,
     /// Of feeds in a row under cutter compensation the how-manieth: each is a process of its own.
     pub(crate) compensated: Option<u32>,
+    /// The cycle that makes it, by number.
+    pub(crate) cycle: Option<u32>,
 }
 
 impl Process {
     /// Of what is no feed.
     fn of_number(number: u32) -> Self {
-        Self { number, feed: None, compensated: None }
+        Self { number, feed: None, compensated: None, cycle: None }
     }
 }
 
@@ -538,14 +540,14 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
     fn take(&mut self, step: &Step) {
         let Step { act, line, process: number, limit_mm, compensated, pointing } = *step;
         self.pointing = pointing;
-        let (motion, [tool_mm, datum_mm], kinematics, feed, dwell) = match act {
+        let (motion, [tool_mm, datum_mm], kinematics, feed, [dwell, cycle]) = match act {
             Act::Deed(deed) => {
                 let process = Process::of_number(number);
                 self.ready.push_back(Item::Deed(Deed { number: deed, line, process }));
                 return;
             }
-            Act::Motion { motion, tool_mm, datum_mm, kinematics, feed, dwell } => {
-                (motion, [tool_mm, datum_mm].map(Vector::from), kinematics, feed, dwell)
+            Act::Motion { motion, tool_mm, datum_mm, kinematics, feed, dwell, cycle } => {
+                (motion, [tool_mm, datum_mm].map(Vector::from), kinematics, feed, [dwell, cycle])
             }
         };
         if kinematics != self.kinematics {
@@ -557,7 +559,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             self.compensated += 1;
         }
         let block = Some(self.compensated).filter(|_| compensated && matches!(motion, Motion::Feed(_)));
-        let process = Process { number, feed, compensated: block };
+        let process = Process { number, feed, compensated: block, cycle };
         let common = Common { line, process, limit_mm, tool_mm, datum_mm, dwell };
         self.feeds += usize::from(matches!(motion, Motion::Feed(_) | Motion::Hole(_)));
         match motion {

@@ -12,7 +12,7 @@ use nc_syntax::dialect::{Action, GCode};
 use nc_syntax::{Block, Reader};
 use path_comparison::{Act, LEVER_MM, Pointing, Step};
 use smallvec::SmallVec;
-use toolpath::{Division, Feed, FeedRate, Motion, Position, Shape};
+use toolpath::{CycleKind, Division, Feed, FeedRate, Motion, Position, Shape};
 
 use crate::datum::{Datum, LastDatum, going_on};
 use crate::job::Job;
@@ -216,19 +216,24 @@ impl<'a, 'n> Program<'a, 'n> {
                 (self.refused, self.ended) = (Some(vec![unknown]), true);
                 return;
             }
-            let (process, dwell) = match motion {
+            let (process, [dwell, cycle]) = match motion {
                 Motion::Hole(hole) => {
-                    let process = self.process.in_cycle(self.interpreter.modal().cycle.as_ref());
+                    let in_cycle = self.process.in_cycle(self.interpreter.modal().cycle.as_ref());
                     let dwell = hole.cycle.dwell.map(|time| Deed::dwell(self.job.dialect, time));
+                    let own = self.number();
                     let mut numbers = self.numbers.borrow_mut();
-                    (numbers.of_process(&process), dwell.map(|dwell| numbers.of_deed(&dwell)))
+                    let cycle = numbers.of_process(&in_cycle);
+                    // What is bound to the spindle cannot be written as moves.
+                    let bound = hole.cycle.kind == CycleKind::Synchronised;
+                    let process = if bound { cycle } else { own };
+                    (process, [dwell.map(|dwell| numbers.of_deed(&dwell)), Some(cycle).filter(|_| !bound)])
                 }
                 Motion::Feed(_) if context.thread => {
                     let code = context.motion_code.unwrap_or(GCode(0));
                     let process = self.process.in_thread(code, block);
-                    (self.numbers.borrow_mut().of_process(&process), None)
+                    (self.numbers.borrow_mut().of_process(&process), [None; 2])
                 }
-                _ => (self.number(), None),
+                _ => (self.number(), [None; 2]),
             };
             let feed = if matches!(motion, Motion::Feed(Feed { rate: FeedRate::InverseTime(_), .. })) {
                 None
@@ -247,7 +252,7 @@ impl<'a, 'n> Program<'a, 'n> {
                 }
             }
             let motion = &going_on(&self.job.models, motion, context, datum_mm, &mut self.datum_mm);
-            let act = Act::Motion { motion: *motion, tool_mm, datum_mm, kinematics, feed, dwell };
+            let act = Act::Motion { motion: *motion, tool_mm, datum_mm, kinematics, feed, dwell, cycle };
             let pointing = self.pointing(motion, context);
             // Where directions are compared they are by themselves.
             let turned_mm = if pointing.is_some() { 0.0 } else { self.turn_rounding_mm(motion) };
