@@ -234,6 +234,37 @@ fn beside(posted: &str, corrected: &str, dialect: &str) -> String {
     said
 }
 
+/// On a control that starts in inches, or in another plane, the same words lead elsewhere.
+#[test]
+fn what_the_program_says_is_not_left_to_the_start_of_the_control() {
+    let posted = "G21 G17 G90 G94 G54 G40\nG0 X50. Y0. Z5.\nG1 Z0. F200.\nX0.\nG17 G2 X10. Y10. I10. J0.\nG0 Z5.\nM30\n";
+    for (right, wrong, code) in [
+        ("G21 ", "", "G21"),
+        ("G90 ", "", "G90"),
+        ("G94 ", "", "G94"),
+        ("G54 ", "", "G54"),
+        (" G40", "", "G40"),
+        ("\nG0 X50.", "\nX50.", "G0"),
+        // Behind the first cut is too late.
+        (
+            "G21 G17 G90 G94 G54 G40\nG0 X50. Y0. Z5.\nG1 Z0.",
+            "G17 G90 G94 G54 G40\nG0 X50. Y0. Z5.\nG1 Z0.\nG21",
+            "G21",
+        ),
+    ] {
+        let text = posted.replacen(right, wrong, 1);
+        assert_ne!(text, posted);
+        let said = beside(posted, &text, "fanuc");
+        assert!(said.contains(&format!("moves under {code} only where the control starts in it")), "{said}");
+        // What the program does not say either is its own affair, and saying it is none.
+        assert!(beside(&text, &text, "fanuc").contains("passed"), "{text}");
+        assert!(!wrong.is_empty() || beside(&text, posted, "fanuc").contains("passed"), "{text}");
+    }
+    let late = posted.replacen("G17 ", "", 1);
+    let said = beside(&late, &late.replacen("G17 ", "", 1), "fanuc");
+    assert!(said.contains("line 5 of the corrected program moves under G17 only"), "{said}");
+}
+
 /// A control that is not told how deep a peck is stops, or drills in one stroke.
 #[test]
 fn a_peck_cycle_keeps_its_words() {

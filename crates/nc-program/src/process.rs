@@ -338,7 +338,8 @@ fn preparatory(row: &CodeEntry, block: &Block<'_>, step: &Step, says: &mut Block
 }
 
 /// A code that holds until another of its group; motions and what a cycle needs are not among them.
-fn is_mode(row: &CodeEntry) -> bool {
+#[must_use]
+pub fn is_mode(row: &CodeEntry) -> bool {
     row.group != 0
         && row.group != MOTION_GROUP
         && !matches!(

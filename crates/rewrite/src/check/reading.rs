@@ -14,6 +14,7 @@ use path_comparison::{Act, LEVER_MM, Pointing, Step};
 use smallvec::SmallVec;
 use toolpath::{CycleKind, Division, Feed, FeedRate, Motion, Position, Shape};
 
+use super::unsaid::Unsaid;
 use crate::datum::{Datum, LastDatum, going_on};
 use crate::job::Job;
 use crate::notices::other_tool;
@@ -95,6 +96,8 @@ pub(super) struct Program<'a, 'n> {
     pub(super) accepted: Option<&'n BTreeMap<u64, f64>>,
     /// Where asked for: the error of each of them, and in which context it was used first.
     pub(super) touched: Option<&'n std::cell::RefCell<Touched>>,
+    /// What it leaves to the control's start.
+    pub(super) unsaid: Unsaid<'a>,
     ready: SmallVec<[Step; 4]>,
     ended: bool,
     /// Why it cannot be read on.
@@ -148,6 +151,7 @@ impl<'a, 'n> Program<'a, 'n> {
             touched: None,
             accepted: None,
             wider: 1.0,
+            unsaid: Unsaid::at_start(job.dialect),
             ready: SmallVec::new(),
             ended: false,
             refused: None,
@@ -207,6 +211,7 @@ impl<'a, 'n> Program<'a, 'n> {
             self.accepted.and_then(|accepted| accepted.get(&block.line)).map_or(0.0, |mm| mm + ROOM_MM);
         let limit_mm =
             (self.job.options.tolerance_mm + rounding_mm(self.job, context)).max(stated_mm) * self.wider;
+        self.unsaid.say(block, self.job.dialect);
         says.before.into_iter().for_each(|said| self.say(said, line, limit_mm));
         if self.process.move_by(&context.kinematics) {
             self.process_number = None;
@@ -216,6 +221,7 @@ impl<'a, 'n> Program<'a, 'n> {
                 (self.refused, self.ended) = (Some(vec![unknown]), true);
                 return;
             }
+            self.unsaid.rely(motion, line);
             let (process, [dwell, cycle]) = match motion {
                 Motion::Hole(hole) => {
                     let in_cycle = self.process.in_cycle(self.interpreter.modal().cycle.as_ref());
