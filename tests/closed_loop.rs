@@ -291,6 +291,26 @@ fn a_peck_cycle_keeps_its_words() {
     }
 }
 
+/// The radius in force, its side, and where it begins and ends.
+#[test]
+fn cutter_compensation_is_the_programs() {
+    let posted = "G21 G17 G90 G94 G54 G40\nG10 L12 P1 R5.\nG0 X50. Y80. Z50.\nG1 Z0. F300.\nG41 D1\nG0 X20. Y100.\nG1 X60.\nY140.\nX90.\nG40 G0 X100.\nG0 Z80.\nM30\n";
+    for (right, wrong, finding) in [
+        ("G10 L12 P1 R5.\n", "", "G10 L12 P1 R5 of line 2 is missing"),
+        ("R5.", "R6.", "G10 L12 P1 R5 of line 2 is missing"),
+        ("G41 D1", "G41", "no D is in force"),
+        ("D1", "D2", "D2 is in force"),
+        ("G41 D1\n", "", "G40 is in force"),
+        ("G41", "G42", "G42 is in force"),
+        ("G41 D1\nG0 X20. Y100.\nG1 X60.", "G0 X20. Y100.\nG41 D1 G1 X60.", "G40 is in force"),
+        ("G40 G0", "G0", "G41 is in force"),
+        ("X90.\nG40 G0", "G40 X90.\nG0", "G40 is in force"),
+    ] {
+        let said = beside(posted, &posted.replacen(right, wrong, 1), "fanuc");
+        assert!(said.contains(finding), "{wrong}: {said}");
+    }
+}
+
 /// A feed of rotary axes alone has a path too: nobody passes it who does not know where it leads.
 #[test]
 fn a_feed_of_rotary_axes_alone_is_judged() {
