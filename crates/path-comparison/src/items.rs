@@ -968,17 +968,13 @@ pub(crate) fn ends_alike(wanted: &Positioning, made: &Positioning) -> bool {
     const LIMITS: f64 = 4.0;
     /// Where an axis was left by its last correction the machine was off by no more, mm; or by twice what it is off here.
     const LEFT_MM: f64 = 1.0;
-    /// No tip is farther from a rotary axis, mm.
-    const ARM_MM: f64 = 1000.0;
     /// Angles of directions that are vectors have last digits of their own, degrees.
     const SAME_DEG: f64 = 1e-5;
-    let mut aside_rad = 0.0;
     for (wanted_deg, made_deg) in wanted.end.rotary_deg.iter().zip(made.end.rotary_deg) {
         let aside_deg = (wanted_deg - made_deg).abs();
         if aside_deg.is_nan() || aside_deg > wanted.aside_deg.max(SAME_DEG) {
             return false;
         }
-        aside_rad += aside_deg.to_radians();
     }
     if wanted.rapid != made.rapid {
         return false;
@@ -988,9 +984,7 @@ pub(crate) fn ends_alike(wanted: &Positioning, made: &Positioning) -> bool {
     // Written as moves they stand as the next feed will want them, from whichever side they come.
     let turns_mm = if wanted.of_cycle { made.turns_mm } else { made.aside_mm };
     let off_mm = made.off_mm(wanted).filter(|_| wanted.rapid);
-    // Of an end that is not known it cannot be said how its linear axes follow rotary axes that stand aside.
-    let aside_mm = if off_mm.is_some() { 0.0 } else { ARM_MM * aside_rad };
-    let near_mm = LIMITS * wanted.limit_mm + turns_mm + of_cycle_mm + aside_mm;
+    let near_mm = LIMITS * wanted.limit_mm + turns_mm + of_cycle_mm;
     (0..3).all(|axis| {
         let [(w_from, w_to), (from, to)] =
             [wanted, made].map(|p| (p.start.linear_mm[axis], p.end.linear_mm[axis]));
