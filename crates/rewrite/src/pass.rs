@@ -15,7 +15,7 @@ use crate::nose::{nose_mm, reserved_mm};
 use crate::notices::{SPIRAL_MM, hole_skipped, radii_apart_mm, refusal};
 use crate::state::State;
 use crate::tally::{Tally, raise};
-use crate::words::{Editing, MotionCodes, Original, direction_goals, letters, retreats, stated};
+use crate::words::{Editing, MotionCodes, Original, direction_goals, letters, lost, retreats, stated};
 
 /// What stands for a block; a hole written as moves has four.
 type Pieces = SmallVec<[nc_emit::Piece; 4]>;
@@ -333,6 +333,7 @@ impl Pass<'_> {
             letters,
             original: Original::of(motion),
             decimals: decimals(self.job, context),
+            lost: lost(self.job.dialect, self.state.emitter.motion(), motion, context),
             rotary_decimals: [0; 3],
             direction: None,
             inverse_time: match motion {
