@@ -333,7 +333,7 @@ impl Pass<'_> {
             letters,
             original: Original::of(motion),
             decimals: decimals(self.job, context),
-            lost: lost(self.job.dialect, self.state.emitter.motion(), motion, context),
+            lost: lost(self.job.dialect, self.state.emitter.motion(), motion, (context, letters)),
             rotary_decimals: [0; 3],
             direction: None,
             inverse_time: match motion {

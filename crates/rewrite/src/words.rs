@@ -57,12 +57,12 @@ pub(crate) fn stated(letters: Letters) -> Stated {
     }
 }
 
-/// P and Q of a hole whose cycle is not the code in force in the output.
+/// P and Q of a hole whose cycle is not the code in force in the output, those apart that its block says.
 pub(crate) fn lost(
     dialect: &Dialect,
     in_force: Option<GCode>,
     motion: &Motion,
-    context: &Context,
+    (context, letters): (&Context, Letters),
 ) -> [Option<(u8, Decimal)>; 2] {
     /// Of a peck, so that inches are what they were.
     const DECIMALS: u8 = 4;
@@ -76,7 +76,8 @@ pub(crate) fn lost(
         let word = mm / context.word_mm(plane.axes()[2]);
         Decimal { mantissa: (word * 1e4).round() as i64, decimals: DECIMALS }
     });
-    [(b'P', cycle.dwell), (b'Q', peck)].map(|(letter, word)| Some((letter, word?)))
+    let unsaid = |letter: u8| !letters.contains(letter);
+    [(b'P', cycle.dwell), (b'Q', peck)].map(|(letter, word)| Some((letter, word.filter(|_| unsaid(letter))?)))
 }
 
 /// How the control's pecks go back.
@@ -227,16 +228,14 @@ impl Editing<'_> {
             }
             PieceKind::Cycle { r } => {
                 push(b'R', r, self.decimals[n]);
-                let lost = self.lost.iter().flatten().filter(|(letter, _)| !self.letters.contains(*letter));
+                let lost = self.lost.iter().flatten();
                 lost.for_each(|(letter, word)| push(*letter, Goal::Steps(word.mantissa), word.decimals));
                 self.context.motion_code
             }
             PieceKind::AsStated => self.context.motion_code,
             PieceKind::Dwell => {
                 push(b'G', Goal::Steps(i64::from(self.codes.dwell.0 / 10)), 0);
-                if let Some(p) = self.dwell {
-                    push(b'P', Goal::Steps(p.mantissa), p.decimals);
-                }
+                self.dwell.iter().for_each(|p| push(b'P', Goal::Steps(p.mantissa), p.decimals));
                 None
             }
         };
