@@ -220,6 +220,97 @@ fn a_wrong_process_is_found_out() {
     }
 }
 
+/// What `check` says of a program and another that is to be its correction, on a machine without errors.
+fn beside(posted: &str, corrected: &str, dialect: &str) -> String {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [posted, corrected] = [("posted.nc", posted), ("out.nc", corrected)].map(|(name, text)| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("writable");
+        path.to_str().expect("a plain path").to_owned()
+    });
+    let ran = run(&["check", &posted, &corrected, "-m", "machine-profiles/perfect.toml", "-d", dialect]);
+    let said = messages(&ran) + &String::from_utf8_lossy(&ran.stdout);
+    assert_eq!(said.contains("passed"), ran.status.success());
+    said
+}
+
+/// On a control that starts in inches, or in another plane, the same words lead elsewhere.
+#[test]
+fn what_the_program_says_is_not_left_to_the_start_of_the_control() {
+    let posted = "G21 G17 G90 G94 G54 G40\nG0 X50. Y0. Z5.\nG1 Z0. F200.\nX0.\nG17 G2 X10. Y10. I10. J0.\nG0 Z5.\nM30\n";
+    for (right, wrong, code) in [
+        ("G21 ", "", "G21"),
+        ("G90 ", "", "G90"),
+        ("G94 ", "", "G94"),
+        ("G54 ", "", "G54"),
+        (" G40", "", "G40"),
+        ("\nG0 X50.", "\nX50.", "G0"),
+        // Behind the first cut is too late.
+        (
+            "G21 G17 G90 G94 G54 G40\nG0 X50. Y0. Z5.\nG1 Z0.",
+            "G17 G90 G94 G54 G40\nG0 X50. Y0. Z5.\nG1 Z0.\nG21",
+            "G21",
+        ),
+    ] {
+        let text = posted.replacen(right, wrong, 1);
+        assert_ne!(text, posted);
+        let said = beside(posted, &text, "fanuc");
+        assert!(said.contains(&format!("moves under {code} only where the control starts in it")), "{said}");
+        // What the program does not say either is its own affair, and saying it is none.
+        assert!(beside(&text, &text, "fanuc").contains("passed"), "{text}");
+        assert!(!wrong.is_empty() || beside(&text, posted, "fanuc").contains("passed"), "{text}");
+    }
+    let late = posted.replacen("G17 ", "", 1);
+    let said = beside(&late, &late.replacen("G17 ", "", 1), "fanuc");
+    assert!(said.contains("line 5 of the corrected program moves under G17 only"), "{said}");
+}
+
+/// A control that is not told how deep a peck is stops, or drills in one stroke.
+#[test]
+fn a_peck_cycle_keeps_its_words() {
+    let start = "G21 G17 G90 G94 G54\nG0 X0. Y0. Z50. S500 M3\n";
+    for (dialect, code) in
+        ["fanuc", "haas", "linuxcnc", "mach", "centroid"].iter().flat_map(|d| [(d, "G83"), (d, "G73")])
+    {
+        // As deep as one peck, so that the moves are those of G81.
+        let posted = format!("{start}G98 {code} X60. Y8. Z-5. R5. Q10. F200.\nX70.\nG80\nM30\n");
+        assert!(beside(&posted, &posted, dialect).contains("passed"), "{dialect}");
+        let lost = posted.replacen(" Q10.", "", 1);
+        for programs in [[&posted, &lost], [&lost, &lost]] {
+            let said = beside(programs[0], programs[1], dialect);
+            assert!(said.contains("VP0216") && said.contains("has no Q"), "{dialect}: {said}");
+        }
+        for (right, wrong) in [(format!("{code} "), "G81 "), ("Q10.".to_owned(), "Q12.")] {
+            let said = beside(&posted, &posted.replacen(&right, wrong, 1), dialect);
+            assert!(said.contains(&format!("is in force, on line 3 of the program {code} Q10")), "{said}");
+        }
+        // Written as moves they are the same holes.
+        let moves =
+            format!("{start}G0 X60. Y8.\nZ5.\nG1 Z-5. F200.\nG0 Z50.\nX70.\nZ5.\nG1 Z-5.\nG0 Z50.\nM30\n");
+        assert!(beside(&posted, &moves, dialect).contains("passed"), "{}", beside(&posted, &moves, dialect));
+    }
+}
+
+/// The radius in force, its side, and where it begins and ends.
+#[test]
+fn cutter_compensation_is_the_programs() {
+    let posted = "G21 G17 G90 G94 G54 G40\nG10 L12 P1 R5.\nG0 X50. Y80. Z50.\nG1 Z0. F300.\nG41 D1\nG0 X20. Y100.\nG1 X60.\nY140.\nX90.\nG40 G0 X100.\nG0 Z80.\nM30\n";
+    for (right, wrong, finding) in [
+        ("G10 L12 P1 R5.\n", "", "G10 L12 P1 R5 of line 2 is missing"),
+        ("R5.", "R6.", "G10 L12 P1 R5 of line 2 is missing"),
+        ("G41 D1", "G41", "no D is in force"),
+        ("D1", "D2", "D2 is in force"),
+        ("G41 D1\n", "", "G40 is in force"),
+        ("G41", "G42", "G42 is in force"),
+        ("G41 D1\nG0 X20. Y100.\nG1 X60.", "G0 X20. Y100.\nG41 D1 G1 X60.", "G40 is in force"),
+        ("G40 G0", "G0", "G41 is in force"),
+        ("X90.\nG40 G0", "G40 X90.\nG0", "G40 is in force"),
+    ] {
+        let said = beside(posted, &posted.replacen(right, wrong, 1), "fanuc");
+        assert!(said.contains(finding), "{wrong}: {said}");
+    }
+}
+
 /// A feed of rotary axes alone has a path too: nobody passes it who does not know where it leads.
 #[test]
 fn a_feed_of_rotary_axes_alone_is_judged() {
@@ -327,7 +418,7 @@ fn motions_that_lead_nowhere_are_there_in_their_own_process() {
         ("linuxcnc", "G17 G21 G40\nG0 X10. Y10. Z60.\nG1 Z50. F200.\nX10. Y10.\nH10. Q10. Z50.\nM2\n"),
         (
             "centroid",
-            "G17 G21 G40 G49 G54 G80 G90\nG0 X10. Y10. Z60.\nG98 G83 X20. Y40. R52. Z60.\nG1 Z50. F200.\nG42 D40.\nY40.\nG99 X20.\nG80\nM30\n",
+            "G17 G21 G40 G49 G54 G80 G90\nG0 X10. Y10. Z60.\nG98 G83 X20. Y40. R52. Z60. Q40.\nG1 Z50. F200.\nG42 D40.\nY40.\nG99 X20.\nG80\nM30\n",
         ),
     ] {
         let (input, out) = (path("in.nc"), path("out.nc"));

@@ -209,6 +209,61 @@ fn every_command_of_the_documents_runs_and_prints_what_they_show() {
     assert!(ran > 20 && shown > 10, "{ran} blocks ran and {shown} outputs were compared");
 }
 
+/// Commands of who changes vpost ask for hours, the network or root, and are not run: the shell reads them, and what they
+/// name of the tree is there.
+#[test]
+fn commands_that_are_not_run_are_commands_and_name_what_there_is() {
+    let (mut read_by_shell, mut named) = (0, 0);
+    let mut wrong = Vec::new();
+    for document in documents() {
+        let text = read(&document);
+        for fence in blocks_of(&fences(&text), "console") {
+            let read = Command::new("bash").args(["-n", "-c", &fence.text]).output().expect("bash is there");
+            read_by_shell += 1;
+            let said = String::from_utf8_lossy(&read.stderr);
+            if !said.is_empty() {
+                wrong.push(format!("{document}:{}: {said}", fence.line));
+            }
+            let commands = fence.text.lines().map(|line| line.split('#').next().unwrap_or_default());
+            for word in commands.flat_map(str::split_whitespace) {
+                let of_the_tree = |folder: &&str| word.starts_with(&format!("{folder}/"));
+                if ["tests", "crates", "docs", "samples", "machine-profiles", ".ci"]
+                    .iter()
+                    .any(|f| of_the_tree(&f))
+                {
+                    named += 1;
+                    if !root().join(word).exists() {
+                        wrong.push(format!("{document}:{}: there is no {word}", fence.line));
+                    }
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(read_by_shell > 10 && named > 15, "{read_by_shell} blocks, {named} files");
+}
+
+/// Of a script for somebody else's program its grammar is looked at, by the browser of the other tests.
+#[test]
+fn scripts_of_the_documents_are_read_by_an_interpreter() {
+    let Some(mut browser) = crate::devtools::Browser::start() else { return };
+    let mut found = 0;
+    for document in documents() {
+        let text = read(&document);
+        for fence in blocks_of(&fences(&text), "javascript") {
+            let script = serde_json::Value::from(fence.text.clone());
+            let said = browser
+                .evaluate(&format!("try {{ new Function({script}); \"\" }} catch (e) {{ String(e) }}"));
+            assert_eq!(said, "", "{document}:{}", fence.line);
+            found += 1;
+        }
+    }
+    let said = browser.evaluate("try { new Function(\"f(\"); \"\" } catch (e) { String(e) }");
+    assert_ne!(said, "", "it finds what is wrong");
+    assert!(found > 1, "{found} scripts");
+    browser.end();
+}
+
 /// Set, the documents take what their commands print.
 const UPDATE: &str = "VPOST_UPDATE_DOCS";
 

@@ -89,3 +89,22 @@ fn a_hole_written_as_moves_is_left_on_the_side_on_which_the_axis_leaves_it() {
     let [up, .., out] = heights.as_slice() else { panic!("{made}") };
     assert_eq!(up, out, "{made}");
 }
+
+/// P that a cycle written as moves has said holds for the cycle behind it, which stays one.
+#[test]
+fn words_of_a_cycle_that_is_written_as_moves_are_not_lost() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [posted, made] =
+        ["in.nc", "out.nc"].map(|name| folder.path().join(name).to_str().expect("a plain path").to_owned());
+    let text = "G17 G21 G40 G49 G54 G80 G90\nG0 X10. Y10. Z60.\nG99 G89 X20. Y20. Z0. R55. F100. P500\nG86 X40.\nX50.\nG80\nM30\n";
+    std::fs::write(&posted, text).expect("writable");
+    let options = ["-m", "tests/profiles/stan_s500_square_1100.toml", "-d", "fanuc", "--zero", "true", "-q"];
+    let ran = run(&[&[posted.as_str(), "-o", &made], &options[..]].concat());
+    assert!(ran.status.success(), "{}", messages(&ran));
+    let written = std::fs::read_to_string(&made).expect("readable");
+    let says = |line: &&str| line.starts_with("G86") && line.contains(" P500");
+    assert!(written.contains("G4 P500") && written.lines().filter(says).count() == 1, "{written}");
+    let check = run(&[&["check", posted.as_str(), &made], &options[..]].concat());
+    let said = String::from_utf8_lossy(&check.stdout);
+    assert!(!said.contains("is in force"), "{written}\n{said}");
+}

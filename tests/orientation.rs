@@ -141,6 +141,35 @@ fn a_damaged_direction_is_found() {
     }
 }
 
+/// The end of a rapid is where the tool stands before it cuts, with rotary axes aside as without.
+#[test]
+fn a_damaged_rapid_is_found() {
+    let led = program("fanuc", Said::Angles);
+    let led = led.replace("G0 X30.000 Y-15.000 Z46.000 A-35.000 C110.000", "G0 Z46.");
+    let led = led.replace("G49\n", "G49\nG0 Z200.\n");
+    let axes = led.replace("G43.4 H1", "G43 H1");
+    for text in [led, axes] {
+        let place = Place::new(&text);
+        corrected(&place, "fanuc", "full");
+        let made = std::fs::read_to_string(place.path("out.nc")).expect("readable");
+        let rapids: Vec<&str> =
+            made.lines().filter(|line| line.starts_with("G0 ") && line.contains('Z')).collect();
+        assert_eq!(rapids.len(), 3, "{made}");
+        for (line, letter) in rapids.iter().flat_map(|line| ['X', 'Y', 'Z'].map(|letter| (*line, letter))) {
+            let Some((before, behind)) = line.split_once(letter) else { continue };
+            let (number, rest) = behind.split_at(behind.find(' ').unwrap_or(behind.len()));
+            let mm: f64 = number.parse().expect("a number");
+            for by in [0.1, -0.1] {
+                let other = format!("{before}{letter}{:.3}{rest}", mm + by);
+                std::fs::write(place.path("damaged.nc"), made.replacen(line, &other, 1)).expect("writable");
+                let [from, to] = ["in.nc", "damaged.nc"].map(|name| place.path(name));
+                let check = run(&["check", &from, &to, "-m", PROFILE, "--orientation", "full"]);
+                assert_eq!(check.status.code(), Some(1), "{line}: {letter} {by}");
+            }
+        }
+    }
+}
+
 #[test]
 fn near_a_singularity_the_lines_are_named() {
     let text = "G21 G17 G90 G94 G54\nG0 A-30. C20.\nG43.4 H1\nG0 X20. Y10. Z40. A-30. C20.\nG1 Z5. F600.\nX25. A0.\nX30. A20.\nG0 Z50.\nG49\nM30\n";

@@ -162,6 +162,9 @@ pub(crate) fn holes(
             )));
     }
     let (r_mm, bottom_mm) = levels(env, words, state, &cycle, normal, &shift)?;
+    if cycle.peck_mm.is_none() && matches!(cycle.kind, CycleCode::PeckFull | CycleCode::PeckChip) {
+        return Err(incomplete(words, "Q"));
+    }
     below_r(env, words, state, r_mm, bottom_mm)?;
     let mut at = require_known(words, &state.axes, &Text::pair("the drilling cycle", "цикл сверления"))?;
     // Nothing but a motion code makes an unknown axis known again, and that ends the cycle: where the

@@ -161,7 +161,7 @@ pub struct Process {
     words: [Option<Argument>; LETTERS.len()],
     /// The last code of each modal group, by group.
     modes: SmallVec<[Mode; 12]>,
-    /// What is bound to the spindle, while it moves: a cycle that drills, a thread.
+    /// What makes a hole, or is bound to the spindle, while it moves: a cycle, a thread.
     cycle: Option<Mode>,
     /// The working plane that X, Y and Z are coordinates of, however many blocks have said it.
     tilted: Option<Tilted>,
@@ -205,14 +205,15 @@ impl Process {
         }
     }
 
-    /// The same while a cycle drills: of one bound to the spindle its code, Q and dwell are part of the process, any
-    /// other is its moves and dwells.
+    /// The same while a cycle drills: its code, Q where it pecks or is bound to the spindle, and of the latter the dwell,
+    /// which is a deed of any other.
     #[must_use]
     pub fn in_cycle(&self, cycle: Option<&CycleState>) -> Self {
-        let bound = cycle.filter(|cycle| cycle.kind == CycleCode::Synchronised);
-        let cycle = bound.map(|cycle| {
+        let cycle = cycle.map(|cycle| {
             let peck = cycle.peck_mm.map(|mm| Decimal { mantissa: (mm * 1e6).round() as i64, decimals: 6 });
-            let words = [(b'P', cycle.dwell), (b'Q', peck)];
+            let dwell = cycle.dwell.filter(|_| cycle.kind == CycleCode::Synchronised);
+            let peck = peck.filter(|_| !matches!(cycle.kind, CycleCode::Drill | CycleCode::Bore));
+            let words = [(b'P', dwell), (b'Q', peck)];
             let arguments = words.iter().filter_map(|(letter, word)| Some(Argument::new(*letter, (*word)?)));
             Mode { group: MOTION_GROUP, code: cycle.code, arguments: arguments.collect() }
         });
@@ -346,7 +347,8 @@ fn preparatory(row: &CodeEntry, block: &Block<'_>, step: &Step, says: &mut Block
 }
 
 /// A code that holds until another of its group; motions and what a cycle needs are not among them.
-fn is_mode(row: &CodeEntry) -> bool {
+#[must_use]
+pub fn is_mode(row: &CodeEntry) -> bool {
     row.group != 0
         && row.group != MOTION_GROUP
         && !matches!(
@@ -468,6 +470,8 @@ mod tests {
         let tapping = process.in_cycle(Some(&cycle));
         let words = [Text::same("G84 Q2.5"), Text::pair("no cycle of the spindle", "без цикла шпинделя")];
         assert_eq!(tapping.differences(&process), [words]);
-        assert_eq!(process.in_cycle(Some(&CycleState { kind: CycleCode::Drill, ..cycle })), process);
+        let (code, kind) = (GCode(810), CycleCode::Drill);
+        let drilling = process.in_cycle(Some(&CycleState { code, kind, ..cycle }));
+        assert_eq!(tapping.differences(&drilling), [["G84 Q2.5", "G81"].map(Text::same)]);
     }
 }

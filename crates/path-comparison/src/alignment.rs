@@ -76,11 +76,13 @@ impl Excused {
     fn pair(&self, wanted: &Process, commanded: &Process) -> [Process; 2] {
         // A speed is as good as the time that it comes to, which is compared by itself.
         let by_time = wanted.is_timed && commanded.is_timed && commanded.feed.is_none();
+        let both_call = wanted.cycle.is_some() && commanded.cycle.is_some();
         [wanted, commanded].map(|process| Process {
             number: process.number,
             feed: process.feed.filter(|_| !by_time),
             is_timed: false,
             compensated: process.compensated.filter(|_| !self.blocks),
+            cycle: process.cycle.filter(|_| both_call),
         })
     }
 }

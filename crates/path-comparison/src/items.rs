@@ -60,12 +60,14 @@ pub(crate) struct Process {
     pub(crate) is_timed: bool,
     /// Of feeds in a row under cutter compensation the how-manieth: each is a process of its own.
     pub(crate) compensated: Option<u32>,
+    /// The cycle that makes it, by number.
+    pub(crate) cycle: Option<u32>,
 }
 
 impl Process {
     /// Of what is no feed.
     fn of_number(number: u32) -> Self {
-        Self { number, feed: None, is_timed: false, compensated: None }
+        Self { number, feed: None, is_timed: false, compensated: None, cycle: None }
     }
 }
 
@@ -306,10 +308,10 @@ pub(crate) struct Positioning {
     pub(crate) start: Partial,
     /// Where they end.
     pub(crate) end: Partial,
-    /// Where the tool really ends, where that is known.
-    pub(crate) tip_mm: Option<Vector>,
     /// Where it starts and ends on the path that is compared, as far as known.
     places: [Option<Place>; 2],
+    /// The directions in which X, Y and Z move the tool where it ends, of what is made.
+    axes: [Vector; 3],
     /// The machine's error there, mm.
     pub(crate) error_mm: f64,
     /// How far aside the tool may end for axes that lie in their play, mm.
@@ -337,6 +339,14 @@ impl Positioning {
             // As far as known it stays where it is.
             _ => self.start == self.end,
         }
+    }
+
+    /// How far each linear axis is from where it would bring the tool to the end of another, mm: with rotary axes aside it
+    /// follows them. `None` where one of the ends is not known.
+    fn off_mm(&self, wanted: &Self) -> Option<[f64; 3]> {
+        let ([_, Some(to)], [_, Some(end)]) = (wanted.places, self.places) else { return None };
+        let off = Vector::from(first_three(&(end - to)));
+        Some(self.axes.map(|axis| axis.dot(&off)))
     }
 }
 
@@ -532,14 +542,14 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
     fn take(&mut self, step: &Step) {
         let Step { act, line, process: number, limit_mm, compensated, pointing } = *step;
         self.pointing = pointing;
-        let (motion, [tool_mm, datum_mm], kinematics, feed, dwell) = match act {
+        let (motion, [tool_mm, datum_mm], kinematics, feed, [dwell, cycle]) = match act {
             Act::Deed(deed) => {
                 let process = Process::of_number(number);
                 self.ready.push_back(Item::Deed(Deed { number: deed, line, process }));
                 return;
             }
-            Act::Motion { motion, tool_mm, datum_mm, kinematics, feed, dwell } => {
-                (motion, [tool_mm, datum_mm].map(Vector::from), kinematics, feed, dwell)
+            Act::Motion { motion, tool_mm, datum_mm, kinematics, feed, dwell, cycle } => {
+                (motion, [tool_mm, datum_mm].map(Vector::from), kinematics, feed, [dwell, cycle])
             }
         };
         if kinematics != self.kinematics {
@@ -552,7 +562,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         }
         let block = Some(self.compensated).filter(|_| compensated && matches!(motion, Motion::Feed(_)));
         let is_timed = matches!(motion, Motion::Feed(Feed { rate: FeedRate::InverseTime(_), .. }));
-        let process = Process { number, feed, is_timed, compensated: block };
+        let process = Process { number, feed, is_timed, compensated: block, cycle };
         let common = Common { line, process, limit_mm, tool_mm, datum_mm, dwell };
         self.feeds += usize::from(matches!(motion, Motion::Feed(_) | Motion::Hole(_)));
         match motion {
@@ -636,13 +646,16 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             let here = common.command(*at, rotary_rad);
             (0..3).map(|axis| turned_by_mm(self.model, &here, axis).norm()).sum()
         });
-        let tip_mm = error.map(|(at, error)| at + error);
-        let linear = if self.role == Role::Wanted { error.map(|(at, _)| at) } else { tip_mm };
+        let role = self.role;
+        let linear = error.map(|(at, error)| if role == Role::Wanted { at } else { at + error });
         let place = linear.map(|linear| self.place(&common.command(linear, rotary_rad)));
+        let tip_mm = |at: Vector| self.model.tip_mm(&at, &common.command(at, rotary_rad));
+        let zero_mm = tip_mm(Vector::zeros());
+        let axes = [Vector::x(), Vector::y(), Vector::z()].map(|axis| tip_mm(axis) - zero_mm);
         self.ready.push_back(Item::Position(Box::new(Positioning {
             start,
             end,
-            tip_mm,
+            axes,
             places: [std::mem::replace(&mut self.place, place), place],
             error_mm: error.map_or(0.0, |(_, error)| error.norm()),
             aside_mm,
@@ -958,17 +971,13 @@ pub(crate) fn ends_alike(wanted: &Positioning, made: &Positioning) -> bool {
     const LIMITS: f64 = 4.0;
     /// Where an axis was left by its last correction the machine was off by no more, mm; or by twice what it is off here.
     const LEFT_MM: f64 = 1.0;
-    /// No tip is farther from a rotary axis, mm.
-    const ARM_MM: f64 = 1000.0;
     /// Angles of directions that are vectors have last digits of their own, degrees.
     const SAME_DEG: f64 = 1e-5;
-    let mut aside_rad = 0.0;
     for (wanted_deg, made_deg) in wanted.end.rotary_deg.iter().zip(made.end.rotary_deg) {
         let aside_deg = (wanted_deg - made_deg).abs();
         if aside_deg.is_nan() || aside_deg > wanted.aside_deg.max(SAME_DEG) {
             return false;
         }
-        aside_rad += aside_deg.to_radians();
     }
     if wanted.rapid != made.rapid {
         return false;
@@ -977,8 +986,8 @@ pub(crate) fn ends_alike(wanted: &Positioning, made: &Positioning) -> bool {
     let of_cycle_mm = if made.of_cycle { 2.0 * made.error_mm } else { 0.0 };
     // Written as moves they stand as the next feed will want them, from whichever side they come.
     let turns_mm = if wanted.of_cycle { made.turns_mm } else { made.aside_mm };
-    // With its rotary axes aside the tool ends with linear axes that follow them.
-    let near_mm = LIMITS * wanted.limit_mm + turns_mm + of_cycle_mm + ARM_MM * aside_rad;
+    let off_mm = made.off_mm(wanted).filter(|_| wanted.rapid);
+    let near_mm = LIMITS * wanted.limit_mm + turns_mm + of_cycle_mm;
     (0..3).all(|axis| {
         let [(w_from, w_to), (from, to)] =
             [wanted, made].map(|p| (p.start.linear_mm[axis], p.end.linear_mm[axis]));
@@ -989,10 +998,9 @@ pub(crate) fn ends_alike(wanted: &Positioning, made: &Positioning) -> bool {
         let stands = by_as_much
             && w_from.is_some_and(|w_from| (w_to - w_from).abs() <= near_mm)
             && (w_to - to).abs() <= LEFT_MM.max(2.0 * made.error_mm);
-        let tip = made.tip_mm.filter(|_| wanted.rapid && wanted.tip_mm.is_some());
         stands
-            || match tip {
-                Some(tip) => (tip[axis] - w_to).abs() <= near_mm,
+            || match off_mm {
+                Some(off_mm) => off_mm[axis].abs() <= near_mm,
                 // Uncorrected: what the block moves ends as written or goes as far as written.
                 None => by_as_much || (w_to - to).abs() <= near_mm,
             }

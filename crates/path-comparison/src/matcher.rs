@@ -432,6 +432,11 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
         if wanted.number != made.number {
             self.mismatch(What::Process([wanted.number, made.number]), wanted_line, line);
         }
+        if let (Some(here), Some(there)) = (wanted.cycle, made.cycle)
+            && here != there
+        {
+            self.mismatch(What::Process([here, there]), wanted_line, line);
+        }
         if wanted.feed != made.feed {
             self.mismatch(What::Feed([wanted.feed, made.feed]), wanted_line, line);
         }

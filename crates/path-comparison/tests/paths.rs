@@ -47,6 +47,7 @@ fn step(feed: Feed, line: usize) -> Step {
         kinematics: Kinematics::Axes,
         feed: Some(100.0),
         dwell: None,
+        cycle: None,
     };
     Step { act, line: line as u64, process: 0, limit_mm: LIMIT_MM, compensated: false, pointing: None }
 }
@@ -160,8 +161,8 @@ fn timed(wanted: &[Feed], made: &[Feed]) -> Vec<u64> {
     let steps = |feeds: &[Feed]| -> Vec<Step> {
         let under_g93 = |(k, one): (usize, &Feed)| {
             let act = match step(*one, k + 1).act {
-                Act::Motion { motion, tool_mm, kinematics, dwell, .. } => {
-                    Act::Motion { motion, tool_mm, datum_mm: [0.0; 3], kinematics, dwell, feed: None }
+                Act::Motion { motion, tool_mm, datum_mm, kinematics, dwell, cycle, .. } => {
+                    Act::Motion { motion, tool_mm, datum_mm, kinematics, dwell, cycle, feed: None }
                 }
                 act @ Act::Deed(_) => act,
             };

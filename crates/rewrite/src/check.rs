@@ -2,6 +2,7 @@
 
 mod findings;
 mod reading;
+mod unsaid;
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -101,11 +102,11 @@ fn check_within(
             }
         }
         let may_skip = steps.iter().any(|program| program.may_skip);
-        let [Program { datums, .. }, _] = steps;
-        Ok((comparison, numbers.into_inner(), datums, may_skip))
+        let [Program { datums, unsaid: here, .. }, Program { unsaid: there, .. }] = steps;
+        Ok((comparison, numbers.into_inner(), datums, may_skip, there.beside(&here)))
     };
     let compared = |optional: Optional, traces: Traces| {
-        let (mut comparison, mut numbers, datums, may_skip) = run(optional, traces, 1.0)?;
+        let (mut comparison, mut numbers, datums, may_skip, unsaid) = run(optional, traces, 1.0)?;
         for wider in WIDER.into_iter().take_while(|_| strays(&comparison)) {
             let kept = if traces == Traces::Forgotten { Traces::Kept } else { traces };
             let (measured, named, ..) = run(optional, kept, wider)?;
@@ -114,7 +115,8 @@ fn check_within(
                 break;
             }
         }
-        let findings = findings::of(&comparison, &numbers);
+        let mut findings = findings::of(&comparison, &numbers);
+        findings.extend(unsaid);
         Ok((Checked { comparison, datums, accepted: accepted.len(), findings }, may_skip))
     };
     let (mut executed, may_skip) = compared(Optional::Executed, traces)?;

@@ -15,7 +15,9 @@ use crate::nose::{nose_mm, reserved_mm};
 use crate::notices::{SPIRAL_MM, hole_skipped, radii_apart_mm, refusal};
 use crate::state::State;
 use crate::tally::{Tally, raise};
-use crate::words::{Editing, MotionCodes, Original, Pieces, finer_than_words, letters, retreats, stated};
+use crate::words::{
+    Editing, MotionCodes, Original, Pieces, finer_than_words, letters, lost, retreats, stated,
+};
 
 /// A pass over blocks.
 pub(crate) struct Pass<'a> {
@@ -327,6 +329,7 @@ impl Pass<'_> {
             letters,
             original: Original::of(motion),
             decimals: decimals(self.job, context),
+            lost: lost(self.job.dialect, self.state.emitter.motion(), motion, (context, letters)),
             rotary_decimals: [0; 3],
             direction: None,
             inverse_time: match motion {

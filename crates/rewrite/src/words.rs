@@ -6,7 +6,7 @@ use nc_program::{Context, DirectionWords};
 use nc_syntax::dialect::{Action, Dialect, GCode};
 use nc_syntax::{Block, Letters};
 use smallvec::SmallVec;
-use toolpath::{Feed, Motion, PeckRetreats, RotaryChain, Shape};
+use toolpath::{CycleKind, Feed, Hole, Motion, PeckRetreats, RotaryChain, Shape};
 use units::decimal::Decimal;
 
 /// The dialect's own codes for the motions that correction writes.
@@ -56,6 +56,29 @@ pub(crate) fn stated(letters: Letters) -> Stated {
         radius: letters.contains(b'R'),
         turns: letters.contains(b'P'),
     }
+}
+
+/// P and Q of a hole whose cycle is not the code in force in the output, those apart that its block says.
+pub(crate) fn lost(
+    dialect: &Dialect,
+    in_force: Option<GCode>,
+    motion: &Motion,
+    (context, letters): (&Context, Letters),
+) -> [Option<(u8, Decimal)>; 2] {
+    /// Of a peck, so that inches are what they were.
+    const DECIMALS: u8 = 4;
+    let Motion::Hole(Hole { cycle, plane, .. }) = motion else { return [None; 2] };
+    let row = in_force.and_then(|code| dialect.code(code));
+    if row.is_some_and(|row| matches!(row.action, Action::Cycle(_))) {
+        return [None; 2];
+    }
+    let pecks = !matches!(cycle.kind, CycleKind::Drill | CycleKind::Bore);
+    let peck = cycle.peck_mm.filter(|_| pecks).map(|mm| {
+        let word = mm / context.word_mm(plane.axes()[2]);
+        Decimal { mantissa: (word * 1e4).round() as i64, decimals: DECIMALS }
+    });
+    let unsaid = |letter: u8| !letters.contains(letter);
+    [(b'P', cycle.dwell), (b'Q', peck)].map(|(letter, word)| Some((letter, word.filter(|_| unsaid(letter))?)))
 }
 
 /// How the control's pecks go back.
@@ -144,6 +167,8 @@ pub(crate) struct Editing<'a> {
     pub decimals_feed: u8,
     /// P of the cycle, where a dwell must be written.
     pub dwell: Option<Decimal>,
+    /// Words of a cycle that the output has left for moves, and that hold no longer there.
+    pub lost: [Option<(u8, Decimal)>; 2],
 }
 
 impl Editing<'_> {
@@ -209,14 +234,14 @@ impl Editing<'_> {
             }
             PieceKind::Cycle { r } => {
                 push(b'R', r, self.decimals[n]);
+                let lost = self.lost.iter().flatten();
+                lost.for_each(|(letter, word)| push(*letter, Goal::Steps(word.mantissa), word.decimals));
                 self.context.motion_code
             }
             PieceKind::AsStated => self.context.motion_code,
             PieceKind::Dwell => {
                 push(b'G', Goal::Steps(i64::from(self.codes.dwell.0 / 10)), 0);
-                if let Some(p) = self.dwell {
-                    push(b'P', Goal::Steps(p.mantissa), p.decimals);
-                }
+                self.dwell.iter().for_each(|p| push(b'P', Goal::Steps(p.mantissa), p.decimals));
                 None
             }
         };

@@ -12,8 +12,9 @@ use nc_syntax::dialect::{Action, Dialect, GCode};
 use nc_syntax::{Block, Reader};
 use path_comparison::{Act, LEVER_MM, Pointing, Step};
 use smallvec::SmallVec;
-use toolpath::{Division, Feed, FeedRate, Motion, Position, Shape};
+use toolpath::{CycleKind, Division, Feed, FeedRate, Motion, Position, Shape};
 
+use super::unsaid::Unsaid;
 use crate::datum::{Datum, LastDatum, going_on};
 use crate::feed::minutes;
 use crate::job::Job;
@@ -96,6 +97,8 @@ pub(super) struct Program<'a, 'n> {
     pub(super) accepted: Option<&'n BTreeMap<u64, f64>>,
     /// Where asked for: the error of each of them, and in which context it was used first.
     pub(super) touched: Option<&'n std::cell::RefCell<Touched>>,
+    /// What it leaves to the control's start.
+    pub(super) unsaid: Unsaid<'a>,
     ready: SmallVec<[Step; 4]>,
     ended: bool,
     /// Why it cannot be read on.
@@ -170,6 +173,7 @@ impl<'a, 'n> Program<'a, 'n> {
             touched: None,
             accepted: None,
             wider: 1.0,
+            unsaid: Unsaid::at_start(job.dialect),
             ready: SmallVec::new(),
             ended: false,
             refused: None,
@@ -229,6 +233,7 @@ impl<'a, 'n> Program<'a, 'n> {
             self.accepted.and_then(|accepted| accepted.get(&block.line)).map_or(0.0, |mm| mm + ROOM_MM);
         let limit_mm =
             (self.job.options.tolerance_mm + rounding_mm(self.job, context)).max(stated_mm) * self.wider;
+        self.unsaid.say(block, self.job.dialect);
         says.before.into_iter().for_each(|said| self.say(said, line, limit_mm));
         if self.process.move_by(&context.kinematics) {
             self.process_numbers = None;
@@ -239,19 +244,25 @@ impl<'a, 'n> Program<'a, 'n> {
                 return;
             }
             let told = by_time(self.job.dialect, *motion, context, self.feed);
-            let (process, dwell) = match motion {
+            self.unsaid.rely(motion, line);
+            let (process, [dwell, cycle]) = match motion {
                 Motion::Hole(hole) => {
-                    let process = self.process.in_cycle(self.interpreter.modal().cycle.as_ref());
+                    let in_cycle = self.process.in_cycle(self.interpreter.modal().cycle.as_ref());
                     let dwell = hole.cycle.dwell.map(|time| Deed::dwell(self.job.dialect, time));
+                    let [own, _] = self.in_force();
                     let mut numbers = self.numbers.borrow_mut();
-                    (numbers.of_process(&process), dwell.map(|dwell| numbers.of_deed(&dwell)))
+                    let cycle = numbers.of_process(&in_cycle);
+                    // What is bound to the spindle cannot be written as moves.
+                    let bound = hole.cycle.kind == CycleKind::Synchronised;
+                    let process = if bound { cycle } else { own };
+                    (process, [dwell.map(|dwell| numbers.of_deed(&dwell)), Some(cycle).filter(|_| !bound)])
                 }
                 Motion::Feed(_) if context.thread => {
                     let code = context.motion_code.unwrap_or(GCode(0));
                     let process = self.process.in_thread(code, block);
-                    (self.numbers.borrow_mut().of_process(&process), None)
+                    (self.numbers.borrow_mut().of_process(&process), [None; 2])
                 }
-                _ => (self.in_force()[usize::from(is_timed(&told))], None),
+                _ => (self.in_force()[usize::from(is_timed(&told))], [None; 2]),
             };
             let feed = self.feed.filter(|_| !is_timed(motion));
             let (tool_mm, kinematics) = (context.tool_mm, context.kinematics);
@@ -266,7 +277,7 @@ impl<'a, 'n> Program<'a, 'n> {
                 }
             }
             let motion = going_on(&self.job.models, &told, context, datum_mm, &mut self.datum_mm);
-            let act = Act::Motion { motion, tool_mm, datum_mm, kinematics, feed, dwell };
+            let act = Act::Motion { motion, tool_mm, datum_mm, kinematics, feed, dwell, cycle };
             let pointing = self.pointing(&motion, context);
             // Where directions are compared they are by themselves.
             let turned_mm = if pointing.is_some() { 0.0 } else { self.turn_rounding_mm(&motion) };
