@@ -229,7 +229,7 @@ fn commands_that_are_not_run_are_commands_and_name_what_there_is() {
                 let of_the_tree = |folder: &&str| word.starts_with(&format!("{folder}/"));
                 if ["tests", "crates", "docs", "samples", "machine-profiles", ".ci"]
                     .iter()
-                    .any(|f| of_the_tree(&f))
+                    .any(|f| of_the_tree(f))
                 {
                     named += 1;
                     if !root().join(word).exists() {

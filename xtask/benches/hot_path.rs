@@ -64,7 +64,7 @@ fn hot_path(c: &mut Criterion) {
                     && reader.plain_line(&mut line)
                 {
                     let end = feeds.end_of(&line, start).expect("coordinates");
-                    interpreter.go_to(black_box(end.end_mm));
+                    interpreter.go_to(black_box(&end), end.feed);
                 }
                 if !reader.next(&mut block) {
                     break;
