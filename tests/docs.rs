@@ -227,10 +227,7 @@ fn commands_that_are_not_run_are_commands_and_name_what_there_is() {
             let commands = fence.text.lines().map(|line| line.split('#').next().unwrap_or_default());
             for word in commands.flat_map(str::split_whitespace) {
                 let of_the_tree = |folder: &&str| word.starts_with(&format!("{folder}/"));
-                if ["tests", "crates", "docs", "samples", "machine-profiles", ".ci"]
-                    .iter()
-                    .any(|f| of_the_tree(f))
-                {
+                if ["tests", "crates", "docs", "samples", "machine-profiles", ".ci"].iter().any(of_the_tree) {
                     named += 1;
                     if !root().join(word).exists() {
                         wrong.push(format!("{document}:{}: there is no {word}", fence.line));
