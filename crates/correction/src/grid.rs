@@ -77,8 +77,8 @@ pub struct Block {
     pub retreats: PeckRetreats,
     /// What of the tolerance something else takes, mm: a tool that touches beside the tip which is corrected.
     pub reserved_mm: f64,
-    /// No line on the way to a start takes less than this share of its motion's time where that is told as inverse time: a
-    /// few micrometres at the motion's own speed would be an F of many digits, and slower is no harm.
+    /// No line on the way to a start takes less than this share of its motion's time under inverse time: a few micrometres
+    /// at the motion's own speed would be an F of many digits, and slower is no harm.
     pub least_share: f64,
 }
 

@@ -246,7 +246,7 @@ proptest! {
         let play_c = if sideways_mm == 0.0 { play_c } else { 0.0 };
         let (off, lines) = match furthest(Reversal { play_urad: [play_a, play_c], sideways_mm }, &places, true) {
             Ok(done) => done,
-            // Its half and the rounding of words come to the tolerance, and a turn of two steps has no place for it: refused.
+            // Half of it and rounding come to the tolerance, and a turn of two steps has no place for it: refused.
             Err(CorrectionError::Sideways { distance_um, .. }) if distance_um > 1.8 => return Ok(()),
             Err(error) => panic!("{error}"),
         };

@@ -205,8 +205,8 @@ impl Process {
         }
     }
 
-    /// The same while a cycle drills: its code, Q where it pecks or is bound to the spindle, and of the latter the dwell,
-    /// which is a deed of any other.
+    /// The same while a cycle drills: its code, Q where it pecks or is bound to the spindle, and of the latter the
+    /// dwell, which is a deed of any other.
     #[must_use]
     pub fn in_cycle(&self, cycle: Option<&CycleState>) -> Self {
         let cycle = cycle.map(|cycle| {

@@ -341,8 +341,8 @@ impl Positioning {
         }
     }
 
-    /// How far each linear axis is from where it would bring the tool to the end of another, mm: with rotary axes aside it
-    /// follows them. `None` where one of the ends is not known.
+    /// How far each linear axis is from where it would bring the tool to the end of another, mm: with rotary axes aside
+    /// it follows them. `None` where one of the ends is not known.
     fn off_mm(&self, wanted: &Self) -> Option<[f64; 3]> {
         let ([_, Some(to)], [_, Some(end)]) = (wanted.places, self.places) else { return None };
         let off = Vector::from(first_three(&(end - to)));

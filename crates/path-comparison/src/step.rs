@@ -50,7 +50,7 @@ pub enum Act {
         feed: Option<f64>,
         /// The deed of a cycle at the bottom of its hole.
         dwell: Option<u32>,
-        /// The process with the cycle that makes it: told apart where both programs call one, moves are the moves of either.
+        /// The process with the cycle that makes it: told apart where both programs call one, else moves are moves.
         cycle: Option<u32>,
     },
     /// Something is done at its place between two motions: deeds of both programs with one number are one deed.

@@ -1,8 +1,8 @@
 //! Whether F still means the programmed speed where rotary axes turn.
 //!
 //! Under G93 it does: time is shared out. Under G94 and G95 controls differ in what F counts. Where linear axes that were
-//! to stand have to follow a crooked rotary axis, or go another way than programmed, a block could take another time: it is
-//! told by its time, or refused where nobody knows that.
+//! to stand have to follow a crooked rotary axis, or go another way than programmed, a block could take another time: it
+//! is told by its time, or refused where nobody knows that.
 
 use correction::{Corrected, Turned};
 use diagnostic::{Diagnostic, both};

@@ -173,7 +173,7 @@ fn text(arguments: &New, machine: &Answers, language: Language) -> Result<String
     );
     let touched = say!(
         language,
-        "How it was found: touched off on this machine, which adds its error there; \"true\": by an outside instrument.",
+        "How it was found: touched off on this machine, with its error there; \"true\": by an outside instrument.",
         "Как он найден: касанием на этом станке, тогда в нём его погрешность; \"true\" — внешним прибором."
     );
     let _ = write!(
