@@ -181,7 +181,7 @@ fn a_turn_at_feed_rate_takes_the_time_it_took() {
     assert_eq!(told.iter().filter(|block| block.ends_with(" F15")).count(), 2, "{out}");
     assert_eq!(told.iter().filter(|block| **block == "G94 F300").count(), 2, "{out}");
     assert_eq!(place.check(program, &out, &more)["passed"], true);
-    for (from, to) in [(" F15", " F9"), ("G93\n", ""), ("G94 F300", "G95 F300")] {
+    for (from, to) in [(" F15", " F9"), (" F10\n", " F100\n"), ("G93\n", ""), ("G94 F300", "G95 F300")] {
         assert_eq!(place.check(program, &out.replace(from, to), &more)["passed"], false, "{from} -> {to}");
     }
     // What no two controls do alike is not told: F while the tip stands.

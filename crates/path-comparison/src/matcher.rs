@@ -234,8 +234,10 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             Reached::OnTheWay => self.result.approaches += 1,
             Reached::At(ahead, _) => {
                 if process.feed.is_some() {
-                    // Told by a speed, which is compared.
-                    self.time.made = [f64::NAN; 2];
+                    // Told by a speed, which is compared: it took the time that it should.
+                    if let Some(Reach { minutes, way_mm, .. }) = self.wanted_time() {
+                        self.time = Time { made: minutes, made_mm: way_mm[1] };
+                    }
                 } else if let Some(minutes) = minutes {
                     self.compare_time(minutes, way_mm, short, ahead, line);
                 }
