@@ -190,11 +190,7 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
         );
     }
     if let Some(largest) = output.largest_inverse_feed.as_ref().filter(|largest| *largest.get_ref() < 1.0) {
-        let message = both!(
-            "largest_inverse_feed = {} leaves motions of minutes",
-            "largest_inverse_feed = {} оставляет движения в минуты",
-            largest.get_ref()
-        );
+        let message = both!("largest_inverse_feed is below 1", "largest_inverse_feed меньше 1");
         report(largest.span(), message, both!("expected 999.999 or more", "ожидалось 999.999 или больше"));
     }
     if *output.max_block_number.get_ref() == 0 {
