@@ -313,11 +313,11 @@ pub(crate) fn refusal(
         CorrectionError::MustNotSplit { .. } if context.thread => {
             Diagnostic::error(MUST_NOT_SPLIT, error.text())
                 .at(whole, both!("a thread must stay one block: it is cut in step with the spindle", "резьба остаётся одним кадром: её нарезают согласованно со шпинделем"))
-                .help(both!("accept that much with `--tolerance`, or cut the thread uncorrected in a program of its own", "примите такое отклонение ключом `--tolerance` или нарезайте резьбу без исправления, отдельной программой"))
+                .help(both!("accept that much with `--accept`, or cut the thread uncorrected in a program of its own", "примите такое отклонение ключом `--accept` или нарезайте резьбу без исправления, отдельной программой"))
         }
         CorrectionError::MustNotSplit { .. } => Diagnostic::error(MUST_NOT_SPLIT, error.text())
             .at(whole, both!("this block must stay one, with none before it: cutter compensation is active", "кадр остаётся одним, и перед ним ничего не вставить: действует коррекция на радиус"))
-            .help(both!("give the profile the radius of a mill's cutter (`radii_mm` under `[tool]`), for pieces that the control offsets alike; or post with compensation computed in CAM, or accept more with `--tolerance`; where an axis with play turns at the start-up, come to it from the side to which it goes on", "задайте в профиле радиус фрезы (`radii_mm` в разделе `[tool]`), чтобы делить кадры, не меняя смещения; или считайте коррекцию в CAM, или допустите больше ключом `--tolerance`; если при включении коррекции меняет направление ось с люфтом, подходите с той стороны, в которую она пойдёт дальше")),
+            .help(both!("give the profile the radius of a mill's cutter (`radii_mm` under `[tool]`), for pieces that the control offsets alike; or post with compensation computed in CAM, or accept more with `--accept`; where an axis with play turns at the start-up, come to it from the side to which it goes on", "задайте в профиле радиус фрезы (`radii_mm` в разделе `[tool]`), чтобы делить кадры, не меняя смещения; или считайте коррекцию в CAM, или допустите больше ключом `--accept`; если при включении коррекции меняет направление ось с люфтом, подходите с той стороны, в которую она пойдёт дальше")),
         CorrectionError::TooManyPecks { .. } => Diagnostic::error(TOO_MANY_PECKS, error.text())
             .at(word(b'Q').unwrap_or(whole), both!("far below what a drill bites", "столько сверло не снимает"))
             .help(both!("correct Q: it is the depth of one peck", "исправьте Q: это глубина одного прохода")),
