@@ -25,23 +25,35 @@ impl Corrector<'_> {
     /// [`CorrectionError`] where the promise cannot be kept; nothing of the motion may be used then.
     pub fn correct(&mut self, motion: &Motion, block: &Block) -> Result<Corrected, CorrectionError> {
         let before = self.clone();
-        self.correct_within(motion, block).or_else(|error| {
-            let Options { tolerance_mm, accept_mm, .. } = self.options;
-            let wider = WIDER.map(|times| times * tolerance_mm).into_iter().filter(|mm| *mm < accept_mm);
-            let within = error.off_mm().is_some_and(|off_mm| off_mm <= accept_mm);
-            let held = within.then(|| self.held_within(wider.chain([accept_mm]), &before, motion, block));
-            held.flatten().map(|(_, corrected)| corrected).ok_or_else(|| {
-                let CorrectionError::Unnamed { axis, distance_um } = error else { return error };
-                // What this axis alone is off is less than what would have to be accepted.
-                let least_mm = (1e-3 * distance_um).max(accept_mm);
-                let wider = [1.0].into_iter().chain(WIDER).map(|times| times * least_mm);
-                let held = self.held_within(wider, &before, motion, block);
-                let off_mm = held.map(|(mm, held)| {
-                    Some(held.correction.after_mm).filter(|mm| *mm > accept_mm).unwrap_or(mm)
-                });
-                CorrectionError::Unnamed { axis, distance_um: off_mm.map_or(distance_um, |mm| 1e3 * mm) }
-            })
-        })
+        self.correct_within(motion, block).or_else(|error| self.correct_beyond(error, &before, motion, block))
+    }
+
+    /// What the tolerance cannot hold, as near as it can be within what is accepted; else the error, which says all that
+    /// would have to be.
+    fn correct_beyond(
+        &mut self,
+        error: CorrectionError,
+        before: &Self,
+        motion: &Motion,
+        block: &Block,
+    ) -> Result<Corrected, CorrectionError> {
+        let Options { tolerance_mm, accept_mm, .. } = self.options;
+        if error.off_mm().is_some_and(|off_mm| off_mm <= accept_mm) {
+            let wider_mm = WIDER.map(|times| times * tolerance_mm).into_iter().filter(|mm| *mm < accept_mm);
+            if let Some((_, held)) = self.held_within(wider_mm.chain([accept_mm]), before, motion, block) {
+                return Ok(held);
+            }
+        }
+        let CorrectionError::Unnamed { axis, distance_um } = error else { return Err(error) };
+        // What this axis alone is off is less than what would have to be accepted.
+        let least_mm = (1e-3 * distance_um).max(accept_mm);
+        let wider_mm = [1.0].into_iter().chain(WIDER).map(|times| times * least_mm);
+        let distance_um = match self.held_within(wider_mm, before, motion, block) {
+            Some((_, held)) if held.correction.after_mm > accept_mm => 1e3 * held.correction.after_mm,
+            Some((mm, _)) => 1e3 * mm,
+            None => distance_um,
+        };
+        Err(CorrectionError::Unnamed { axis, distance_um })
     }
 
     /// The same by the narrowest of wider tolerances that holds, and that tolerance, mm.
