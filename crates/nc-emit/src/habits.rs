@@ -1,10 +1,10 @@
 //! What the file's own text looks like.
 
-use nc_syntax::dialect::{Action, CodeEntry, GCode, Numbers, PointFree};
+use nc_syntax::dialect::{Action, CodeEntry, GCode, MOTION_GROUP, Numbers, PointFree};
 use nc_syntax::{Block, Dialect, ItemKind, Number, PlainLine, PlainWord, Sign, Span, Value};
 use units::decimal::Spelling;
 
-use crate::words::{MOTION_GROUP, g_code, is_motion};
+use crate::words::{g_code, is_motion};
 
 /// True for letters whose number is a length or an angle: without a point it may count least increments.
 ///

@@ -1,15 +1,13 @@
 //! Words of a block: which there are, and what they are for.
 
 use diagnostic::{Code, Diagnostic, both};
-use nc_syntax::dialect::{Action, CodeEntry, GCode};
+use nc_syntax::dialect::{Action, CodeEntry, GCode, MOTION_GROUP};
 use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
 
 /// A word that cannot be edited: missing, doubled, or not a plain number.
 pub(crate) const WORD_NOT_EDITABLE: Code = Code(603);
 /// G9: exact stop, at the end of this block's motion only.
 const EXACT_STOP: GCode = GCode(90);
-/// Modal group of G0 to G3, and in some dialects of the cycles.
-pub(crate) const MOTION_GROUP: u8 = 1;
 
 /// The only word of that letter, or `None`.
 pub(crate) fn find_word(block: &Block<'_>, wanted: u8) -> Result<Option<(Span, Value)>, Diagnostic> {

@@ -369,7 +369,7 @@ impl Evidence {
             (questions.dialect.unit_is_kept, self.states_unit, &self.first_length)
         {
             let [inch, millimetre] = [Action::Inch, Action::Millimetre].map(|action| {
-                let row = questions.dialect.codes.iter().find(|row| row.action == action);
+                let row = questions.dialect.row_of(&action);
                 row.map_or_else(String::new, |row| row.code.to_string())
             });
             let diagnostic = Diagnostic::doubt(

@@ -117,8 +117,7 @@ impl<'d> Interpreter<'d> {
     /// Rotary axes that the machine has are unknown until the program moves them, if it matters where they are.
     #[must_use]
     pub fn new(dialect: &'d Dialect, setup: &'d Setup) -> Self {
-        let motion_group =
-            dialect.codes.iter().find(|entry| entry.action == Action::Line).map(|entry| entry.group);
+        let motion_group = dialect.row_of(&Action::Line).map(|entry| entry.group);
         let env = Environment { dialect, setup, motion_group };
         let unknown = Axis::Unknown(Lost { why: Why::Start, line: 0 });
         let mut modal = Modal {

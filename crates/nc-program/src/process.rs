@@ -9,7 +9,7 @@
 use std::fmt;
 
 use diagnostic::{Text, both};
-use nc_syntax::dialect::{Action, CodeEntry, CycleCode, Dialect, GCode};
+use nc_syntax::dialect::{Action, CodeEntry, CycleCode, Dialect, GCode, MOTION_GROUP};
 use nc_syntax::{Block, ItemKind, Word};
 use smallvec::SmallVec;
 use toolpath::{Kinematics, Motion};
@@ -20,8 +20,6 @@ use crate::modal::{CycleState, FeedMode};
 
 /// Exact stop: holds at the end of its block, wherever in it the code stands.
 const EXACT_STOP: GCode = GCode(90);
-/// Modal group of the motion codes (numbers of the LinuxCNC and Fanuc manuals).
-const MOTION_GROUP: u8 = 1;
 /// Letters whose last number holds until the next: speed, tool, length, cutter radius, and what some controls add.
 const LETTERS: [u8; 5] = *b"STHDE";
 

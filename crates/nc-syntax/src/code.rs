@@ -10,6 +10,9 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct GCode(pub u16);
 
+/// Modal group of G0 to G3, and in some dialects of the cycles (numbers of the LinuxCNC and Fanuc manuals).
+pub const MOTION_GROUP: u8 = 1;
+
 impl GCode {
     /// 81 of G81, 54 of G54.1.
     pub(crate) const fn whole(self) -> usize {

@@ -5,7 +5,7 @@ use std::ops::Deref;
 use diagnostic::Text;
 use units::decimal::Decimal;
 
-pub use crate::code::GCode;
+pub use crate::code::{GCode, MOTION_GROUP};
 use crate::{Letters, Number};
 
 /// What `( )` means.
@@ -1201,6 +1201,12 @@ impl Dialect {
     #[inline]
     pub fn code(&self, code: GCode) -> Option<&CodeEntry> {
         self.codes.row(code)
+    }
+
+    /// The first row of the table that does this.
+    #[must_use]
+    pub fn row_of(&self, action: &Action) -> Option<&CodeEntry> {
+        self.codes.iter().find(|row| row.action == *action)
     }
 
     /// The table's row for an M number.

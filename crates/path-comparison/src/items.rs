@@ -561,7 +561,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             self.compensated += 1;
         }
         let block = Some(self.compensated).filter(|_| compensated && matches!(motion, Motion::Feed(_)));
-        let is_timed = matches!(motion, Motion::Feed(Feed { rate: FeedRate::InverseTime(_), .. }));
+        let is_timed = motion.inverse_time().is_some();
         let process = Process { number, feed, is_timed, compensated: block, cycle };
         let common = Common { line, process, limit_mm, tool_mm, datum_mm, dwell };
         self.feeds += usize::from(matches!(motion, Motion::Feed(_) | Motion::Hole(_)));

@@ -151,8 +151,8 @@ fn by_time(
     context: &Context,
 ) -> Option<ByTime> {
     let LastFeed::PerMinute(feed, units) = modal.last_feed else { return None };
-    let code = |wanted: Action| dialect.codes.iter().find(|row| row.action == wanted).map(|row| row.code);
-    let [inverse, speed] = [Action::FeedInverseTime, Action::FeedPerMinute].map(code);
+    let [inverse, speed] = [Action::FeedInverseTime, Action::FeedPerMinute]
+        .map(|action| dialect.row_of(&action).map(|row| row.code));
     let minutes = minutes(dialect, context, [turned.programmed_mm, turned.turned_deg], feed.to_f64())?;
     let says =
         |wanted: Option<GCode>| block.words().any(|word| word.letter == b'G' && word.g_code() == wanted);

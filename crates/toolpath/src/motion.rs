@@ -194,6 +194,17 @@ pub enum Motion {
     },
 }
 
+impl Motion {
+    /// F under G93, 1/min.
+    #[must_use]
+    pub const fn inverse_time(&self) -> Option<f64> {
+        match self {
+            Self::Feed(Feed { rate: FeedRate::InverseTime(per_minute), .. }) => Some(*per_minute),
+            _ => None,
+        }
+    }
+}
+
 /// What moves axes whose linear places are not corrected.
 ///
 /// ```

@@ -175,8 +175,7 @@ impl<'b> Writer<'b, '_> {
 
     /// The dialect's code for what is done.
     fn row(&self, action: &Action) -> Vec<u8> {
-        let row = self.dialect.codes.iter().find(|row| row.action == *action);
-        row.map_or_else(Vec::new, |row| row.code.to_string().into_bytes())
+        self.dialect.row_of(action).map_or_else(Vec::new, |row| row.code.to_string().into_bytes())
     }
 }
 

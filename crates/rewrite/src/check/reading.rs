@@ -113,11 +113,6 @@ pub(super) struct Program<'a, 'n> {
     line_name: fn((usize, u64)) -> u64,
 }
 
-/// It takes a time that is known.
-fn is_timed(motion: &Motion) -> bool {
-    matches!(motion, Motion::Feed(Feed { rate: FeedRate::InverseTime(_), .. }))
-}
-
 /// Where rotary axes turn a program may be told by its time what the other tells by a speed.
 fn by_time(dialect: &Dialect, mut motion: Motion, context: &Context, feed: Option<f64>) -> Motion {
     if let (Motion::Feed(turning), Some(feed)) = (&mut motion, feed)
@@ -262,9 +257,9 @@ impl<'a, 'n> Program<'a, 'n> {
                     let process = self.process.in_thread(code, block);
                     (self.numbers.borrow_mut().of_process(&process), [None; 2])
                 }
-                _ => (self.in_force()[usize::from(is_timed(&told))], [None; 2]),
+                _ => (self.in_force()[usize::from(told.inverse_time().is_some())], [None; 2]),
             };
-            let feed = self.feed.filter(|_| !is_timed(motion));
+            let feed = self.feed.filter(|_| motion.inverse_time().is_none());
             let (tool_mm, kinematics) = (context.tool_mm, context.kinematics);
             let datum_mm = self.datum.error_mm(self.job.datums, self.job.machine(), context);
             let cuts = matches!(motion, Motion::Feed(_) | Motion::Hole(_));

@@ -3,11 +3,8 @@
 use diagnostic::{Text, both};
 use nc_program::process::is_mode;
 use nc_syntax::Block;
-use nc_syntax::dialect::{CodeEntry, Dialect, GCode};
+use nc_syntax::dialect::{CodeEntry, Dialect, GCode, MOTION_GROUP};
 use toolpath::{Motion, Shape};
-
-/// Modal group of the motion codes.
-const MOTION_GROUP: u8 = 1;
 
 /// What a program leaves to the state in which its control starts.
 ///
@@ -29,6 +26,9 @@ impl<'d> Unsaid<'d> {
     }
 
     pub(super) fn say(&mut self, block: &Block<'_>, dialect: &Dialect) {
+        if self.relied.iter().all(Option::is_some) {
+            return;
+        }
         for word in block.words() {
             if let Some(row) = word.g_code().and_then(|code| dialect.code(code)) {
                 self.codes.retain(|unsaid| unsaid.group != row.group);
