@@ -108,3 +108,28 @@ fn words_of_a_cycle_that_is_written_as_moves_are_not_lost() {
     let said = String::from_utf8_lossy(&check.stdout);
     assert!(!said.contains("is in force"), "{written}\n{said}");
 }
+
+/// The same where nothing of the cycle behind has to be corrected: the machine leans up to X100 alone.
+#[test]
+fn words_of_a_cycle_are_not_lost_to_one_that_stays_as_it_is() {
+    let place = crate::common::Place::new();
+    place.write("x.csv", "position_mm,EBX_urad\n0,400\n100,400\n110,0\n400,0\n");
+    let axis = |letter: &str| format!("[axis.{letter}]\ntravel_mm = [0, 400]\nresolution_mm = 0.001\n");
+    let axes = axis("X") + "errors = \"x.csv\"\n" + &axis("Y") + &axis("Z");
+    let machine = place.write(
+        "m.toml",
+        &format!("format = 1\nname = \"leaning\"\ncontrol = \"fanuc\"\nchain = \"[w X Y b Z t]\"\n{axes}[work_offsets_mm]\nG54 = [0, 0, 0]\n"),
+    );
+    let posted = place.write(
+        "in.nc",
+        "G21 G90 G17 G54 G40\nG0 X50. Y50. Z300.\nG98 G89 X50. Y50. Z100. R250. P500 F100\nX200.\nG86 X300. Z100. R250.\nG80\nM30\n",
+    );
+    let made = place.write("out.nc", "");
+    let options = ["-m", &machine, "--zero", "true"];
+    let ran = run(&[&[posted.as_str(), "-o", &made, "--force"], &options[..]].concat());
+    assert!(ran.status.success(), "{}", messages(&ran));
+    let written = std::fs::read_to_string(&made).expect("readable");
+    assert!(written.contains("\nG86 X300. Z100. R250. P500\n"), "{written}");
+    let check = run(&[&["check", posted.as_str(), &made], &options[..]].concat());
+    assert!(check.status.success(), "{}", String::from_utf8_lossy(&check.stdout));
+}

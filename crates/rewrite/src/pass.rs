@@ -2,10 +2,11 @@
 
 use correction::Correction;
 use diagnostic::{Diagnostic, both};
+use nc_emit::WordEdits;
 use nc_program::{Context, CurvePart, Questions};
 use nc_syntax::{Block, Letters, Reader};
 use smallvec::SmallVec;
-use toolpath::{Feed, FeedRate, Hole, Motion};
+use toolpath::{Hole, Motion};
 
 use crate::cutter;
 use crate::datum::{LastDatum, going_on};
@@ -161,9 +162,8 @@ impl Pass<'_> {
             return Err(vec![hole_skipped(block)]);
         }
         let length = self.out.len();
-        let [before, behind] =
-            by_time.map(|by_time| by_time.lines()).map_or([None, None], |lines| lines.map(Some));
-        before.iter().for_each(|line| self.insert(line, block));
+        let beside = by_time.map(|by_time| by_time.lines());
+        beside.iter().for_each(|[before, _]| self.insert(before, block));
         if untouched {
             self.pass(block, context, motions)?;
         } else {
@@ -172,7 +172,7 @@ impl Pass<'_> {
                 .rewrite(block, &pieces, &mut self.out)
                 .map_err(|diagnostic| vec![diagnostic])?;
         }
-        behind.iter().for_each(|line| self.insert(line, block));
+        beside.iter().for_each(|[_, behind]| self.insert(behind, block));
         self.note(block, context, motions, &corrections, pieces.len().max(1), self.out.len() > length);
         Ok(())
     }
@@ -237,7 +237,9 @@ impl Pass<'_> {
     ) -> Result<(), Vec<Diagnostic>> {
         let relies = motions.iter().any(|motion| !matches!(motion, Motion::Uncorrected { .. }));
         if relies && context.motion_code.is_some() && self.state.emitter.motion() != context.motion_code {
-            let piece = nc_emit::Piece { motion: context.motion_code, words: nc_emit::WordEdits::new() };
+            let letters = letters(block, context);
+            let words = motions.iter().take(1).flat_map(|motion| self.lost(context, letters, motion));
+            let piece = nc_emit::Piece { motion: context.motion_code, words: words.collect() };
             return self
                 .state
                 .emitter
@@ -329,13 +331,10 @@ impl Pass<'_> {
             letters,
             original: Original::of(motion),
             decimals: decimals(self.job, context),
-            lost: lost(self.job.dialect, self.state.emitter.motion(), motion, (context, letters)),
+            lost: self.lost(context, letters, motion),
             rotary_decimals: [0; 3],
             direction: None,
-            inverse_time: match motion {
-                Motion::Feed(Feed { rate: FeedRate::InverseTime(f), .. }) => Some(*f),
-                _ => None,
-            },
+            inverse_time: motion.inverse_time(),
             by_time: None,
             decimals_feed: self.job.dialect.output.decimals_feed,
             dwell: match motion {
@@ -343,6 +342,10 @@ impl Pass<'_> {
                 _ => None,
             },
         }
+    }
+
+    fn lost(&self, context: &Context, letters: Letters, motion: &Motion) -> WordEdits {
+        lost(self.job.dialect, self.state.emitter.motion(), motion, (context, letters))
     }
 
     pub(crate) fn note(

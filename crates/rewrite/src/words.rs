@@ -27,9 +27,7 @@ impl MotionCodes {
 
     /// From the dialect's table; codes it lacks keep their usual numbers and are never written.
     pub(crate) fn of(dialect: &Dialect) -> Self {
-        let find = |action: Action, usual: u16| {
-            dialect.codes.iter().find(|entry| entry.action == action).map_or(GCode(usual), |entry| entry.code)
-        };
+        let find = |action: Action, usual: u16| dialect.row_of(&action).map_or(GCode(usual), |row| row.code);
         Self {
             rapid: find(Action::Rapid, 0),
             line: find(Action::Line, 10),
@@ -64,21 +62,23 @@ pub(crate) fn lost(
     in_force: Option<GCode>,
     motion: &Motion,
     (context, letters): (&Context, Letters),
-) -> [Option<(u8, Decimal)>; 2] {
+) -> WordEdits {
     /// Of a peck, so that inches are what they were.
     const DECIMALS: u8 = 4;
-    let Motion::Hole(Hole { cycle, plane, .. }) = motion else { return [None; 2] };
     let row = in_force.and_then(|code| dialect.code(code));
+    let Motion::Hole(Hole { cycle, plane, .. }) = motion else { return WordEdits::new() };
     if row.is_some_and(|row| matches!(row.action, Action::Cycle(_))) {
-        return [None; 2];
+        return WordEdits::new();
     }
     let pecks = !matches!(cycle.kind, CycleKind::Drill | CycleKind::Bore);
     let peck = cycle.peck_mm.filter(|_| pecks).map(|mm| {
-        let word = mm / context.word_mm(plane.axes()[2]);
-        Decimal { mantissa: (word * 1e4).round() as i64, decimals: DECIMALS }
+        let steps = mm / context.word_mm(plane.axes()[2]) * f64::from(10u32.pow(DECIMALS.into()));
+        Decimal { mantissa: units::decimal::round(steps), decimals: DECIMALS }
     });
-    let unsaid = |letter: u8| !letters.contains(letter);
-    [(b'P', cycle.dwell), (b'Q', peck)].map(|(letter, word)| Some((letter, word.filter(|_| unsaid(letter))?)))
+    let said_before =
+        [(b'P', cycle.dwell), (b'Q', peck)].into_iter().filter(|(letter, _)| !letters.contains(*letter));
+    let edit = |word: Decimal| WordEdit::Write { counts: word.mantissa, decimals: word.decimals };
+    said_before.filter_map(|(letter, word)| Some((letter, edit(word?)))).collect()
 }
 
 /// How the control's pecks go back.
@@ -146,7 +146,7 @@ fn direction_goals(
 pub(crate) type Pieces = SmallVec<[Piece; 4]>;
 
 /// Writes pieces of one motion as edits of its block.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Editing<'a> {
     pub codes: &'a MotionCodes,
     pub context: &'a Context,
@@ -168,7 +168,7 @@ pub(crate) struct Editing<'a> {
     /// P of the cycle, where a dwell must be written.
     pub dwell: Option<Decimal>,
     /// Words of a cycle that the output has left for moves, and that hold no longer there.
-    pub lost: [Option<(u8, Decimal)>; 2],
+    pub lost: WordEdits,
 }
 
 impl Editing<'_> {
@@ -234,8 +234,7 @@ impl Editing<'_> {
             }
             PieceKind::Cycle { r } => {
                 push(b'R', r, self.decimals[n]);
-                let lost = self.lost.iter().flatten();
-                lost.for_each(|(letter, word)| push(*letter, Goal::Steps(word.mantissa), word.decimals));
+                edited.words.extend(self.lost.iter().copied());
                 self.context.motion_code
             }
             PieceKind::AsStated => self.context.motion_code,
