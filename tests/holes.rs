@@ -1,27 +1,27 @@
 //! Holes on a machine that stands sideways elsewhere when an axis turns: where they begin, and where they are left.
 
-use crate::common::{messages, run};
+use crate::common::{Place as Folder, messages, run};
 
 const START: &str = "--start-at=20,20,400";
 const HEAD: &str = "G21 G17 G40 G49 G80 G90 G94 G54\nG0 X10. Y10.\nG43 H1 Z80.\nS900 M3\n";
 
-struct Place(tempfile::TempDir);
+struct Place(Folder);
 
 impl Place {
     /// A machine with tables for each direction. Z leans so much that holes are written as moves where `lean_urad` is large.
     fn new(lean_urad: f64) -> Self {
-        let place = Self(tempfile::tempdir().expect("a temporary folder"));
+        let place = Self(Folder::new());
         let table = |axis: &str, low: &str, high: &str| {
             let names = ["EX", "EY", "EZ"].map(|e| format!("{e}{axis}_um")).join(",");
             let angles = ["EA", "EB", "EC"].map(|e| format!("{e}{axis}_urad")).join(",");
             format!("position_mm,{names},{angles}\n-100,{low}\n600,{high}\n")
         };
-        place.write("x.csv", &table("X", "0,0,0,0,0,0", "0,0,0,30,-20,0"));
-        place.write("x_negative.csv", &table("X", "4,0,0,0,0,0", "4,0,0,30,-20,0"));
-        place.write("y.csv", &table("Y", "0,0,0,0,0,0", "0,0,0,20,0,0"));
-        place.write("y_negative.csv", &table("Y", "0,8,0,0,0,0", "0,8,0,20,0,0"));
-        place.write("z.csv", &table("Z", "0,0,0,0,0,0", "30,20,20,80,40,0"));
-        place.write("z_negative.csv", &table("Z", "0,2.6,2.4,0,0,0", "30,22.6,22.4,80,40,0"));
+        place.0.write("x.csv", &table("X", "0,0,0,0,0,0", "0,0,0,30,-20,0"));
+        place.0.write("x_negative.csv", &table("X", "4,0,0,0,0,0", "4,0,0,30,-20,0"));
+        place.0.write("y.csv", &table("Y", "0,0,0,0,0,0", "0,0,0,20,0,0"));
+        place.0.write("y_negative.csv", &table("Y", "0,8,0,0,0,0", "0,8,0,20,0,0"));
+        place.0.write("z.csv", &table("Z", "0,0,0,0,0,0", "30,20,20,80,40,0"));
+        place.0.write("z_negative.csv", &table("Z", "0,2.6,2.4,0,0,0", "30,22.6,22.4,80,40,0"));
         let axes = ["X", "Y", "Z"].map(|name| {
             let file = name.to_lowercase();
             format!(
@@ -29,7 +29,7 @@ impl Place {
                  errors_negative = \"{file}_negative.csv\" }}\n"
             )
         });
-        place.write(
+        place.0.write(
             "machine.toml",
             &format!(
                 "format = 1\nname = \"holes\"\ncontrol = \"fanuc\"\nchain = \"[w Y b X Z t]\"\n{}\
@@ -42,16 +42,12 @@ impl Place {
     }
 
     fn path(&self, name: &str) -> String {
-        self.0.path().join(name).to_str().expect("a plain path").to_owned()
-    }
-
-    fn write(&self, name: &str, text: &str) {
-        std::fs::write(self.path(name), text).expect("writable");
+        self.0.0.path().join(name).to_str().expect("a plain path").to_owned()
     }
 
     /// What is made of a program, which `check` must pass.
     fn corrected(&self, program: &str) -> String {
-        self.write("in.nc", program);
+        self.0.write("in.nc", program);
         let [from, to, machine] = ["in.nc", "out.nc", "machine.toml"].map(|name| self.path(name));
         let ran = run(&[&from, "-m", &machine, START, "-o", &to]);
         assert!(ran.status.success(), "{}", messages(&ran));
@@ -93,43 +89,28 @@ fn a_hole_written_as_moves_is_left_on_the_side_on_which_the_axis_leaves_it() {
 /// P that a cycle written as moves has said holds for the cycle behind it, which stays one.
 #[test]
 fn words_of_a_cycle_that_is_written_as_moves_are_not_lost() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let [posted, made] =
-        ["in.nc", "out.nc"].map(|name| folder.path().join(name).to_str().expect("a plain path").to_owned());
-    let text = "G17 G21 G40 G49 G54 G80 G90\nG0 X10. Y10. Z60.\nG99 G89 X20. Y20. Z0. R55. F100. P500\nG86 X40.\nX50.\nG80\nM30\n";
-    std::fs::write(&posted, text).expect("writable");
-    let options = ["-m", "tests/profiles/stan_s500_square_1100.toml", "-d", "fanuc", "--zero", "true", "-q"];
-    let ran = run(&[&[posted.as_str(), "-o", &made], &options[..]].concat());
-    assert!(ran.status.success(), "{}", messages(&ran));
-    let written = std::fs::read_to_string(&made).expect("readable");
+    let place = Folder::new();
+    let text = "G17 G21 G40 G54 G90\nG0 X10. Y10. Z60.\nG99 G89 X20. Y20. Z0. R55. F100. P500\nG86 X40.\nX50.\nG80\nM30\n";
+    let options = ["-m", "tests/profiles/stan_s500_square_1100.toml", "-d", "fanuc", "--zero", "true"];
+    let (written, _) = place.corrected(text, &options);
     let says = |line: &&str| line.starts_with("G86") && line.contains(" P500");
     assert!(written.contains("G4 P500") && written.lines().filter(says).count() == 1, "{written}");
-    let check = run(&[&["check", posted.as_str(), &made], &options[..]].concat());
-    let said = String::from_utf8_lossy(&check.stdout);
+    let said = place.check(text, &written, &options).to_string();
     assert!(!said.contains("is in force"), "{written}\n{said}");
 }
 
 /// The same where nothing of the cycle behind has to be corrected: the machine leans up to X100 alone.
 #[test]
 fn words_of_a_cycle_are_not_lost_to_one_that_stays_as_it_is() {
-    let place = crate::common::Place::new();
+    let place = Folder::new();
     place.write("x.csv", "position_mm,EBX_urad\n0,400\n100,400\n110,0\n400,0\n");
+    let head = "format = 1\nname = \"leaning\"\ncontrol = \"fanuc\"\nchain = \"[w X Y b Z t]\"\n";
     let axis = |letter: &str| format!("[axis.{letter}]\ntravel_mm = [0, 400]\nresolution_mm = 0.001\n");
     let axes = axis("X") + "errors = \"x.csv\"\n" + &axis("Y") + &axis("Z");
-    let machine = place.write(
-        "m.toml",
-        &format!("format = 1\nname = \"leaning\"\ncontrol = \"fanuc\"\nchain = \"[w X Y b Z t]\"\n{axes}[work_offsets_mm]\nG54 = [0, 0, 0]\n"),
-    );
-    let posted = place.write(
-        "in.nc",
-        "G21 G90 G17 G54 G40\nG0 X50. Y50. Z300.\nG98 G89 X50. Y50. Z100. R250. P500 F100\nX200.\nG86 X300. Z100. R250.\nG80\nM30\n",
-    );
-    let made = place.write("out.nc", "");
+    let machine = place.write("m.toml", &format!("{head}{axes}[work_offsets_mm]\nG54 = [0, 0, 0]\n"));
+    let text = "G21 G90 G17 G54\nG0 X50. Y50. Z300.\nG89 Z100. R250. P500 F100\nX200.\nG86 X300. Z100. R250.\nG80\nM30\n";
     let options = ["-m", &machine, "--zero", "true"];
-    let ran = run(&[&[posted.as_str(), "-o", &made, "--force"], &options[..]].concat());
-    assert!(ran.status.success(), "{}", messages(&ran));
-    let written = std::fs::read_to_string(&made).expect("readable");
+    let (written, _) = place.corrected(text, &options);
     assert!(written.contains("\nG86 X300. Z100. R250. P500\n"), "{written}");
-    let check = run(&[&["check", posted.as_str(), &made], &options[..]].concat());
-    assert!(check.status.success(), "{}", String::from_utf8_lossy(&check.stdout));
+    assert_eq!(place.check(text, &written, &options)["passed"], true, "{written}");
 }

@@ -1,33 +1,10 @@
 //! What a control brings along and a program does not say, what cannot be held within the tolerance, and whether the numbers
 //! of `check` are true.
 
-use crate::common::{Place, messages, root, run};
+use crate::common::{Place, root};
 
 const STAN: &str = "machine-profiles/stan_s500.toml";
 const OFFSET: &str = "G54=140,100,100";
-
-impl Place {
-    /// The corrected program, and what was said of it.
-    fn corrected(&self, program: &str, arguments: &[&str]) -> (String, String) {
-        let input = self.write("in.nc", program);
-        let ran = run(&[&["correct", &input], arguments].concat());
-        assert!(ran.status.success(), "{}", messages(&ran));
-        (String::from_utf8(ran.stdout.clone()).expect("ASCII"), messages(&ran))
-    }
-
-    fn refused(&self, program: &str, arguments: &[&str]) -> String {
-        let input = self.write("in.nc", program);
-        let ran = run(&[&["correct", &input], arguments].concat());
-        assert_eq!(ran.status.code(), Some(1), "{}", messages(&ran));
-        messages(&ran)
-    }
-
-    fn check(&self, program: &str, corrected: &str, arguments: &[&str]) -> serde_json::Value {
-        let (input, out) = (self.write("in.nc", program), self.write("out.nc", corrected));
-        let ran = run(&[&["check", &input, &out, "--json"], arguments].concat());
-        serde_json::from_slice(&ran.stdout).expect("JSON")
-    }
-}
 
 /// The words of each block that is in it, comments apart.
 fn blocks(text: &str) -> Vec<&str> {

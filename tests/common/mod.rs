@@ -41,6 +41,27 @@ impl Place {
         std::fs::write(&path, text).expect("writable");
         path.to_str().expect("a plain path").to_owned()
     }
+
+    /// The corrected program, and what was said of it.
+    pub(crate) fn corrected(&self, program: &str, arguments: &[&str]) -> (String, String) {
+        let input = self.write("in.nc", program);
+        let ran = run(&[&["correct", &input], arguments].concat());
+        assert!(ran.status.success(), "{}", messages(&ran));
+        (String::from_utf8(ran.stdout.clone()).expect("ASCII"), messages(&ran))
+    }
+
+    pub(crate) fn refused(&self, program: &str, arguments: &[&str]) -> String {
+        let input = self.write("in.nc", program);
+        let ran = run(&[&["correct", &input], arguments].concat());
+        assert_eq!(ran.status.code(), Some(1), "{}", messages(&ran));
+        messages(&ran)
+    }
+
+    pub(crate) fn check(&self, program: &str, corrected: &str, arguments: &[&str]) -> serde_json::Value {
+        let (input, out) = (self.write("in.nc", program), self.write("out.nc", corrected));
+        let ran = run(&[&["check", &input, &out, "--json"], arguments].concat());
+        serde_json::from_slice(&ran.stdout).expect("JSON")
+    }
 }
 
 /// Files of a folder with one of the endings, in order.
