@@ -90,7 +90,8 @@ fn a_hole_written_as_moves_is_left_on_the_side_on_which_the_axis_leaves_it() {
 #[test]
 fn words_of_a_cycle_that_is_written_as_moves_are_not_lost() {
     let place = Folder::new();
-    let text = "G17 G21 G40 G54 G90\nG0 X10. Y10. Z60.\nG99 G89 X20. Y20. Z0. R55. F100. P500\nG86 X40.\nX50.\nG80\nM30\n";
+    let text = "G17 G21 G40 G54 G90\nG0 X10. Y10. Z60.\nG99 G89 X20. Y20. Z0. R55. F100. P500\n\
+                G86 X40.\nX50.\nG80\nM30\n";
     let options = ["-m", "tests/profiles/stan_s500_square_1100.toml", "-d", "fanuc", "--zero", "true"];
     let (written, _) = place.corrected(text, &options);
     let says = |line: &&str| line.starts_with("G86") && line.contains(" P500");
@@ -108,7 +109,8 @@ fn words_of_a_cycle_are_not_lost_to_one_that_stays_as_it_is() {
     let axis = |letter: &str| format!("[axis.{letter}]\ntravel_mm = [0, 400]\nresolution_mm = 0.001\n");
     let axes = axis("X") + "errors = \"x.csv\"\n" + &axis("Y") + &axis("Z");
     let machine = place.write("m.toml", &format!("{head}{axes}[work_offsets_mm]\nG54 = [0, 0, 0]\n"));
-    let text = "G21 G90 G17 G54\nG0 X50. Y50. Z300.\nG89 Z100. R250. P500 F100\nX200.\nG86 X300. Z100. R250.\nG80\nM30\n";
+    let text = "G21 G90 G17 G54\nG0 X50. Y50. Z300.\nG89 Z100. R250. P500 F100\nX200.\n\
+                G86 X300. Z100. R250.\nG80\nM30\n";
     let options = ["-m", &machine, "--zero", "true"];
     let (written, _) = place.corrected(text, &options);
     assert!(written.contains("\nG86 X300. Z100. R250. P500\n"), "{written}");
