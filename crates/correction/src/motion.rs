@@ -15,7 +15,7 @@ use crate::short_line::Run;
 use crate::{Piece, PieceKind};
 
 /// Where the tolerance cannot be held so many of it are tried.
-const WIDER: [f64; 4] = [1.25, 1.6, 2.0, 3.0];
+const WIDER: [f64; 6] = [1.25, 1.6, 2.0, 3.0, 5.0, 8.0];
 
 impl Corrector<'_> {
     /// Corrects one motion of a block; where the tolerance cannot be held, as near as can be proven, up to

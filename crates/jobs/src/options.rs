@@ -34,7 +34,7 @@ pub struct JobOptions {
     pub tolerance: Option<f64>,
     /// Largest deviation where that fails, um.
     ///
-    /// Where the tolerance cannot be held, the motion is corrected as near as can be, up to this, and said; 5 tolerances if not
+    /// Where the tolerance cannot be held, the motion is corrected as near as can be, up to this, and said; 15 tolerances if not
     /// given, 0: refused.
     #[arg(long, value_name = "UM", global = true, help_heading = "Program", value_parser = finite)]
     pub accept: Option<f64>,

@@ -423,7 +423,7 @@ pub(crate) struct Correction {
     /// Largest distance of the real path from the programmed one; 1 where left out.
     #[schemars(with = "Option<f64>")]
     pub(crate) tolerance_um: Option<Spanned<Finite>>,
-    /// Largest path deviation that is written, and said, where the tolerance cannot be held, um; 5 tolerances where left out.
+    /// Largest path deviation that is written, and said, where the tolerance cannot be held, um; 15 tolerances where left out.
     #[schemars(with = "Option<f64>")]
     pub(crate) accept_um: Option<Spanned<Finite>>,
     /// Feed motion outside the calibrated volume: "refuse" (default) or "clamp".
