@@ -36,7 +36,17 @@ impl Shop {
 
     /// What becomes of a program with offsets written so, or what is said.
     fn corrected(&self, offsets: &str, program: &str, more: &[&str]) -> Result<String, (i32, String)> {
-        let machine = self.write("m.toml", &format!("{MACHINE}\n[work_offsets_mm]\n{offsets}\n"));
+        self.corrected_on(MACHINE, offsets, program, more)
+    }
+
+    fn corrected_on(
+        &self,
+        machine: &str,
+        offsets: &str,
+        program: &str,
+        more: &[&str],
+    ) -> Result<String, (i32, String)> {
+        let machine = self.write("m.toml", &format!("{machine}\n[work_offsets_mm]\n{offsets}\n"));
         let program = self.write("in.nc", program);
         let ran = run(&[&[program.as_str(), "-m", &machine], more].concat());
         match ran.status.code() {
@@ -129,6 +139,43 @@ fn lengths_touched_off_on_one_surface_count_from_there() {
     assert_eq!(z_words("H2 = 60.0 }, touched_at_mm = [0, 0, 0]"), ["0", "0"]);
 }
 
+/// A mill whose Y leans by 1 mrad towards -X.
+const OUT_OF_SQUARE: &str = r#"format = 1
+name = "shop"
+control = "fanuc"
+chain = "[w X Y b Z t]"
+axis.X = { travel_mm = [-500, 500] }
+axis.Y = { travel_mm = [-500, 500] }
+axis.Z = { travel_mm = [-500, 500] }
+squareness = { EC0Y_urad = 1000 }
+"#;
+
+#[test]
+fn a_workpiece_dialled_along_an_axis_lies_as_that_axis_runs() {
+    let shop = Shop::new();
+    let program = "G21 G90 G54\nG0 X0 Y0 Z0\nG1 X200. F500.\nX0\nY100.\nG2 X100. Y0 J-100.\nM30\n";
+    let cuts = |offset: &str| {
+        let text =
+            shop.corrected_on(OUT_OF_SQUARE, &format!("G54 = {offset}"), program, &[]).expect("inside");
+        let again = shop.write("out.nc", &text);
+        let [before, machine] = ["in.nc", "m.toml"].map(|name| shop.path(name));
+        let checked = run(&["check", &before, &again, "-m", &machine]);
+        assert!(checked.status.success(), "{}", messages(&checked));
+        let lines = text.lines().filter(|line| line.starts_with(['G', 'X', 'Y']));
+        lines.skip(1).map(str::to_owned).collect::<Vec<String>>()
+    };
+    // Dialled along X, or not at all: X is right, Y goes over to where it is square.
+    for plain in ["[50, 0, 0]", "{ at = [50, 0, 0], aligned = { along = \"X\", from = 0, to = 200 } }"] {
+        assert_eq!(cuts(plain)[1..4], ["G1 X200. F500.", "X0", "X0.1 Y100."], "{plain}");
+    }
+    // Dialled along Y that is right, and X goes over: 200 mm of it by 0.2 mm, and 0.1 um shorter.
+    let along_y = "{ at = [50, 0, 0], aligned = { along = \"Y\", from = -100, to = 100 } }";
+    assert_eq!(cuts(along_y)[1..4], ["G1 X200. Y0.2 F500.", "X0 Y0.", "Y100."]);
+    // Touched 100 mm up Y, X is the same: the face runs as the way does.
+    let up = "{ at = [50, 0, 0], touched_at = { X = { at = [50, 100, 0] }, Y = { at = [50, 0, 0] } }, aligned = { along = \"Y\", from = [0, -100, 0], to = [0, 100, 0] } }";
+    assert_eq!([cuts(up)[0].as_str(), &cuts(up)[3]], ["G0 X0 Y0 Z0", "Y100."]);
+}
+
 #[test]
 fn what_contradicts_itself_is_refused_each_in_its_words() {
     let shop = Shop::new();
@@ -145,8 +192,25 @@ fn what_contradicts_itself_is_refused_each_in_its_words() {
         ("{ at = [0, 0, 0], zero = \"true\", touched_at = {} }", "is both true and touched"),
         ("{ at = [0, 0, 0], zero = \"guessed\" }", "expected three numbers [x, y, z] in mm, or {"),
     ];
-    for (offset, words) in refused {
-        let (code, said) = shop.corrected(&format!("G54 = {offset}"), PLAIN, &[]).expect_err(offset);
+    let along = [
+        ("\"A\", from = 0, to = 9", "aligned along `A`, which is no linear axis"),
+        ("\"X\", from = 9, to = 9", "between places that X does not join"),
+        ("\"X\", from = [0, 0, 0], to = [9, 1, 0]", "between places that X does not join"),
+        ("\"X\", from = 0, to = 9, faces = \"X\"", "no faces that lie along it"),
+        ("\"X\", from = 0, to = 900", "outside the calibrated -500 to 500 mm"),
+        (
+            "\"X\", from = 0, to = 9 }, zero = \"true\", touched_at = { direction = 1",
+            "is both true and touched",
+        ),
+    ];
+    let along =
+        along.map(|(way, words)| (format!("{{ at = [0, 0, 0], aligned = {{ along = {way} }} }}"), words));
+    let with_table = (along[1].0.clone(), "aligned on a machine with rotary axes");
+    let of_table = refused.map(|(offset, words)| (offset.to_owned(), words)).into_iter().chain([with_table]);
+    let of_table = of_table.map(|case| (MACHINE, case));
+    for (machine, (offset, words)) in of_table.chain(along.map(|case| (OUT_OF_SQUARE, case))) {
+        let offsets = format!("G54 = {offset}");
+        let (code, said) = shop.corrected_on(machine, &offsets, PLAIN, &[]).expect_err(&offset);
         assert!(code == 2 && said.contains(words), "{offset}: {code}\n{said}");
     }
 }

@@ -148,7 +148,7 @@ impl<'m> Corrector<'m> {
             tool_mm: block.tool_mm.into(),
             direction: self.direction,
             rotary_play: self.rotary_play(rotary_rad),
-            datum_mm: block.datum_mm.into(),
+            datum: block.datum,
         }
     }
 
@@ -168,8 +168,8 @@ impl<'m> Corrector<'m> {
     pub(crate) fn found(&self, target: &Command, nominal: Vector) -> Option<Vector> {
         // Place apart, where the same is asked for.
         let alike = |state: &Command| {
-            (state.tool_mm, state.datum_mm, state.rotary_rad)
-                == (target.tool_mm, target.datum_mm, target.rotary_rad)
+            (state.tool_mm, state.datum, state.rotary_rad)
+                == (target.tool_mm, target.datum, target.rotary_rad)
                 && state.rotary_play == target.rotary_play
                 && (state.direction == target.direction || !self.model.depends_on_direction())
         };

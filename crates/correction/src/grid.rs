@@ -1,6 +1,6 @@
 //! Whole output steps: the one place where numbers are rounded.
 
-use machine_model::Vector;
+use machine_model::{Placement, Vector};
 use toolpath::{Frame, Kinematics, PeckRetreats, Plane};
 use units::decimal::round;
 
@@ -65,8 +65,8 @@ pub struct Block {
     pub reframed: [bool; 3],
     /// From the gauge point to the tool tip, mm.
     pub tool_mm: [f64; 3],
-    /// Error of the machine where the program's zero was touched, mm, frame of the workpiece: errors count from there.
-    pub datum_mm: [f64; 3],
+    /// Where the workpiece lies: errors count from there.
+    pub datum: Placement,
     /// The plane in which the control offsets the tool, or in which it still has to lead it off its offset path.
     pub offset: Option<Plane>,
     /// The dialect writes arcs by centre words; else by R.
@@ -101,7 +101,7 @@ impl Default for Block {
             named: [true; 3],
             reframed: [false; 3],
             tool_mm: [0.0; 3],
-            datum_mm: [0.0; 3],
+            datum: Placement::default(),
             offset: None,
             centre_words: true,
             arc_radius_tolerance_mm: 0.02,

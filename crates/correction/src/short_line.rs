@@ -370,7 +370,7 @@ impl Corrector<'_> {
         let near = |i: usize| (from[i] - answer[i]).abs() <= lines.near_mm[i];
         let stands = last.linear_mm == *start
             && last.tool_mm == lines.state.tool_mm
-            && last.datum_mm == lines.state.datum_mm
+            && last.datum == lines.state.datum
             && last.rotary_rad == lines.state.rotary_rad
             && near(0)
             && near(1)

@@ -1,10 +1,10 @@
 //! How a job's zeros came to be: what profile and command line say together.
 
 use diagnostic::{Text, both};
-use machine_model::{Engine, FromDatum, Vector};
-use machine_profile::{Found, Profile, TouchPlace, TouchedBy};
+use machine_model::{Engine, FromDatum, Placement, Vector};
+use machine_profile::{Found, Profile, TouchPlace, TouchedBy, Way};
 use nc_program::{Setup, ToolLength};
-use rewrite::{Datum, Datums, Touch, TouchTool, Zero};
+use rewrite::{Aligned, Datum, Datums, Touch, TouchTool, Touches, Zero};
 
 use crate::message::Failure;
 use crate::options::{self, JobOptions};
@@ -29,7 +29,7 @@ pub(crate) fn of(
         None => profile.program.zero,
     };
     let tool = TouchTool { vector_mm: setup.default_tool_mm, ..TouchTool::default() };
-    let zero = |found: Found, touches: [Touch; 3]| match found {
+    let zero = |found: Found, touches: Touches| match found {
         Found::True => Zero::True,
         Found::Touched => Zero::Touched(Box::new(touches)),
     };
@@ -37,15 +37,22 @@ pub(crate) fn of(
     for (name, said) in &profile.zeros {
         // A flag that gives the offset anew says nothing of where another was touched.
         let is_other = options.work_offset.iter().any(|given| given.name == *name);
-        let touches = match said.touched_at.as_ref().filter(|_| !is_other) {
+        let axes = match said.touched_at.as_ref().filter(|_| !is_other) {
             None => Default::default(),
             Some(places) => touches(name, places, setup, engine)?,
         };
+        let aligned = said.aligned.filter(|_| !is_other);
+        let touches = Touches { axes, aligned: aligned.map(|way| dialled(name, &way, engine)).transpose()? };
         named.push((name.clone(), zero(said.found.unwrap_or(plain), touches)));
     }
     for given in &options.touched_at {
         let place = TouchPlace { at_mm: vec![given.zero_mm], ..TouchPlace::default() };
-        let touches = touches(&given.name, &[0, 1, 2].map(|_| place.clone()), setup, engine)?;
+        let axes = touches(&given.name, &[0, 1, 2].map(|_| place.clone()), setup, engine)?;
+        let aligned = named.iter().find_map(|(name, zero)| match zero {
+            Zero::Touched(touches) if *name == given.name => touches.aligned,
+            _ => None,
+        });
+        let touches = Touches { axes, aligned };
         named.retain(|(name, _)| *name != given.name);
         named.push((given.name.clone(), Zero::Touched(Box::new(touches))));
     }
@@ -66,6 +73,31 @@ pub(crate) fn counted_from(datums: &Datums, engine: Box<dyn Engine>) -> Box<dyn 
 
 fn touch_tool(setup: &Setup, length_mm: [f64; 3]) -> TouchTool {
     TouchTool { vector_mm: setup.tool_vector(&ToolLength::Written { applied_mm: length_mm }), length_mm }
+}
+
+/// The way that a workpiece was dialled parallel to.
+fn dialled(name: &str, way: &Way, engine: &dyn Engine) -> Result<Aligned, Failure> {
+    let volume = engine.volume().0;
+    let outside = way.ends_mm.iter().flat_map(|end| end.iter().zip(&volume));
+    if let Some((place, range)) = outside
+        .filter_map(|(place, range)| Some(((*place)?, range)))
+        .find(|(place, range)| !range.contains(*place))
+    {
+        return Err(Failure::option(
+            both!(
+                "{name} was aligned to the way at {place} mm, outside the calibrated {} to {} mm",
+                "{name} выверен по ходу у {place} мм, вне калиброванных {}–{} мм",
+                range.low,
+                range.high
+            ),
+            both!(
+                "`aligned` takes axis commands (machine coordinates); calibrate a volume that holds them",
+                "`aligned` — команды осей (координаты станка); калибруйте объём, в котором они лежат"
+            ),
+        ));
+    }
+    let Way { along, ends_mm, faces } = *way;
+    Ok(Aligned { along, ends_mm, faces })
 }
 
 fn touches(
@@ -118,17 +150,23 @@ fn touches(
     Ok(touches)
 }
 
-/// From where errors count, a sentence for each zero; none where it was touched at a place without error.
+/// From where errors count, a sentence or two for each zero; none where it was touched at a place without error.
 #[must_use]
 pub fn said(datums: &[Datum]) -> Vec<Text> {
-    let touched = datums.iter().filter(|datum| datum.error_mm != [0.0; 3]);
-    let sentence = |Datum { name, error_mm, .. }: &Datum| {
+    let touched = datums.iter().filter(|datum| datum.placement != Placement::default());
+    let sentences = |Datum { name, error_mm, placement, .. }: &Datum| {
         let [x, y, z] = error_mm.map(|mm| mm * 1e3);
         let off_um = (x * x + y * y + z * z).sqrt();
-        both!(
+        let [a, b, c] = <[f64; 3]>::from(placement.turn_rad()).map(|rad| rad * 1e6);
+        let shifted = both!(
             "counted from {name} as it was touched; in the measuring frame the part lies {off_um:.1} um off (X {x:.1}, Y {y:.1}, Z {z:.1})",
             "отсчёт от {name}, найденного касанием; в системе измерений деталь смещена на {off_um:.1} мкм (X {x:.1}, Y {y:.1}, Z {z:.1})"
-        )
+        );
+        let turned = both!(
+            "and as it was dialled: in the measuring frame the part lies turned by {a:.1} urad about X, {b:.1} about Y, {c:.1} about Z",
+            "и так, как выверена: в системе измерений деталь повёрнута на {a:.1} мкрад вокруг X, {b:.1} вокруг Y, {c:.1} вокруг Z"
+        );
+        [Some(shifted), placement.is_turned().then_some(turned)]
     };
-    touched.map(sentence).collect()
+    touched.flat_map(sentences).flatten().collect()
 }

@@ -57,6 +57,9 @@ pub struct DatumUsed {
     pub at_mm: [f64; 3],
     /// The machine's error where it was touched: by that the part lies off in the measuring frame.
     pub error_um: [f64; 3],
+    /// How the part lies turned there about X, Y, Z, where it was dialled parallel to an axis' way.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turned_urad: Option<[f64; 3]>,
 }
 
 impl DatumUsed {
@@ -67,6 +70,10 @@ impl DatumUsed {
             work_offset: datum.name.clone(),
             at_mm: datum.zero_mm,
             error_um: datum.error_mm.map(um),
+            turned_urad: datum
+                .placement
+                .is_turned()
+                .then(|| datum.placement.turn_rad().map(|rad| 1e6 * rad).into()),
         };
         datums.iter().map(used).collect()
     }

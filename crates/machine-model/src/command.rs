@@ -35,9 +35,74 @@ pub struct Command {
     pub direction: [i8; 3],
     /// Where the rotary axes stand in their play; by default in its middle.
     pub rotary_play: RotaryPlay,
-    /// Error of the machine where the program's zero was touched, mm, frame of the workpiece: errors count from there.
-    /// Zero: they count from the measuring frame. Equation (121).
-    pub datum_mm: Vector,
+    /// Where the workpiece lies: errors count from there. By default they count from the measuring frame.
+    pub datum: Placement,
+}
+
+/// Where a workpiece lies beside where its zero, taken as a place of the measuring frame, would have it: what belongs at p
+/// is at `R p + t`. Equation (121).
+///
+/// ```
+/// use machine_model::{Placement, Vector};
+///
+/// // Dialled parallel to an X axis whose way climbs by 10 um in 100 mm.
+/// let (way, x) = (Vector::new(100.0, 0.01, 0.0), Vector::x());
+/// let placed = Placement::turned(&x, &way).shifted(Vector::new(0.002, 0.0, 0.0));
+/// let place = placed.place(&Vector::new(100.0, 0.0, 0.0));
+/// assert!((place - Vector::new(100.002, 0.01, 0.0)).norm() < 1e-6);
+/// assert!((placed.meant(&place) - Vector::new(100.0, 0.0, 0.0)).norm() < 1e-12);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// t, mm, frame of the workpiece: the machine's error where the zero was touched.
+    pub shift_mm: Vector,
+    /// `R - 1`; nothing on machines whose rotary axes carry the workpiece.
+    pub turn: Matrix,
+}
+
+impl Placement {
+    /// Turned as one direction is to another, both of any length and less than a right angle apart.
+    #[must_use]
+    pub fn turned(from: &Vector, to: &Vector) -> Self {
+        let (from, to) = (from.normalize(), to.normalize());
+        let cross = from.cross(&to).cross_matrix();
+        Self { turn: cross + cross * cross / (1.0 + from.dot(&to)), ..Self::default() }
+    }
+
+    /// Shifted besides.
+    #[must_use]
+    pub fn shifted(self, by_mm: Vector) -> Self {
+        Self { shift_mm: self.shift_mm + by_mm, ..self }
+    }
+
+    /// By which angles it is turned, small ones, rad.
+    #[must_use]
+    pub fn turn_rad(&self) -> Vector {
+        Vector::new(
+            self.turn.m32 - self.turn.m23,
+            self.turn.m13 - self.turn.m31,
+            self.turn.m21 - self.turn.m12,
+        ) / 2.0
+    }
+
+    /// True where it is turned.
+    #[must_use]
+    pub fn is_turned(&self) -> bool {
+        self.turn != Matrix::zeros()
+    }
+
+    /// Where what belongs at a place is, both mm, frame of the workpiece.
+    #[must_use]
+    pub fn place(&self, meant_mm: &Vector) -> Vector {
+        meant_mm + self.turn * meant_mm + self.shift_mm
+    }
+
+    /// What belongs at a place: the inverse of [`Self::place`].
+    #[must_use]
+    pub fn meant(&self, place_mm: &Vector) -> Vector {
+        let shifted = place_mm - self.shift_mm;
+        shifted + self.turn.tr_mul(&shifted)
+    }
 }
 
 /// Where rotary axes stand in their play.

@@ -274,7 +274,7 @@ pub trait PathModel: Engine {
     /// Real tip minus nominal tip, mm, in the directions of the linear axes: the displacement the
     /// linear axes would have to undo.
     ///
-    /// That of the measuring frame, whatever [`Command::datum_mm`] says; [`crate::FromDatum`] counts from the datum.
+    /// That of the measuring frame, whatever [`Command::datum`] says; [`crate::FromDatum`] counts from the datum.
     ///
     /// The command must lie in [`Engine::volume`]; outside, the value at the volume's nearest point.
     fn error_mm(&self, command: &Command) -> Vector;

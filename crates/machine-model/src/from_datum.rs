@@ -1,19 +1,20 @@
 //! Errors counted from where the program's zero was touched. Equation (121).
 
 use crate::{
-    Command, Engine, EngineId, Everywhere, LANES, Matrix, Move, PathModel, Solution, SolveError, Vector,
-    Volume,
+    Command, Engine, EngineId, Everywhere, LANES, Matrix, Move, PathModel, Placement, Solution, SolveError,
+    Vector, Volume,
 };
 
-/// A machine whose errors count from the datum of a program ([`Command::datum_mm`]).
+/// A machine whose errors count from the datum of a program ([`Command::datum`]).
 ///
 /// An operator who touches a zero on a crooked machine writes down the command at which the tool stood on it. The
 /// machine's error there is in that number: the corrected tool goes where a machine would take it that is right at the
 /// datum and straight from there on. So the error that has to be undone is `e(q) - Rᵀ(θ) e_d`, `e_d` fixed in the
-/// workpiece and turning with its table.
+/// workpiece and turning with its table; where the workpiece was dialled parallel to an axis' real way, and so lies turned,
+/// the target turns with it.
 ///
 /// ```
-/// use machine_model::{Command, FromDatum, PathModel, Vector};
+/// use machine_model::{Command, FromDatum, PathModel, Placement, Vector};
 /// # use machine_model::{AxisTables, Chain, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Table};
 /// # let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
 /// # let long = Table::new(vec![0.0, 100.0], vec![0.0, 0.020], Interpolation::Linear).unwrap();
@@ -23,10 +24,10 @@ use crate::{
 /// # let machine = RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap();
 /// // X is too long by 0.02 %. Touched at X50, where it stands 10 µm farther, X50 is right and X100 10 µm off.
 /// let at = |x: f64| Command { linear_mm: Vector::new(x, 0.0, 0.0), ..Command::default() };
-/// let datum_mm = machine.error_mm(&at(50.0));
+/// let datum = Placement::default().shifted(machine.error_mm(&at(50.0)));
 /// let machine = FromDatum::new(Box::new(machine)).ok().expect("a model of paths");
-/// assert_eq!(machine.error_mm(&Command { datum_mm, ..at(50.0) }), Vector::zeros());
-/// assert!((machine.error_mm(&Command { datum_mm, ..at(100.0) }).x - 0.010).abs() < 1e-12);
+/// assert_eq!(machine.error_mm(&Command { datum, ..at(50.0) }), Vector::zeros());
+/// assert!((machine.error_mm(&Command { datum, ..at(100.0) }).x - 0.010).abs() < 1e-12);
 /// ```
 pub struct FromDatum(Box<dyn Engine>);
 
@@ -43,9 +44,14 @@ impl FromDatum {
         self.0.path_model().expect("it was one when this was made")
     }
 
-    /// The datum in the directions of the linear axes; none where it is the measuring frame, so that no bit changes.
+    /// How far what belongs at the place of a command lies from it, mm, in the directions of the linear axes; none where the
+    /// datum is the measuring frame, so that no bit changes.
     fn datum(&self, state: &Command) -> Option<Vector> {
-        (state.datum_mm != Vector::zeros()).then(|| self.machine().along_axes(&state.datum_mm, state))
+        let Placement { shift_mm, turn } = state.datum;
+        if state.datum.is_turned() {
+            return Some(shift_mm + turn * (state.linear_mm + state.tool_mm));
+        }
+        (shift_mm != Vector::zeros()).then(|| self.machine().along_axes(&shift_mm, state))
     }
 
     /// The target as the machine without a datum has to be asked for it.
@@ -54,6 +60,15 @@ impl FromDatum {
             Some(datum_mm) => Command { linear_mm: target.linear_mm + datum_mm, ..*target },
             None => *target,
         }
+    }
+
+    /// The error as it counts from the datum, by that of the measuring frame.
+    fn counted(&self, error: Vector, state: &Command) -> Vector {
+        if state.datum.is_turned() {
+            let asked = state.linear_mm + state.tool_mm;
+            return state.datum.meant(&(asked + error)) - asked;
+        }
+        self.datum(state).map_or(error, |datum_mm| error - datum_mm)
     }
 }
 
@@ -81,14 +96,16 @@ impl Engine for FromDatum {
 
 impl PathModel for FromDatum {
     fn error_mm(&self, command: &Command) -> Vector {
-        let error = self.machine().error_mm(command);
-        self.datum(command).map_or(error, |datum_mm| error - datum_mm)
+        self.counted(self.machine().error_mm(command), command)
     }
 
-    /// A vector that turns by α in all, evenly, leaves its chord by an eighth of `|v| α²` at most.
+    /// A vector that turns by α in all, evenly, leaves its chord by an eighth of `|v| α²` at most, and what a turned workpiece
+    /// adds to the path by an eighth of `|R - 1| |q''|`.
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {
+        let Placement { shift_mm, turn } = stretch.state.datum;
         let turned = stretch.turn.map_or(0.0, |turn| self.machine().table_turns_rad(&turn));
-        self.machine().chord_bound_mm(stretch) + stretch.state.datum_mm.norm() * turned * turned / 8.0
+        let bent_mm = turn.norm() * Vector::from(stretch.acceleration_mm).norm();
+        self.machine().chord_bound_mm(stretch) + (shift_mm.norm() * turned * turned + bent_mm) / 8.0
     }
 
     fn follows_turns(&self) -> bool {
@@ -97,8 +114,7 @@ impl PathModel for FromDatum {
 
     fn error_from_mm(&self, command: &Command, programmed_rad: &Vector) -> Vector {
         let error = self.machine().error_from_mm(command, programmed_rad);
-        let programmed = Command { rotary_rad: *programmed_rad, ..*command };
-        self.datum(&programmed).map_or(error, |datum_mm| error - datum_mm)
+        self.counted(error, &Command { rotary_rad: *programmed_rad, ..*command })
     }
 
     fn same_tip_mm(&self, linear_mm: &Vector, state: &Command, programmed_rad: &Vector) -> Vector {
@@ -145,8 +161,9 @@ impl PathModel for FromDatum {
         self.machine().jacobian(command)
     }
 
+    /// None for a turned workpiece, whose targets are asked for one by one.
     fn everywhere(&self, state: &Command) -> Option<Everywhere> {
-        self.machine().everywhere(state)
+        if state.datum.is_turned() { None } else { self.machine().everywhere(state) }
     }
 
     fn command_for(&self, target: &Command, everywhere: &Everywhere) -> Result<Vector, SolveError> {

@@ -174,7 +174,8 @@ impl TipControl {
         let asked = linear_mm + state.tool_mm;
         let axes = stands.control.reach(&asked);
         // Tip commands are places of the workpiece: the datum is the same wherever its axes stand.
-        let own = self.core.machine.error_as_seen(stands.machine, &axes, &state.direction) - state.datum_mm;
+        let own =
+            self.core.machine.error_as_seen(stands.machine, &axes, &state.direction) - state.datum.shift_mm;
         if self.core.apart_mm == 0.0 {
             // No more than that: what is zero stays zero to the last bit.
             return own;

@@ -10,8 +10,8 @@ use crate::error::{CONFLICT, KEY};
 use crate::load::Loader;
 use crate::number::{Finite, Length};
 use crate::zeros::{
-    Found, FoundOffset, OnePlace, Places, ToolThatTouched, TouchPlace, TouchedAt, TouchedBy, WorkOffset,
-    ZeroFound,
+    AlignedTo, End, Found, FoundOffset, OnePlace, Places, ToolThatTouched, TouchPlace, TouchedAt, TouchedBy,
+    Way, WorkOffset, ZeroFound,
 };
 
 /// Of each work offset.
@@ -38,21 +38,23 @@ impl Loader<'_> {
             let place = match offset.get_ref() {
                 WorkOffset::Place(place) => place,
                 WorkOffset::Found(found_offset) => {
-                    let FoundOffset { at, zero, touched_at } = &**found_offset;
+                    let FoundOffset { at, zero, touched_at, aligned } = &**found_offset;
                     let places =
                         touched_at.as_ref().map(|places| self.touched_at(offset, places, has_rotary));
-                    if let (Some(Found::True), Some(_)) = (zero, &places) {
+                    let aligned = aligned.as_ref().and_then(|way| self.aligned(offset, way, has_rotary));
+                    let touched = places.is_some() || aligned.is_some();
+                    if let (Some(Found::True), true) = (zero, touched) {
                         self.contradicts(
                             offset,
                             both!("`{name}` is both true and touched", "`{name}` и точное, и найдено касанием"),
                             both!(
-                                "remove `touched_at` where it was found through a compensation or by an instrument, else write zero = \"touched\"",
-                                "уберите `touched_at`, если нуль найден через компенсацию или прибором, иначе напишите zero = \"touched\""
+                                "remove `touched_at` and `aligned` where it was found through a compensation or by an instrument, else write zero = \"touched\"",
+                                "уберите `touched_at` и `aligned`, если нуль найден через компенсацию или прибором, иначе напишите zero = \"touched\""
                             ),
                         );
                     }
-                    let found_so = zero.or(places.as_ref().map(|_| Found::Touched));
-                    found.push((name.clone(), ZeroFound { found: found_so, touched_at: places }));
+                    let found_so = zero.or(touched.then_some(Found::Touched));
+                    found.push((name.clone(), ZeroFound { found: found_so, touched_at: places, aligned }));
                     at
                 }
             };
@@ -64,6 +66,69 @@ impl Loader<'_> {
     fn contradicts(&mut self, at: &Spanned<WorkOffset>, message: Text, help: Text) {
         let diagnostic = Diagnostic::error(CONFLICT, message).help(help);
         self.refuse(at, diagnostic, both!("of this entry", "в этой записи"));
+    }
+
+    fn aligned(
+        &mut self,
+        entry: &Spanned<WorkOffset>,
+        written: &AlignedTo,
+        has_rotary: [bool; 3],
+    ) -> Option<Way> {
+        const WHICH: Text = Text::pair(
+            "write along = \"X\", \"Y\" or \"Z\", and faces by the axes across them, like \"Y\"",
+            "напишите along = \"X\", \"Y\" или \"Z\", а faces — осями поперёк граней, например \"Y\"",
+        );
+        let AlignedTo { along, from, to, faces } = written;
+        if has_rotary != [false; 3] {
+            let message = both!(
+                "a workpiece is aligned on a machine with rotary axes",
+                "деталь выверена, а у станка есть поворотные оси"
+            );
+            let help = both!(
+                "what turns with a table is not followed: set it straight by the rotary axis or by `G68`, and remove `aligned`",
+                "поворот вместе со столом не учитывается: выставьте деталь поворотной осью или `G68` и уберите `aligned`"
+            );
+            self.contradicts(entry, message, help);
+            return None;
+        }
+        let Some(axis) = "XYZ".find(along.as_str()).filter(|_| along.len() == 1) else {
+            self.contradicts(
+                entry,
+                both!(
+                    "aligned along `{along}`, which is no linear axis",
+                    "выверено вдоль `{along}`, а это не линейная ось"
+                ),
+                WHICH,
+            );
+            return None;
+        };
+        let faces = faces.as_deref().unwrap_or(["Y", "X", "XY"][axis]);
+        let across = ["X", "Y", "Z"].map(|letter| faces.contains(letter));
+        if faces.is_empty() || across[axis] || faces.chars().any(|face| !"XYZ".contains(face)) {
+            let message = both!(
+                "the dial ran on `{faces}` along {along}: no faces that lie along it",
+                "индикатор шёл по `{faces}` вдоль {along}: вдоль неё таких граней нет"
+            );
+            self.contradicts(entry, message, WHICH);
+            return None;
+        }
+        let ends_mm = [from, to].map(|end| match end {
+            End::Axes(place) => place.map(|Finite(v)| Some(v)),
+            End::Axis(Finite(command)) => [0, 1, 2].map(|other| (other == axis).then_some(*command)),
+        });
+        if (0..3).any(|other| (ends_mm[0][other] == ends_mm[1][other]) == (other == axis)) {
+            let message = both!(
+                "aligned along {along} between places that {along} does not join",
+                "выверено вдоль {along} между местами, которые {along} не соединяет"
+            );
+            let help = both!(
+                "`from` and `to` are two commands of {along}, all else alike",
+                "`from` и `to` — две команды оси {along}, остальное одинаково"
+            );
+            self.contradicts(entry, message, help);
+            return None;
+        }
+        Some(Way { along: axis, ends_mm, faces: across })
     }
 
     fn touched_at(

@@ -40,6 +40,17 @@ pub enum TouchedBy {
     Vector([f64; 3]),
 }
 
+/// The real way of a linear axis that a workpiece was dialled parallel to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    /// The axis: 0, 1, 2.
+    pub along: usize,
+    /// Axis commands between which it was, mm; `None`: as at the program's zero.
+    pub ends_mm: [[Option<f64>; 3]; 2],
+    /// Which faces the dial ran on: those across X, Y, Z.
+    pub faces: [bool; 3],
+}
+
 /// What a profile says of one work offset besides its place.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ZeroFound {
@@ -47,13 +58,15 @@ pub struct ZeroFound {
     pub found: Option<Found>,
     /// Of X, Y, Z; `None`: at the program's zero.
     pub touched_at: Option<[TouchPlace; 3]>,
+    /// How the workpiece was turned; `None`: it lies as the measuring frame does.
+    pub aligned: Option<Way>,
 }
 
 /// A place alone, or how it was found as well.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(
     untagged,
-    expecting = "expected three numbers [x, y, z] in mm, or { at = [x, y, z], zero = \"touched\" or \"true\", touched_at = { at = [x, y, z], tool = \"H1\", rotary_deg = { A = 0 }, direction = 1 } } with X, Y, Z in touched_at where they were touched at places of their own"
+    expecting = "expected three numbers [x, y, z] in mm, or { at = [x, y, z], zero = \"touched\" or \"true\", touched_at = { at = [x, y, z], tool = \"H1\", rotary_deg = { A = 0 }, direction = 1 }, aligned = { along = \"X\", from = 100, to = 300 } } with X, Y, Z in touched_at where they were touched at places of their own"
 )]
 pub(crate) enum WorkOffset {
     Place(Triple),
@@ -69,6 +82,29 @@ pub(crate) struct FoundOffset {
     pub(crate) zero: Option<Found>,
     /// Where it was touched; the program's zero where left out.
     pub(crate) touched_at: Option<TouchedAt>,
+    /// Dialled parallel to the real way of an axis; as the measuring frame lies where left out.
+    pub(crate) aligned: Option<AlignedTo>,
+}
+
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct AlignedTo {
+    /// The axis that ran while the dial stood still: "X", "Y" or "Z".
+    pub(crate) along: String,
+    /// From which command on.
+    pub(crate) from: End,
+    /// To which command.
+    pub(crate) to: End,
+    /// The faces that the dial ran on, by the axes across them; "Y" for X, "X" for Y, "XY" for Z where left out.
+    pub(crate) faces: Option<String>,
+}
+
+/// A command of the axis that ran, the others as at the program's zero, or commands of all three.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum End {
+    Axis(Finite),
+    Axes(Triple),
 }
 
 /// One place for all, or one for each of X, Y, Z.

@@ -1,6 +1,6 @@
 //! What several machines make of one program: the errors along every feed motion.
 
-use machine_model::{Command, Models, PathModel, Play, Vector};
+use machine_model::{Command, Models, PathModel, Placement, Play, Vector};
 use toolpath::{Kinematics, PeckRetreats};
 
 use crate::Step;
@@ -25,7 +25,7 @@ pub struct Course {
 /// others should be the first without some of its errors.
 ///
 /// * `step_mm` – distance between places on a line, at most; an arc turns by [`TURN_RAD`] between them at most
-/// * `datum_of` – [`Command::datum_mm`] of a machine, by its number, where that of the first is given: each machine would
+/// * `datum_of` – [`Command::datum`] of a machine, by its number, where that of the first is given: each machine would
 ///   have been touched by itself
 pub fn courses<'m>(
     models: &[Models<'m>],
@@ -48,7 +48,7 @@ pub fn courses<'m>(
 }
 
 /// See [`courses`].
-pub type DatumOf<'m> = dyn Fn(usize, Vector) -> Vector + 'm;
+pub type DatumOf<'m> = dyn Fn(usize, Placement) -> Placement + 'm;
 
 /// Largest turn of an arc, and of all rotary axes together, between two places, rad: a chord lies off a circle by 1/800
 /// of its radius.
@@ -66,7 +66,7 @@ struct Other<'m> {
     model: &'m dyn PathModel,
     play: Option<Play>,
     /// Of the first machine and of this one.
-    datums_mm: [Vector; 2],
+    datums: [Placement; 2],
 }
 
 impl<'m> Others<'m> {
@@ -78,7 +78,7 @@ impl<'m> Others<'m> {
                     models: *models,
                     model: models.axes,
                     play: None,
-                    datums_mm: [Vector::zeros(); 2],
+                    datums: [Placement::default(); 2],
                 })
                 .collect(),
             step_mm,
@@ -110,10 +110,10 @@ impl<'m> Others<'m> {
     /// The error of each, its axes having gone to a command.
     pub(crate) fn errors_mm(&mut self, here: &Command) -> impl Iterator<Item = Vector> {
         self.machines.iter_mut().zip(1..).map(|(other, number)| {
-            if other.datums_mm[0] != here.datum_mm {
-                other.datums_mm = [here.datum_mm, (self.datum_of)(number, here.datum_mm)];
+            if other.datums[0] != here.datum {
+                other.datums = [here.datum, (self.datum_of)(number, here.datum)];
             }
-            let here = &Command { datum_mm: other.datums_mm[1], ..*here };
+            let here = &Command { datum: other.datums[1], ..*here };
             match &mut other.play {
                 None => other.model.error_mm(here),
                 Some(play) => {

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::rc::Rc;
 
-use machine_model::{Command, Models, PathModel, Play, Vector, singular_sin, turned_by_mm};
+use machine_model::{Command, Models, PathModel, Placement, Play, Vector, singular_sin, turned_by_mm};
 use smallvec::SmallVec;
 use toolpath::{
     Bezier, CycleKind, Feed, FeedRate, Hole, HoleMove, Kinematics, MOST_PECKS, Motion, Partial, PeckRetreats,
@@ -422,7 +422,7 @@ struct Common {
     process: Process,
     limit_mm: f64,
     tool_mm: Vector,
-    datum_mm: Vector,
+    datum: Placement,
     dwell: Option<u32>,
 }
 
@@ -432,7 +432,7 @@ impl Common {
             linear_mm,
             rotary_rad,
             tool_mm: self.tool_mm,
-            datum_mm: self.datum_mm,
+            datum: self.datum,
             direction: [0; 3],
             ..Default::default()
         }
@@ -542,14 +542,14 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
     fn take(&mut self, step: &Step) {
         let Step { act, line, process: number, limit_mm, compensated, pointing } = *step;
         self.pointing = pointing;
-        let (motion, [tool_mm, datum_mm], kinematics, feed, [dwell, cycle]) = match act {
+        let (motion, tool_mm, datum, kinematics, feed, [dwell, cycle]) = match act {
             Act::Deed(deed) => {
                 let process = Process::of_number(number);
                 self.ready.push_back(Item::Deed(Deed { number: deed, line, process }));
                 return;
             }
-            Act::Motion { motion, tool_mm, datum_mm, kinematics, feed, dwell, cycle } => {
-                (motion, [tool_mm, datum_mm].map(Vector::from), kinematics, feed, [dwell, cycle])
+            Act::Motion { motion, tool_mm, datum, kinematics, feed, dwell, cycle } => {
+                (motion, Vector::from(tool_mm), datum, kinematics, feed, [dwell, cycle])
             }
         };
         if kinematics != self.kinematics {
@@ -563,7 +563,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         let block = Some(self.compensated).filter(|_| compensated && matches!(motion, Motion::Feed(_)));
         let is_timed = motion.inverse_time().is_some();
         let process = Process { number, feed, is_timed, compensated: block, cycle };
-        let common = Common { line, process, limit_mm, tool_mm, datum_mm, dwell };
+        let common = Common { line, process, limit_mm, tool_mm, datum, dwell };
         self.feeds += usize::from(matches!(motion, Motion::Feed(_) | Motion::Hole(_)));
         match motion {
             Motion::Feed(Feed { start, end, shape: Shape::Bezier(curve), rate, .. }) => {

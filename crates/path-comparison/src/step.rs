@@ -1,5 +1,6 @@
 //! What a program does, one thing after the other.
 
+use machine_model::Placement;
 use toolpath::{Kinematics, Motion};
 
 /// One thing that a program does, with what the comparison must know of it.
@@ -42,8 +43,8 @@ pub enum Act {
         motion: Motion,
         /// From gauge point to tip, mm.
         tool_mm: [f64; 3],
-        /// Error of the machine where the program's zero was touched, mm, frame of the workpiece.
-        datum_mm: [f64; 3],
+        /// Where the workpiece lies.
+        datum: Placement,
         /// What X, Y and Z are.
         kinematics: Kinematics,
         /// The number of F in force.

@@ -43,7 +43,7 @@ fn step(feed: Feed, line: usize) -> Step {
     let act = Act::Motion {
         motion: Motion::Feed(feed),
         tool_mm: [0.0; 3],
-        datum_mm: [0.0; 3],
+        datum: Default::default(),
         kinematics: Kinematics::Axes,
         feed: Some(100.0),
         dwell: None,
@@ -161,8 +161,8 @@ fn timed(wanted: &[Feed], made: &[Feed]) -> Vec<u64> {
     let steps = |feeds: &[Feed]| -> Vec<Step> {
         let under_g93 = |(k, one): (usize, &Feed)| {
             let act = match step(*one, k + 1).act {
-                Act::Motion { motion, tool_mm, datum_mm, kinematics, dwell, cycle, .. } => {
-                    Act::Motion { motion, tool_mm, datum_mm, kinematics, dwell, cycle, feed: None }
+                Act::Motion { motion, tool_mm, datum, kinematics, dwell, cycle, .. } => {
+                    Act::Motion { motion, tool_mm, datum, kinematics, dwell, cycle, feed: None }
                 }
                 act @ Act::Deed(_) => act,
             };

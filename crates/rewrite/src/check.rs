@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use diagnostic::{Diagnostic, Text, both};
-use machine_model::{Models, Vector};
+use machine_model::{Models, Placement};
 use nc_expand::Expanded;
 use nc_program::Context;
 use path_comparison::{Comparison, Course, Mismatch, Traces, What, compare};
@@ -196,12 +196,12 @@ pub fn courses(
     let touched = RefCell::new(Vec::new());
     let mut steps = Program::new(program, job, Optional::Executed, &numbers, &|_| ()).with_files();
     steps.touched = Some(&touched);
-    let datum_of = |machine: usize, own: Vector| -> Vector {
-        let of = |(error_mm, _): &&([f64; 3], Context)| Vector::from(*error_mm) == own;
-        let error_mm = |(_, context): &([f64; 3], Context)| {
-            job.datums.error_mm(models[machine].axes, job.dialect, context).into()
+    let datum_of = |machine: usize, own: Placement| -> Placement {
+        let of = |(placement, _): &&(Placement, Context)| *placement == own;
+        let placement = |(_, context): &(Placement, Context)| {
+            job.datums.placement(models[machine].axes, job.dialect, context)
         };
-        touched.borrow().iter().find(of).map_or(own, error_mm)
+        touched.borrow().iter().find(of).map_or(own, placement)
     };
     path_comparison::courses(
         models,

@@ -1,6 +1,6 @@
 //! Where a program's zeros were touched, and what the machine's error there makes of its places. Equation (121).
 
-use machine_model::{Command, Models, PathModel, Vector};
+use machine_model::{Command, Models, PathModel, Placement, Vector};
 use nc_program::{Context, WorkOffset, work_offset_name};
 use nc_syntax::Dialect;
 use toolpath::Motion;
@@ -27,13 +27,33 @@ pub struct TouchTool {
     pub length_mm: [f64; 3],
 }
 
+/// Parallel to what a workpiece was dialled: the real way of a linear axis, with correction off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aligned {
+    /// The axis: 0, 1, 2.
+    pub along: usize,
+    /// Axis commands between which it was, mm; `None`: as at the program's zero.
+    pub ends_mm: [[Option<f64>; 3]; 2],
+    /// Which of its faces the dial ran on: those across X, Y, Z.
+    pub faces: [bool; 3],
+}
+
+/// Where a zero was touched: X, Y and Z.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Touches {
+    /// Each coordinate.
+    pub axes: [Touch; 3],
+    /// How the workpiece was turned; `None`: it lies as the measuring frame does.
+    pub aligned: Option<Aligned>,
+}
+
 /// How a work offset came to be.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Zero {
     /// Found through a compensation, or by an outside instrument: a place in the measuring frame.
     True,
-    /// Touched on this machine, with correction off: X, Y and Z.
-    Touched(Box<[Touch; 3]>),
+    /// Touched on this machine, with correction off.
+    Touched(Box<Touches>),
 }
 
 /// What is known of a machine's zeros.
@@ -63,8 +83,10 @@ pub struct Datum {
     pub name: String,
     /// Its machine coordinate, mm.
     pub zero_mm: [f64; 3],
-    /// The machine's error where it was touched, mm, frame of the workpiece: [`Command::datum_mm`].
+    /// The machine's error where it was touched, mm, frame of the workpiece: how far the zero lies from where it is said to.
     pub error_mm: [f64; 3],
+    /// [`Command::datum`] of what is cut from it.
+    pub placement: Placement,
     /// How much of that, mm, is the guess that it was touched without a tool length, where the tool in force has one.
     pub unsure_mm: f64,
     /// A place where it was touched lies outside the calibrated volume; the error is that of the nearest point.
@@ -74,21 +96,48 @@ pub struct Datum {
 impl Datum {
     /// The same zero, whichever tool was in force.
     pub(crate) fn is(&self, other: &Self) -> bool {
-        (&self.name, self.zero_mm, self.error_mm) == (&other.name, other.zero_mm, other.error_mm)
+        (&self.name, self.zero_mm, self.placement) == (&other.name, other.zero_mm, other.placement)
     }
 }
 
 impl Touch {
-    /// What the machine's error makes of one coordinate that is touched there, mm, frame of the workpiece.
-    fn error(&self, model: &dyn PathModel, axis: usize, tool: &TouchTool, places: &[[f64; 3]]) -> Vector {
+    /// What the machine's error makes of one coordinate that is touched there, mm, frame of the workpiece, but for what the
+    /// turn of the workpiece has made of it already.
+    fn error(
+        &self,
+        model: &dyn PathModel,
+        axis: usize,
+        tool: &TouchTool,
+        places: &[[f64; 3]],
+        turned: &Placement,
+    ) -> Vector {
         let of = |(k, place): (usize, &[f64; 3])| {
             let mut direction = [0; 3];
             // On the other side of a bore the axis came the other way.
             direction[axis] = if k == 0 { self.direction } else { -self.direction };
             let at = Command { direction, ..touched_at(&Vector::from(*place), tool, self.rotary_deg) };
-            in_workpiece(model, &at, axis) * (model.error_mm(&at)[axis] / places.len() as f64)
+            let error_mm = model.error_mm(&at) - turned.turn * (at.linear_mm + at.tool_mm);
+            in_workpiece(model, &at, axis) * (error_mm[axis] / places.len() as f64)
         };
         places.iter().enumerate().map(of).sum()
+    }
+}
+
+impl Aligned {
+    /// How the workpiece lies that was dialled so with a tool, its zero at the command `zero_mm`.
+    fn turned(&self, model: &dyn PathModel, tool: &TouchTool, zero_mm: [f64; 3]) -> Placement {
+        let [from, to] = self.ends_mm.map(|end| {
+            let place = Vector::from_fn(|axis, _| end[axis].unwrap_or(zero_mm[axis]));
+            let at = touched_at(&place, tool, [0.0; 3]);
+            (place, model.error_mm(&at))
+        });
+        let way = to.0 - from.0;
+        let aside = to.1 - from.1;
+        // Across a face that nothing was dialled on the workpiece lies as its support does.
+        Placement::turned(
+            &way,
+            &(way + Vector::from_fn(|axis, _| if self.faces[axis] { aside[axis] } else { 0.0 })),
+        )
     }
 }
 
@@ -99,10 +148,10 @@ impl Datums {
         Self { others: Zero::Touched(Box::default()), tool, ..Self::default() }
     }
 
-    /// [`Command::datum_mm`] of what is done in this context.
+    /// [`Command::datum`] of what is done in this context.
     #[must_use]
-    pub fn error_mm(&self, model: &dyn PathModel, dialect: &Dialect, context: &Context) -> [f64; 3] {
-        self.of(model, dialect, context).map_or([0.0; 3], |datum| datum.error_mm)
+    pub fn placement(&self, model: &dyn PathModel, dialect: &Dialect, context: &Context) -> Placement {
+        self.of(model, dialect, context).map_or_else(Placement::default, |datum| datum.placement)
     }
 
     /// True where no zero was touched: errors count from the measuring frame.
@@ -118,25 +167,34 @@ impl Datums {
         let zero = self.named.iter().find(|(known, _)| *known == name).map_or(&self.others, |(_, zero)| zero);
         let Zero::Touched(touches) = zero else { return None };
         let own = TouchTool { vector_mm: context.tool_mm, length_mm: context.length_mm };
-        let [mut error_mm, mut guessed_mm] = [Vector::zeros(); 2];
+        let at_zero = |tool: &TouchTool| (Vector::from(zero_mm) + Vector::from(tool.length_mm)).into();
+        let turned = touches.aligned.map_or_else(Placement::default, |aligned| {
+            let face = aligned.faces.iter().position(|dialled| *dialled).unwrap_or(0);
+            let tool = touches.axes[face].tool.unwrap_or(self.tool);
+            aligned.turned(model, &tool, at_zero(&tool))
+        });
+        let [mut shift_mm, mut guessed_mm] = [Vector::zeros(); 2];
         let mut is_outside = false;
-        for (axis, touch) in touches.iter().enumerate() {
+        for (axis, touch) in touches.axes.iter().enumerate() {
             let tool = touch.tool.unwrap_or(self.tool);
-            let zero = |tool: &TouchTool| (Vector::from(zero_mm) + Vector::from(tool.length_mm)).into();
-            let at_zero = [zero(&tool)];
-            let places = if touch.at_mm.is_empty() { &at_zero[..] } else { &touch.at_mm[..] };
-            error_mm += touch.error(model, axis, &tool, places);
+            let here = [at_zero(&tool)];
+            let places = if touch.at_mm.is_empty() { &here[..] } else { &touch.at_mm[..] };
+            shift_mm += touch.error(model, axis, &tool, places, &turned);
             is_outside |= places.iter().any(|place| !model.volume().contains(&Vector::from(*place)));
             if touch.at_mm.is_empty() && touch.tool.is_none() {
-                guessed_mm +=
-                    touch.error(model, axis, &own, &[zero(&own)]) - touch.error(model, axis, &tool, places);
+                guessed_mm += touch.error(model, axis, &own, &[at_zero(&own)], &turned)
+                    - touch.error(model, axis, &tool, places, &turned);
             }
         }
         let unsure_mm = guessed_mm.norm();
         if let Some(surface_mm) = self.lengths_at_mm {
-            error_mm += self.length_error(model, surface_mm, touches, context);
+            shift_mm += self.length_error(model, surface_mm, &touches.axes, context);
         }
-        Some(Datum { name, zero_mm, error_mm: error_mm.into(), unsure_mm, is_outside })
+        let placement = turned.shifted(shift_mm);
+        let zero =
+            Vector::from(zero_mm) + Vector::from(self.tool.length_mm) + Vector::from(self.tool.vector_mm);
+        let error_mm = (shift_mm + turned.turn * zero).into();
+        Some(Datum { name, zero_mm, error_mm, placement, unsure_mm, is_outside })
     }
 
     /// What the length of the tool in force is off beside that of the tool that touched Z, both touched off on one surface.
@@ -174,24 +232,29 @@ fn in_workpiece(model: &dyn PathModel, at: &Command, axis: usize) -> Vector {
 
 /// A motion that goes on from where another datum was in force: it begins where that one's place is, seen from its own.
 ///
-/// * `last_mm` – [`Command::datum_mm`] of the motion before, which becomes that of this one; `None` where the axes stand at a
-///   place that no datum knows
+/// * `last` – [`Command::datum`] of the motion before, which becomes that of this one; `None` where the axes stand at a place
+///   that no datum knows
 pub(crate) fn going_on(
     models: &Models<'_>,
     motion: &Motion,
     context: &Context,
-    own_mm: [f64; 3],
-    last_mm: &mut Option<[f64; 3]>,
+    own: Placement,
+    last: &mut Option<Placement>,
 ) -> Motion {
     let mut motion = *motion;
-    let own = Some(own_mm).filter(|_| !matches!(motion, Motion::Uncorrected { .. }));
-    let last_mm = std::mem::replace(last_mm, own).unwrap_or(own_mm);
-    if let (Motion::Feed(feed), true) = (&mut motion, last_mm != own_mm) {
+    let next = Some(own).filter(|_| !matches!(motion, Motion::Uncorrected { .. }));
+    let before = std::mem::replace(last, next).unwrap_or(own);
+    if let (Motion::Feed(feed), true) = (&mut motion, before != own) {
         let model = models.of(context.kinematics).unwrap_or(models.axes);
         let tool = TouchTool { vector_mm: context.tool_mm, length_mm: context.length_mm };
         let at = touched_at(&Vector::from(feed.start.linear_mm), &tool, feed.start.rotary_deg);
-        let before = Vector::from(last_mm) - Vector::from(own_mm);
-        feed.start.linear_mm = (at.linear_mm + model.along_axes(&before, &at)).into();
+        let tip_mm = at.linear_mm + at.tool_mm;
+        let aside = if before.is_turned() || own.is_turned() {
+            own.meant(&before.place(&tip_mm)) - tip_mm
+        } else {
+            before.shift_mm - own.shift_mm
+        };
+        feed.start.linear_mm = (at.linear_mm + model.along_axes(&aside, &at)).into();
     }
     motion
 }
@@ -207,21 +270,24 @@ pub(crate) struct LastDatum {
 }
 
 impl LastDatum {
-    /// [`Command::datum_mm`] of a block.
-    pub(crate) fn error_mm(
+    /// [`Command::datum`] of a block.
+    pub(crate) fn placement(
         &mut self,
         datums: &Datums,
         (model, dialect): (&dyn PathModel, &Dialect),
         context: &Context,
-    ) -> [f64; 3] {
+    ) -> Placement {
         if datums.are_true() {
-            return [0.0; 3];
+            return Placement::default();
         }
         let key = (context.work_offset, context.tool_mm, context.length_mm);
         if self.last.as_ref().is_none_or(|(known, _)| *known != key) {
             *self = Self { last: Some((key, datums.of(model, dialect, context))), noted: false };
         }
-        self.last.as_ref().and_then(|(_, datum)| datum.as_ref()).map_or([0.0; 3], |datum| datum.error_mm)
+        self.last
+            .as_ref()
+            .and_then(|(_, datum)| datum.as_ref())
+            .map_or_else(Placement::default, |datum| datum.placement)
     }
 
     /// That of the block that asked last, where something is cut from it for the first time.

@@ -2,6 +2,7 @@
 
 use correction::Correction;
 use diagnostic::{Diagnostic, both};
+use machine_model::Placement;
 use nc_emit::WordEdits;
 use nc_program::{Context, CurvePart, Questions};
 use nc_syntax::{Block, Letters, Reader};
@@ -125,8 +126,8 @@ impl Pass<'_> {
         let mut corrections: SmallVec<[Correction; 1]> = SmallVec::new();
         let (mut untouched, mut by_time) = (true, None);
         for motion in motions {
-            let last_mm = &mut self.state.datum_mm;
-            let motion = &going_on(&self.job.models, motion, context, info.datum_mm, last_mm);
+            let last = &mut self.state.datum;
+            let motion = &going_on(&self.job.models, motion, context, info.datum, last);
             let mut at_deg = self.rotary_start_deg(motion);
             let modal = self.state.interpreter.modal();
             info.reserved_mm = reserved_mm(self.job, modal, motion, block, context)?;
@@ -316,7 +317,7 @@ impl Pass<'_> {
     }
 
     pub(crate) fn info(&mut self, context: &Context, letters: Letters) -> correction::Block {
-        info(self.job, context, letters, self.datum.error_mm(self.job.datums, self.job.machine(), context))
+        info(self.job, context, letters, self.datum.placement(self.job.datums, self.job.machine(), context))
     }
 
     pub(crate) fn editing<'e>(
@@ -430,7 +431,7 @@ pub(crate) fn info(
     job: &Job<'_>,
     context: &Context,
     letters: Letters,
-    datum_mm: [f64; 3],
+    datum: Placement,
 ) -> correction::Block {
     let output = &job.dialect.output;
     let by_vector = context.direction.is_some();
@@ -453,7 +454,7 @@ pub(crate) fn info(
         named: context.unnamed.map(|lost| lost.is_none()),
         reframed: [false; 3],
         tool_mm: context.tool_mm,
-        datum_mm,
+        datum,
         offset: context.offset,
         centre_words: output.centre_words,
         arc_radius_tolerance_mm: output.arc_tolerance_mm(context.unit_mm),

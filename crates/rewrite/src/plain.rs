@@ -24,9 +24,9 @@ impl Pass<'_> {
             return Ok(false);
         }
         let Some((feeds, mut start_mm)) = self.state.interpreter.plain_feeds() else { return Ok(false) };
-        let datum_mm = self.datum.error_mm(self.job.datums, self.job.machine(), &feeds.context);
+        let datum = self.datum.placement(self.job.datums, self.job.machine(), &feeds.context);
         let letters = Letters::default();
-        let (info, rotary_deg) = (info(self.job, &feeds.context, letters, datum_mm), feeds.rotary_deg);
+        let (info, rotary_deg) = (info(self.job, &feeds.context, letters, datum), feeds.rotary_deg);
         // The lines rely on the code before them, which must be in force in the output too.
         let motion_code = feeds.context.motion_code;
         let mut short: Option<ShortLines> = None;

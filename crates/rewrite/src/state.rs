@@ -1,6 +1,7 @@
 //! What flows through a program.
 
 use correction::Corrector;
+use machine_model::Placement;
 use nc_emit::{Asked, BlockNumbers, Emitter};
 use nc_program::Interpreter;
 use smallvec::SmallVec;
@@ -14,8 +15,8 @@ pub(crate) struct State<'a> {
     pub(crate) corrector: Corrector<'a>,
     pub(crate) emitter: Emitter<'a>,
     pub(crate) guarded: Guarded,
-    /// [`machine_model::Command::datum_mm`] of the last motion.
-    pub(crate) datum_mm: Option<[f64; 3]>,
+    /// [`machine_model::Command::datum`] of the last motion.
+    pub(crate) datum: Option<Placement>,
     /// [`nc_syntax::Place::expects_name`]
     pub(crate) expects_name: bool,
 }
@@ -39,19 +40,19 @@ impl<'a> State<'a> {
             corrector,
             emitter: Emitter::new(job.dialect).with_numbers(numbers),
             guarded: Guarded::default(),
-            datum_mm: None,
+            datum: None,
             expects_name: false,
         }
     }
 
     /// True where whatever follows comes out alike.
     pub(crate) fn continues_as(&self, other: &Self) -> bool {
-        let Self { interpreter, corrector, emitter, guarded, datum_mm, expects_name } = self;
+        let Self { interpreter, corrector, emitter, guarded, datum, expects_name } = self;
         interpreter.modal() == other.interpreter.modal()
             && corrector.continues_as(&other.corrector)
             && emitter.continues_as(&other.emitter)
             && *guarded == other.guarded
-            && *datum_mm == other.datum_mm
+            && *datum == other.datum
             && *expects_name == other.expects_name
     }
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use correction::{HELD_RAD, Orientation};
 use diagnostic::Diagnostic;
-use machine_model::{Command, SolveError, Vector};
+use machine_model::{Command, Placement, SolveError, Vector};
 use nc_expand::Expanded;
 use nc_program::process::{BlockSays, Deed, Process, Said, said};
 use nc_program::{Context, Interpreter};
@@ -71,7 +71,7 @@ fn number<T: Clone + Eq + std::hash::Hash>(
 }
 
 /// The error of touched zeros, mm, and the context in which each was used first.
-pub(super) type Touched = Vec<([f64; 3], Context)>;
+pub(super) type Touched = Vec<(Placement, Context)>;
 
 /// A program under way.
 pub(super) struct Program<'a, 'n> {
@@ -87,8 +87,8 @@ pub(super) struct Program<'a, 'n> {
     process_numbers: Option<[u32; 2]>,
     feed: Option<f64>,
     datum: LastDatum,
-    /// [`Command::datum_mm`] of the last motion.
-    datum_mm: Option<[f64; 3]>,
+    /// [`Command::datum`] of the last motion.
+    placed: Option<Placement>,
     /// Touched zeros in which something was cut.
     pub(super) datums: Vec<Datum>,
     /// So many times its limits are taken.
@@ -163,7 +163,7 @@ impl<'a, 'n> Program<'a, 'n> {
             process_numbers: None,
             feed: None,
             datum: LastDatum::default(),
-            datum_mm: None,
+            placed: None,
             datums: Vec::new(),
             touched: None,
             accepted: None,
@@ -261,18 +261,18 @@ impl<'a, 'n> Program<'a, 'n> {
             };
             let feed = self.feed.filter(|_| motion.inverse_time().is_none());
             let (tool_mm, kinematics) = (context.tool_mm, context.kinematics);
-            let datum_mm = self.datum.error_mm(self.job.datums, self.job.machine(), context);
+            let datum = self.datum.placement(self.job.datums, self.job.machine(), context);
             let cuts = matches!(motion, Motion::Feed(_) | Motion::Hole(_));
             if let Some(datum) = cuts.then(|| self.datum.newly_used()).flatten()
                 && !self.datums.iter().any(|known| known.is(datum))
             {
                 self.datums.push(datum.clone());
                 if let Some(touched) = self.touched {
-                    touched.borrow_mut().push((datum.error_mm, context.clone()));
+                    touched.borrow_mut().push((datum.placement, context.clone()));
                 }
             }
-            let motion = going_on(&self.job.models, &told, context, datum_mm, &mut self.datum_mm);
-            let act = Act::Motion { motion, tool_mm, datum_mm, kinematics, feed, dwell, cycle };
+            let motion = going_on(&self.job.models, &told, context, datum, &mut self.placed);
+            let act = Act::Motion { motion, tool_mm, datum, kinematics, feed, dwell, cycle };
             let pointing = self.pointing(&motion, context);
             // Where directions are compared they are by themselves.
             let turned_mm = if pointing.is_some() { 0.0 } else { self.turn_rounding_mm(&motion) };
