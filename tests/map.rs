@@ -133,9 +133,9 @@ fn the_offset_to_enter_does_what_is_said() {
     let median = zero_point(&found.json["parts"][0], "geometric median");
     let add = vector(&median["add_to_work_offset_mm"]);
     let g54 = vector(&median["work_offsets_mm"]["G54"]);
-    assert!(distance(&g54, &[140.0 + add[0], 100.0 + add[1], 20.0 + add[2]]) < 1e-9);
     let rows = rows(&found.csv);
-    let mut points = String::from("x_mm,y_mm,z_mm\n");
+    // G54 was touched there: the machine's error is in it already, and half a step is rounded off.
+    let mut points = String::from("x_mm,y_mm,z_mm\n140,100,20\n");
     for row in &rows {
         points += &format!("{},{},{}\n", row[0] + add[0], row[1] + add[1], row[2] + add[2]);
     }
@@ -144,12 +144,15 @@ fn the_offset_to_enter_does_what_is_said() {
     let output = run(&["predict", file.to_str().expect("UTF-8"), "-m", STAN, "-q"]);
     assert!(output.status.success(), "{}", messages(&output));
     let text = String::from_utf8(output.stdout).expect("UTF-8");
-    let squares: f64 = text
+    let mut found_there = text
         .lines()
         .skip(1)
+        .map(|line| line.split(',').map(|v| v.parse().expect("a number")).collect::<Vec<f64>>());
+    let zero = found_there.next().expect("the zero first");
+    assert!(distance(&g54, &[zero[3] + add[0], zero[4] + add[1], zero[5] + add[2]]) < 1.5e-3);
+    let squares: f64 = found_there
         .zip(&rows)
-        .map(|(line, row)| {
-            let numbers: Vec<f64> = line.split(',').map(|v| v.parse().expect("a number")).collect();
+        .map(|(numbers, row)| {
             distance(&[numbers[3], numbers[4], numbers[5]], &[row[0], row[1], row[2]]).powi(2)
         })
         .sum();

@@ -8,6 +8,8 @@ use rewrite::{Aligned, Datum, Datums, Touch, TouchTool, Touches, Zero};
 
 use crate::message::Failure;
 use crate::options::{self, JobOptions};
+use crate::settings;
+use crate::stored::Stored;
 
 /// What is known of the zeros.
 ///
@@ -58,6 +60,26 @@ pub(crate) fn of(
     }
     let lengths_at_mm = profile.lengths_touched_at_mm;
     Ok(Datums { named, others: zero(plain, Default::default()), tool, lengths_at_mm })
+}
+
+/// How far the zeros of a profile lie from where it says, mm: what is in those that were touched of the machine's error; `None`
+/// for true ones.
+///
+/// # Errors
+/// As [`of`].
+pub fn of_offsets(
+    options: &JobOptions,
+    profile: &Profile,
+    engine: &dyn Engine,
+) -> Result<Vec<(String, [f64; 3], Option<Vector>)>, Failure> {
+    let setup = settings::setup(options, profile, &Stored::default())?;
+    let datums = of(options, profile, &setup, engine)?;
+    let offsets = setup.work_offsets.iter().map(|(name, zero_mm)| {
+        let datum =
+            engine.path_model().and_then(|model| datums.of_zero(model, name.clone(), *zero_mm, &datums.tool));
+        (name.clone(), *zero_mm, datum.map(|datum| datum.error_mm.into()))
+    });
+    Ok(offsets.collect())
 }
 
 /// The engine whose errors count from a datum, where zeros were touched.

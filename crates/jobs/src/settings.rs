@@ -623,7 +623,7 @@ fn parse_dialect(stem: &str, file_name: &str, bytes: &[u8]) -> Result<Dialect, F
     })
 }
 
-fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Setup, Failure> {
+pub(crate) fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Setup, Failure> {
     let mut setup = Setup {
         work_offsets: stored.work_offsets.as_ref().unwrap_or(&profile.work_offsets).clone(),
         tools: with_options(options, stored.lengths.as_ref().unwrap_or(&profile.tools)),

@@ -164,9 +164,21 @@ impl Datums {
     fn of(&self, model: &dyn PathModel, dialect: &Dialect, context: &Context) -> Option<Datum> {
         let zero_mm = context.work_offset.zero_mm?;
         let name = work_offset_name(dialect, &context.work_offset).unwrap_or_default();
+        let own = TouchTool { vector_mm: context.tool_mm, length_mm: context.length_mm };
+        self.of_zero(model, name, zero_mm, &own)
+    }
+
+    /// That of a work offset by its name and its machine coordinate, a tool being in force.
+    #[must_use]
+    pub fn of_zero(
+        &self,
+        model: &dyn PathModel,
+        name: String,
+        zero_mm: [f64; 3],
+        own: &TouchTool,
+    ) -> Option<Datum> {
         let zero = self.named.iter().find(|(known, _)| *known == name).map_or(&self.others, |(_, zero)| zero);
         let Zero::Touched(touches) = zero else { return None };
-        let own = TouchTool { vector_mm: context.tool_mm, length_mm: context.length_mm };
         let at_zero = |tool: &TouchTool| (Vector::from(zero_mm) + Vector::from(tool.length_mm)).into();
         let turned = touches.aligned.map_or_else(Placement::default, |aligned| {
             let face = aligned.faces.iter().position(|dialled| *dialled).unwrap_or(0);
@@ -182,13 +194,13 @@ impl Datums {
             shift_mm += touch.error(model, axis, &tool, places, &turned);
             is_outside |= places.iter().any(|place| !model.volume().contains(&Vector::from(*place)));
             if touch.at_mm.is_empty() && touch.tool.is_none() {
-                guessed_mm += touch.error(model, axis, &own, &[at_zero(&own)], &turned)
+                guessed_mm += touch.error(model, axis, own, &[at_zero(own)], &turned)
                     - touch.error(model, axis, &tool, places, &turned);
             }
         }
         let unsure_mm = guessed_mm.norm();
         if let Some(surface_mm) = self.lengths_at_mm {
-            shift_mm += self.length_error(model, surface_mm, &touches.axes, context);
+            shift_mm += self.length_error(model, surface_mm, &touches.axes, own);
         }
         let placement = turned.shifted(shift_mm);
         let zero =
@@ -203,12 +215,11 @@ impl Datums {
         model: &dyn PathModel,
         surface_mm: [f64; 3],
         touches: &[Touch; 3],
-        context: &Context,
+        own: &TouchTool,
     ) -> Vector {
         const Z: usize = 2;
         let first = touches[Z].tool.unwrap_or(self.tool);
-        let own = TouchTool { vector_mm: context.tool_mm, length_mm: context.length_mm };
-        let [at_first, at_own] = [first, own].map(|tool| {
+        let [at_first, at_own] = [first, *own].map(|tool| {
             let place = Vector::from(surface_mm) + Vector::from(tool.length_mm);
             touched_at(&place, &tool, [0.0; 3])
         });

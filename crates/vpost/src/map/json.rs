@@ -87,7 +87,7 @@ fn zero_point(study: &Study, zero: &ZeroPoint) -> Value {
     let offsets: serde_json::Map<String, Value> = study
         .work_offsets
         .iter()
-        .map(|(name, offset)| (name.clone(), json!(millimetres(&(Vector::from(*offset) + enter)))))
+        .map(|offset| (offset.name.clone(), json!(millimetres(&offset.to_enter_mm(zero, study)))))
         .collect();
     let proof = match &zero.proof {
         Proof::Node { place_mm, sum_mm, examined } => {

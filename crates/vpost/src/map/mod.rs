@@ -48,7 +48,13 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
     conditions::doubts(&profile, id).iter().for_each(|report| messages.report(report));
     let grid_mm = asked.grid.axes().each_ref().map(|nodes| nodes.range_mm());
     outside(asked.part_box_mm.into_iter().chain([grid_mm]), model.volume(), shared, messages)?;
-    let study = study::Study::new(&profile, id, model, &asked)?;
+    let offsets = jobs::datums::of_offsets(&shared.job, &profile, engine.as_ref())?;
+    let offsets = offsets.into_iter().map(|(name, zero_mm, touched_mm)| study::WorkOffset {
+        name,
+        zero_mm: zero_mm.into(),
+        touched_mm,
+    });
+    let study = study::Study::new(&profile, id, model, offsets.collect(), &asked)?;
     if let Some(path) = &arguments.csv {
         file::write(path, &export::csv(&study))?;
     }

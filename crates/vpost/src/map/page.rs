@@ -562,8 +562,8 @@ fn zero_points(study: &Study, language: Language) -> Markup {
         p {
             (say!(
                 language,
-                "The offset to enter is minus the error: the machine goes too far by the error, so the zero point goes back by it. Do this or correct programs, not both; and only to a zero that an outside instrument found: one that was touched off on this machine has its error at that place in it already.",
-                "Вводится погрешность с обратным знаком: станок уходит на погрешность дальше, поэтому нулевая точка отводится на неё назад. Либо так, либо исправлять программы, но не то и другое вместе; и только для нуля, найденного внешним прибором: в нуле, найденном касанием на этом станке, его погрешность в этом месте уже есть."
+                "The offset to enter is minus the error: the machine goes too far by the error, so the zero point goes back by it. Do this or correct programs, not both; what is to be added holds for a zero that an outside instrument found: one that was touched off on this machine has its error at that place in it already, and what is to be entered for it reckons with that.",
+                "Вводится погрешность с обратным знаком: станок уходит на погрешность дальше, поэтому нулевая точка отводится на неё назад. Либо так, либо исправлять программы, но не то и другое вместе; прибавлять нужно к нулю, найденному внешним прибором: в нуле, найденном касанием на этом станке, его погрешность в этом месте уже есть, и вводимые для него числа её учитывают."
             ))
         }
         @for part in &study.parts { (zero_points_of(study, part, language)) }
@@ -609,9 +609,9 @@ fn zero_points_of(study: &Study, part: &Part, language: Language) -> Markup {
         @if let Some(zero) = chosen.filter(|_| !study.work_offsets.is_empty()) {
             p { (say!(language, "To enter for the geometric median:", "Ввести для геометрической медианы:")) }
             dl {
-                @for (name, offset) in &study.work_offsets {
-                    @let to = Vector::from(*offset) + zero.to_enter_mm(study);
-                    dt { (shown(name)) }
+                @for offset in &study.work_offsets {
+                    @let to = offset.to_enter_mm(zero, study);
+                    dt { (shown(&offset.name)) " (" (offset.how().in_language(language)) ")" }
                     // A control takes a point in every language.
                     @let [x, y, z] = [to.x, to.y, to.z].map(|v| number_of_digits(v, study.decimals()));
                     dd { "X " (x) " Y " (y) " Z " (z) }

@@ -29,7 +29,7 @@ pub(super) struct Study {
     pub rotary_rad: Vector,
     pub within_mm: f64,
     pub resolution_mm: [f64; 3],
-    pub work_offsets: Vec<(String, [f64; 3])>,
+    pub work_offsets: Vec<WorkOffset>,
     pub map: ErrorMap,
     /// The volume first, then regions, planes, the workpiece.
     pub parts: Vec<Part>,
@@ -40,6 +40,29 @@ pub(super) struct Study {
     pub curves: Vec<Curve>,
     /// Of each cell of the grid, where the model is a field.
     pub cells: Vec<Deformation>,
+}
+
+/// A work offset of the profile.
+pub(super) struct WorkOffset {
+    pub name: String,
+    pub zero_mm: Vector,
+    /// What is in it of the machine's error already; `None` where it is true.
+    pub touched_mm: Option<Vector>,
+}
+
+impl WorkOffset {
+    /// What to enter for it, mm, where errors are to count from the zero point.
+    pub(super) fn to_enter_mm(&self, zero: &ZeroPoint, study: &Study) -> Vector {
+        self.zero_mm + study.rounded(&(self.touched_mm.unwrap_or_default() - zero.shift_mm))
+    }
+
+    /// How it was found.
+    pub(super) fn how(&self) -> Text {
+        match self.touched_mm {
+            None => Text::pair("true", "точное"),
+            Some(_) => Text::pair("touched", "найдено касанием"),
+        }
+    }
 }
 
 /// A part of the volume, its figures and its zero points.
@@ -97,6 +120,7 @@ impl Study {
         profile: &Profile,
         engine: EngineId,
         model: &dyn PathModel,
+        work_offsets: Vec<WorkOffset>,
         asked: &Asked,
     ) -> Result<Self, Failure> {
         let error = |q: &Vector, direction: [i8; 3]| model.error_mm(&command(asked, *q, direction));
@@ -130,7 +154,7 @@ impl Study {
             rotary_rad: asked.rotary_rad,
             within_mm: asked.within_mm,
             resolution_mm: profile.resolution_mm,
-            work_offsets: profile.work_offsets.clone(),
+            work_offsets,
             parts,
             diagonals: body_diagonals(&box_mm, TARGETS, error),
             places,

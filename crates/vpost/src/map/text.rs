@@ -145,14 +145,20 @@ fn zero_points(study: &Study, part: &Part, language: Language, out: &mut String)
     let (x, y, z) = (add.x, add.y, add.z);
     let enter = say!(
         language,
-        "to enter the geometric median: change each work offset by X{x:+.3} Y{y:+.3} Z{z:+.3}",
-        "чтобы ввести геометрическую медиану, измените каждое смещение нуля на X{x:+.3} Y{y:+.3} Z{z:+.3}"
+        "to enter the geometric median: change a true work offset by X{x:+.3} Y{y:+.3} Z{z:+.3}; a touched one has the machine's error there in it",
+        "чтобы ввести геометрическую медиану, измените точное смещение нуля на X{x:+.3} Y{y:+.3} Z{z:+.3}; в найденном касанием уже есть погрешность станка"
     );
     let _ = writeln!(out, "  {enter}");
-    for (name, offset) in &study.work_offsets {
-        let from = Vector::from(*offset);
-        let [from, to] = [from, from + add].map(|v| triple(&v, study.decimals()));
-        let becomes = say!(language, "{name}: {from} becomes {to}", "{name}: вместо {from} введите {to}");
+    for offset in &study.work_offsets {
+        let [from, to] =
+            [offset.zero_mm, offset.to_enter_mm(median, study)].map(|v| triple(&v, study.decimals()));
+        let (name, how) = (&offset.name, offset.how());
+        let how = how.in_language(language);
+        let becomes = say!(
+            language,
+            "{name} ({how}): {from} becomes {to}",
+            "{name} ({how}): вместо {from} введите {to}"
+        );
         let _ = writeln!(out, "    {becomes}");
     }
 }
@@ -297,15 +303,19 @@ pub(super) fn second_order_lines(found: &SecondOrder, language: Language) -> [St
 impl ZeroPoint {
     /// What to add to a work offset: minus the error, in whole output steps. Equation (41).
     pub(super) fn to_enter_mm(&self, study: &Study) -> Vector {
-        Vector::from_fn(|axis, _| {
-            let step = study.resolution_mm[axis];
-            // A negative zero would be printed as one.
-            -(self.shift_mm[axis] / step).round() * step + 0.0
-        })
+        study.rounded(&-self.shift_mm)
     }
 }
 
 impl Study {
+    /// In whole output steps.
+    pub(super) fn rounded(&self, mm: &Vector) -> Vector {
+        // A negative zero would be printed as one.
+        Vector::from_fn(|axis, _| {
+            (mm[axis] / self.resolution_mm[axis]).round() * self.resolution_mm[axis] + 0.0
+        })
+    }
+
     /// Decimals that show the finest output step.
     pub(super) fn decimals(&self) -> usize {
         let finest = self.resolution_mm.iter().copied().fold(f64::INFINITY, f64::min);
