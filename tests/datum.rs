@@ -177,6 +177,41 @@ fn a_workpiece_dialled_along_an_axis_lies_as_that_axis_runs() {
 }
 
 #[test]
+fn points_and_budgets_count_from_a_zero_that_is_named() {
+    let shop = Shop::new();
+    shop.corrected("G54 = [200, 0, 0]\nG55 = { at = [200, 0, 0], zero = \"true\" }", PLAIN, &[])
+        .expect("inside");
+    let (machine, points) =
+        (shop.path("m.toml"), shop.write("points.csv", "x_mm,y_mm,z_mm\n200,0,0\n300,0,0\n"));
+    let said = |arguments: &[&str]| {
+        let ran = run(&[arguments, &["-m", &machine]].concat());
+        assert!(ran.status.success(), "{}", messages(&ran));
+        String::from_utf8_lossy(&ran.stdout).into_owned()
+    };
+    let predicted = said(&["predict", &points, "--datum", "G54"]);
+    let errors = |line: &str| {
+        line.split(',').skip(6).take(8).map(|v| v.parse().expect("a number")).collect::<Vec<f64>>()
+    };
+    let rows: Vec<Vec<f64>> = predicted.lines().skip(1).map(errors).collect();
+    // X is long by 20 um over 100 mm; in the measuring frame the table's axis stands off besides.
+    assert_eq!(rows[0][..4], [0.0; 4]);
+    assert!((rows[1][0] - 20.0).abs() < 1e-3 && (rows[1][4] - rows[0][4] - 20.0).abs() < 1e-3, "{rows:?}");
+    let absolute = said(&["predict", &points]);
+    let of_true = said(&["predict", &points, "--datum", "G55"]);
+    for (line, same) in absolute.lines().zip(of_true.lines()) {
+        assert!(line.split(',').take(10).eq(same.split(',').take(10)), "{same}");
+    }
+    let budget = said(&["budget", "--points", &points, "--datum", "G54"]);
+    assert!(budget.contains("M = max |d| 20.00 at") && budget.contains("counted from G54"), "{budget}");
+    let ran = run(&["predict", &points, "-m", &machine, "--datum", "G57"]);
+    assert!(
+        ran.status.code() == Some(2) && messages(&ran).contains("the profile has no G57"),
+        "{}",
+        messages(&ran)
+    );
+}
+
+#[test]
 fn what_contradicts_itself_is_refused_each_in_its_words() {
     let shop = Shop::new();
     let refused = [

@@ -1,7 +1,7 @@
 //! How a job's zeros came to be: what profile and command line say together.
 
 use diagnostic::{Text, both};
-use machine_model::{Engine, FromDatum, Placement, Vector};
+use machine_model::{Engine, FromDatum, PathModel, Placement, Vector};
 use machine_profile::{Found, Profile, TouchPlace, TouchedBy, Way};
 use nc_program::{Setup, ToolLength};
 use rewrite::{Aligned, Datum, Datums, Touch, TouchTool, Touches, Zero};
@@ -60,6 +60,62 @@ pub(crate) fn of(
     }
     let lengths_at_mm = profile.lengths_touched_at_mm;
     Ok(Datums { named, others: zero(plain, Default::default()), tool, lengths_at_mm })
+}
+
+/// From where errors count that count from a zero of a profile, where one is named.
+pub struct FromZero {
+    datums: Datums,
+    tool: TouchTool,
+    zero: Option<(String, [f64; 3])>,
+}
+
+impl FromZero {
+    /// * `name` – of its work offset; `None`: errors count from the measuring frame
+    ///
+    /// # Errors
+    /// The profile has no such zero; as [`of`].
+    pub fn of(
+        options: &JobOptions,
+        profile: &Profile,
+        engine: &dyn Engine,
+        name: Option<&str>,
+    ) -> Result<Self, Failure> {
+        let setup = settings::setup(options, profile, &Stored::default())?;
+        let datums = of(options, profile, &setup, engine)?;
+        let zero = match name {
+            None => None,
+            Some(name) => match setup.work_offsets.iter().find(|(known, _)| known == name) {
+                Some(zero) => Some(zero.clone()),
+                None => {
+                    return Err(Failure::option(
+                        both!("the profile has no {name}", "в профиле нет {name}"),
+                        both!(
+                            "`--datum` names one of [work_offsets_mm]: add `{name} = [x, y, z]` there, how it was touched beside it",
+                            "`--datum` — одно из [work_offsets_mm]: добавьте туда `{name} = [x, y, z]` и как его нашли"
+                        ),
+                    ));
+                }
+            },
+        };
+        Ok(Self { tool: datums.tool, datums, zero })
+    }
+
+    fn datum(&self, model: &dyn PathModel) -> Option<Datum> {
+        let (name, zero_mm) = self.zero.as_ref()?;
+        self.datums.of_zero(model, name.clone(), *zero_mm, &self.tool)
+    }
+
+    /// [`machine_model::Command::datum`] on a machine, as it would have been touched on it.
+    #[must_use]
+    pub fn placement(&self, model: &dyn PathModel) -> Placement {
+        self.datum(model).map_or_else(Placement::default, |datum| datum.placement)
+    }
+
+    /// What is said of it on a machine.
+    #[must_use]
+    pub fn said(&self, model: &dyn PathModel) -> Vec<Text> {
+        said(self.datum(model).as_slice())
+    }
 }
 
 /// How far the zeros of a profile lie from where it says, mm: what is in those that were touched of the machine's error; `None`

@@ -1,7 +1,9 @@
 //! Forward: where the machine really goes.
 
 use diagnostic::{Code, Diagnostic, Speaks, Text, both};
-use machine_model::{Command, Engine, EngineId, PathModel, SolveError, Vector, WithEffects, rotation};
+use machine_model::{
+    Command, Engine, EngineId, PathModel, Placement, SolveError, Vector, WithEffects, rotation,
+};
 use machine_profile::Profile;
 use rewrite::OTHER_TOOL;
 
@@ -28,6 +30,15 @@ pub struct Prediction {
     pub position_mm: Vector,
     /// From where the command says, mm.
     pub error_mm: Vector,
+}
+
+impl Prediction {
+    /// The same seen from a workpiece.
+    #[must_use]
+    pub fn from_datum(self, datum: &Placement) -> Self {
+        let position_mm = datum.meant(&self.position_mm);
+        Self { position_mm, error_mm: self.error_mm + position_mm - self.position_mm }
+    }
 }
 
 /// A machine of which points are asked.
@@ -114,6 +125,12 @@ impl<'p> Predictor<'p> {
     #[must_use]
     pub fn doubts(&self) -> Option<Report> {
         conditions::doubts(self.profile, self.engine.as_ref()?.id())
+    }
+
+    /// What is predicted with.
+    #[must_use]
+    pub fn model(&self) -> &dyn PathModel {
+        self.other().unwrap_or(&self.machine)
     }
 
     /// Where the tool is for a command.

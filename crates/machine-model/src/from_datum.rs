@@ -31,6 +31,26 @@ use crate::{
 /// ```
 pub struct FromDatum(Box<dyn Engine>);
 
+/// How far what belongs at the place of a command lies from it, mm, in the directions of the linear axes; none where the
+/// datum is the measuring frame, so that no bit changes.
+fn datum(machine: &dyn PathModel, state: &Command) -> Option<Vector> {
+    let Placement { shift_mm, turn } = state.datum;
+    if state.datum.is_turned() {
+        return Some(shift_mm + turn * (state.linear_mm + state.tool_mm));
+    }
+    (shift_mm != Vector::zeros()).then(|| machine.along_axes(&shift_mm, state))
+}
+
+/// An error of a machine at a command as it counts from [`Command::datum`], mm, by that of the measuring frame.
+#[must_use]
+pub fn counted_from_datum(machine: &dyn PathModel, error_mm: Vector, state: &Command) -> Vector {
+    if state.datum.is_turned() {
+        let asked = state.linear_mm + state.tool_mm;
+        return state.datum.meant(&(asked + error_mm)) - asked;
+    }
+    datum(machine, state).map_or(error_mm, |datum_mm| error_mm - datum_mm)
+}
+
 impl FromDatum {
     /// The engine back, where it is no model of paths.
     ///
@@ -44,14 +64,8 @@ impl FromDatum {
         self.0.path_model().expect("it was one when this was made")
     }
 
-    /// How far what belongs at the place of a command lies from it, mm, in the directions of the linear axes; none where the
-    /// datum is the measuring frame, so that no bit changes.
     fn datum(&self, state: &Command) -> Option<Vector> {
-        let Placement { shift_mm, turn } = state.datum;
-        if state.datum.is_turned() {
-            return Some(shift_mm + turn * (state.linear_mm + state.tool_mm));
-        }
-        (shift_mm != Vector::zeros()).then(|| self.machine().along_axes(&shift_mm, state))
+        datum(self.machine(), state)
     }
 
     /// The target as the machine without a datum has to be asked for it.
@@ -60,15 +74,6 @@ impl FromDatum {
             Some(datum_mm) => Command { linear_mm: target.linear_mm + datum_mm, ..*target },
             None => *target,
         }
-    }
-
-    /// The error as it counts from the datum, by that of the measuring frame.
-    fn counted(&self, error: Vector, state: &Command) -> Vector {
-        if state.datum.is_turned() {
-            let asked = state.linear_mm + state.tool_mm;
-            return state.datum.meant(&(asked + error)) - asked;
-        }
-        self.datum(state).map_or(error, |datum_mm| error - datum_mm)
     }
 }
 
@@ -96,7 +101,7 @@ impl Engine for FromDatum {
 
 impl PathModel for FromDatum {
     fn error_mm(&self, command: &Command) -> Vector {
-        self.counted(self.machine().error_mm(command), command)
+        counted_from_datum(self.machine(), self.machine().error_mm(command), command)
     }
 
     /// A vector that turns by α in all, evenly, leaves its chord by an eighth of `|v| α²` at most, and what a turned workpiece
@@ -114,7 +119,7 @@ impl PathModel for FromDatum {
 
     fn error_from_mm(&self, command: &Command, programmed_rad: &Vector) -> Vector {
         let error = self.machine().error_from_mm(command, programmed_rad);
-        self.counted(error, &Command { rotary_rad: *programmed_rad, ..*command })
+        counted_from_datum(self.machine(), error, &Command { rotary_rad: *programmed_rad, ..*command })
     }
 
     fn same_tip_mm(&self, linear_mm: &Vector, state: &Command, programmed_rad: &Vector) -> Vector {

@@ -43,7 +43,7 @@ pub use description::{Description, LinearAxis, RotaryAxis, Squareness, Tilt};
 pub use engine::{Engine, EngineId, LANES, Models, PathModel, Solution, SolveError};
 pub use everywhere::Everywhere;
 pub use first_order::first_order_error_mm;
-pub use from_datum::FromDatum;
+pub use from_datum::{FromDatum, counted_from_datum};
 pub use orientation::{Aim, Held, Singularity, aim, singular_sin};
 pub use play::{Play, SAME_PLACE_MM, SAME_PLACE_RAD, turned_by_mm};
 pub use rigid_body::{Prediction, RigidBody, Unusable};

@@ -103,6 +103,9 @@ pub struct Predict {
     /// Give positions in the measuring frame: apply the profile's `[setup]`.
     #[arg(long, conflicts_with = "lathe")]
     pub include_setup: bool,
+    /// Count errors from this zero of the profile, as it was touched.
+    #[arg(long, value_name = "G54", conflicts_with_all = ["lathe", "include_setup"])]
+    pub datum: Option<String>,
     /// Predict what a lathe turns by a program: radius along Z, roundness, cylindricity, roughness.
     #[arg(long)]
     pub lathe: bool,

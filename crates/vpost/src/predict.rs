@@ -1,6 +1,7 @@
 //! Forward: where the machine really goes.
 
 use diagnostic::Severity;
+use jobs::datums::FromZero;
 use jobs::figures::fixed;
 use jobs::points::{self, DIRECTION_COLUMNS, direction_fields};
 pub(crate) use jobs::predict::POINT_OUTSIDE;
@@ -24,6 +25,9 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
     let predictor = Predictor::new(&profile, &shared.job, frame)?;
     let mut out = points.columns.join(",");
     out.push_str(",px_mm,py_mm,pz_mm,dx_um,dy_um,dz_um,d_um");
+    let zero = arguments.datum.as_deref();
+    let datum = FromZero::of(&shared.job, &profile, predictor.model(), zero)?.placement(predictor.model());
+    out.push_str(if zero.is_some() { ",ax_um,ay_um,az_um,a_um" } else { "" });
     out.push_str(if predictor.turns() { DIRECTION_COLUMNS } else { "" });
     out.push('\n');
     predictor.doubts().iter().for_each(|report| messages.report(report));
@@ -31,13 +35,16 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
         predictor
             .require_tool(row, command)
             .map_err(|diagnostic| Failure::refused(&name, &bytes, vec![diagnostic]))?;
-        let Prediction { position_mm, error_mm } = predictor.predict(command);
+        let absolute = predictor.predict(command);
+        let Prediction { position_mm, error_mm } = absolute.from_datum(&datum);
         out.push_str(&fields.join(","));
         for value in position_mm.iter() {
             out.push(',');
             out.push_str(&fixed(*value, 9));
         }
-        for value in error_mm.iter().copied().chain([error_mm.norm()]) {
+        let measured = zero.map(|_| absolute.error_mm);
+        for value in [Some(error_mm), measured].iter().flatten().flat_map(|mm| [mm.x, mm.y, mm.z, mm.norm()])
+        {
             out.push(',');
             out.push_str(&fixed(value * 1e3, 6));
         }

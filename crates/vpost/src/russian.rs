@@ -174,6 +174,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("Correct many programs, on all cores or on many machines", "Исправить много программ, на всех ядрах или на многих машинах"),
     ("Correct one share of a manifest's programs", "Исправить одну часть программ задания"),
     ("Correction engine; default: the profile's", "Метод исправления; иначе — из профиля"),
+    ("Count errors from this zero of the profile, as it was touched", "Считать погрешности от этого нуля профиля, как его нашли"),
     ("Day of the measurement: year-month-day", "День измерения: год-месяц-день"),
     ("Deviations that stay as they are while the others are made smaller: EXX,EC0Y (repeatable)", "Отклонения, которые остаются, пока уменьшают другие: EXX,EC0Y (можно повторять)"),
     ("Dialect of the control, see `vpost grammar list`", "Диалект стойки, см. `vpost grammar list`"),

@@ -26,6 +26,9 @@ pub struct Budget {
     /// Where the rotary axes stand at the nodes of the grid, degrees; 0 if not given.
     #[arg(long, value_name = "A=DEG,…", allow_hyphen_values = true)]
     pub rotary: Option<Given<Rotary>>,
+    /// Count errors from this zero of the profile, as it was touched.
+    #[arg(long, value_name = "G54")]
+    pub datum: Option<String>,
     /// Wanted M, largest error at the control points, µm: what to mend, and what each deviation may be.
     #[arg(long, value_name = "UM", allow_hyphen_values = true)]
     pub target: Option<f64>,

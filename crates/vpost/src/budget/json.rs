@@ -1,5 +1,6 @@
 //! All figures as JSON, `vpost.budget/1`.
 
+use diagnostic::Text;
 use error_budget::tolerances::Tolerances;
 use error_budget::{Criteria, OneSided};
 use serde_json::{Value, json};
@@ -13,6 +14,7 @@ pub(super) fn bytes(study: &Study) -> Vec<u8> {
     let document = json!({
         "schema": "vpost.budget/1",
         "machine": study.name,
+        "counted_from": study.from_zero.said(study.machine.model()).iter().map(Text::english).collect::<Vec<_>>(),
         "control_points": study.points.commands.len(),
         "measured": criteria(study, &budget.measured),
         "deviations": budget.items.iter().map(|item| {

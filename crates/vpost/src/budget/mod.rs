@@ -10,6 +10,7 @@ pub use arguments::Budget;
 
 use diagnostic::{Code, Diagnostic, both};
 use error_budget::Machine;
+use jobs::datums::FromZero;
 use machine_model::EngineId;
 
 use crate::arguments::Shared;
@@ -64,7 +65,9 @@ pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> R
     }
     let keep = keep(arguments, &machine)?;
     let points = control_points::read(arguments, shared, &profile, &machine, messages)?;
-    let study = study::Study::new(profile.name, machine, points, target_mm.map(|mm| (mm, keep)));
+    let from_zero = FromZero::of(&shared.job, &profile, machine.model(), arguments.datum.as_deref())?;
+    let target = target_mm.map(|mm| (mm, keep));
+    let study = study::Study::new(profile.name, machine, points, from_zero, target);
     if study.moves_nothing() {
         let message = both!(
             "no deviation moves any of the control points",

@@ -6,7 +6,8 @@ use error_budget::tolerances::{Figure, Tolerances, equal_influence};
 use error_budget::{
     Budget, Criteria, Extreme, Field, Machine, Unit, balanced_signs, root_sum_of_squares, worst_case,
 };
-use machine_model::{Command, PathModel, Vector, WithEffects};
+use jobs::datums::FromZero;
+use machine_model::{Command, PathModel, Placement, Vector, WithEffects, counted_from_datum};
 use rayon::prelude::*;
 
 use super::control_points::ControlPoints;
@@ -16,6 +17,8 @@ pub(super) struct Study {
     pub name: String,
     pub machine: Machine,
     pub points: ControlPoints,
+    /// From where errors count.
+    pub from_zero: FromZero,
     pub budget: Budget,
     /// Every function as measured or mirrored.
     pub mirrored: Combined,
@@ -77,17 +80,24 @@ pub(super) static MENDING_OUT_OF_REACH: Text = Text::pair(
     "M, как измерено, остаётся больше, что бы из остального ни исправить",
 );
 
+fn counted(model: &WithEffects, command: &Command, datum: Placement) -> Vector {
+    counted_from_datum(model, model.error_mm(command), &Command { datum, ..*command })
+}
+
 impl Study {
     pub(super) fn new(
         name: String,
         machine: Machine,
         points: ControlPoints,
+        from_zero: FromZero,
         target: Option<(f64, Vec<bool>)>,
     ) -> Self {
         let commands = &points.commands;
         // Each point is computed by itself, so the number of threads changes nothing.
         let evaluate = |model: &WithEffects| -> Vec<Vector> {
-            commands.par_iter().with_min_len(256).map(|command| model.error_mm(command)).collect()
+            // Each would have been touched by itself.
+            let datum = from_zero.placement(model);
+            commands.par_iter().with_min_len(256).map(|command| counted(model, command, datum)).collect()
         };
         let some = "there are control points: files without any were refused";
         let budget = Budget::new(&machine, evaluate).expect(some);
@@ -99,7 +109,9 @@ impl Study {
         };
         let target = target.map(|(mm, keep)| {
             let tolerances = |figure| {
-                let one = |model: &WithEffects, point: usize| model.error_mm(&commands[point]);
+                let one = |model: &WithEffects, point: usize| {
+                    counted(model, &commands[point], from_zero.placement(model))
+                };
                 equal_influence(&sized, &field, &keep, mm, figure, one, evaluate)
             };
             Target {
@@ -114,6 +126,7 @@ impl Study {
         Self {
             mirrored: Combined::of(&machine, &budget.field, commands, evaluate),
             within_sizes: Combined::of(&sized, &field, commands, evaluate),
+            from_zero,
             name,
             budget,
             target,

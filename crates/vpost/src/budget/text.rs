@@ -13,6 +13,9 @@ use crate::figures::{fixed, printable, round, triple, um};
 /// The page.
 pub(super) fn page(study: &Study, language: Language) -> String {
     let mut out = head(study, language);
+    for sentence in study.from_zero.said(study.machine.model()) {
+        let _ = writeln!(out, "{}", sentence.in_language(language));
+    }
     items(study, language, &mut out);
     together(study, language, &mut out);
     if let Some(target) = &study.target {
