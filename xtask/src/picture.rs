@@ -194,8 +194,8 @@ fn strokes(
             let height = |mm: [f64; 3]| step.context.frame.to_program(mm)[2] - LEVEL_MM;
             let ends = [height(feed.start.linear_mm), height(feed.end.linear_mm)];
             if ends.iter().all(|z| z.abs() < LEVEL_HALF_WIDTH_MM) {
-                let datum_mm = machine.datums.error_mm(machine.machine, dialect, &step.context);
-                found.push(stroke(feed, (&step.context, datum_mm), machine.machine, step_mm));
+                let datum = machine.datums.placement(machine.machine, dialect, &step.context);
+                found.push(stroke(feed, (&step.context, datum), machine.machine, step_mm));
             }
         }
         if step.ends_program {
@@ -210,7 +210,7 @@ fn strokes(
 
 fn stroke(
     feed: &Feed,
-    (context, datum_mm): (&nc_program::Context, [f64; 3]),
+    (context, datum): (&nc_program::Context, machine_model::Placement),
     model: &dyn PathModel,
     step_mm: f64,
 ) -> Stroke {
@@ -223,7 +223,7 @@ fn stroke(
             linear_mm: commanded,
             rotary_rad: Vector::zeros(),
             tool_mm: context.tool_mm.into(),
-            datum_mm: datum_mm.into(),
+            datum,
             ..Default::default()
         };
         let real = commanded + model.error_mm(&command);
