@@ -35,7 +35,7 @@ const WITHOUT_MOTION: [(&str, &str, &str); 3] = [
 fn what_plunges_under_compensation_stays_in_its_axis() {
     let place = Place::new();
     for (dialect, program, what) in WITHOUT_MOTION {
-        let more = ["-m", STAN, "-d", dialect, "--work-offset", OFFSET, "--accept", "60"];
+        let more = ["-m", STAN, "-d", dialect, "--work-offset", OFFSET];
         let (out, _) = place.corrected(program, &more);
         // Behind G41 or G42: a block that moves Z alone moves Z alone.
         let plunges = |text: &str| {
