@@ -4,14 +4,17 @@
 //! for that: what it writes is read by [`Interpreter`], as it will be read once more when it is corrected, and what that
 //! does not know for certain nobody here knows.
 
+use std::ops::Range;
+
 use nc_program::modal::{Distance, Modal, MotionMode, Naming, Units};
 use nc_program::{Interpreter, Owner, Setup};
 use nc_syntax::dialect::{Action, Dialect};
 use nc_syntax::{Block, EnvelopeFinder, Item, ItemKind, Place, Reader, Value};
 
-use crate::called;
-use crate::output::{From, Output, Written};
-use crate::shorthand::{self, Fault, Words, from};
+use crate::lowering::{Came, Fault, Refused};
+use crate::output::{self, From, Marks, Output};
+use crate::shorthand::{self, Words};
+use crate::{Origin, called};
 
 /// The motion code in force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,12 +84,12 @@ pub(crate) fn places(modal: &Modal) -> [Option<f64>; 3] {
 pub(crate) struct Known<'d> {
     dialect: &'d Dialect,
     interpreter: Interpreter<'d>,
-    /// Why the interpreter refused a block first, placed in the text that is written anew.
+    /// Why the interpreter refused a block first.
     refused: Option<Fault>,
 }
 
 impl<'d> Known<'d> {
-    pub(crate) fn new(dialect: &'d Dialect, setup: &'d Setup) -> Self {
+    fn new(dialect: &'d Dialect, setup: &'d Setup) -> Self {
         Self { dialect, interpreter: Interpreter::new(dialect, setup), refused: None }
     }
 
@@ -105,73 +108,58 @@ impl<'d> Known<'d> {
 
     /// The state that the codes of a block make before it moves, and whose its axis words are; `None` where it is refused.
     pub(crate) fn codes(&self, block: &Block<'_>) -> Option<(State, Owner)> {
-        let plain = without_shorthand(block, self.dialect);
         let mut settings = None;
-        let mut take = |block: &Block<'_>| settings = self.interpreter.settings(block).ok();
-        match &plain {
-            None => take(block),
-            Some(text) => each(text, self.dialect, take),
-        }
+        plainly(block, self.dialect, |block| settings = self.interpreter.settings(block).ok());
         settings.map(|(modal, owner)| (State::of(&modal), owner))
     }
 
-    /// Reads a block of the source that is written as it stands.
-    pub(crate) fn block(&mut self, block: &Block<'_>) {
-        match without_shorthand(block, self.dialect) {
-            None => self.step(block, block.offset, None),
-            Some(text) => self.text(&text, block.offset, None),
-        }
+    /// Reads a block that is written as it stands.
+    pub(crate) fn block(&mut self, came: &Came<'_>) {
+        self.step(&came.block, &|span| (came.from.file, came.from.place(span)));
     }
 
     /// Reads text that stands for bytes of the source.
     pub(crate) fn written(&mut self, text: &[u8], from: From) {
-        self.text(text, from.offset, Some(from.length));
+        let read: Result<(), Fault> = Came::each(text, self.dialect, From { exact: false, ..from }, |came| {
+            self.block(came);
+            Ok(())
+        });
+        debug_assert!(read.is_ok(), "refusals are kept");
     }
 
-    fn text(&mut self, text: &[u8], offset: u64, length: Option<u64>) {
+    /// Reads a block; `told` says where bytes of it come from.
+    fn step(&mut self, block: &Block<'_>, told: &dyn Fn(Range<u64>) -> (u16, Range<u64>)) {
         let dialect = self.dialect;
-        each(text, dialect, |block| match without_shorthand(block, dialect) {
-            None => self.step(block, offset, length),
-            Some(plain) => each(&plain, dialect, |block| self.step(block, offset, length)),
+        plainly(block, dialect, |plain| {
+            let Err(diagnostics) = self.interpreter.step(plain) else { return };
+            let Some(mut diagnostic) = diagnostics.into_iter().next().filter(|_| self.refused.is_none())
+            else {
+                return;
+            };
+            let within = |at: u64| at.saturating_sub(plain.offset);
+            let place = diagnostic.span.take().map(|span| told(within(span.start)..within(span.end)));
+            let (file, span) = place.unzip();
+            diagnostic.span = span;
+            self.refused = Some(Box::new(Refused { diagnostic, file: file.unwrap_or_default() }));
         });
-    }
-
-    /// `length`: the block stands for so many bytes at `offset`; else it is the block there.
-    fn step(&mut self, block: &Block<'_>, offset: u64, length: Option<u64>) {
-        let Err(diagnostics) = self.interpreter.step(block) else { return };
-        if self.refused.is_some() {
-            return;
-        }
-        self.refused = diagnostics.into_iter().next().map(|mut diagnostic| {
-            let within = |at: u64| offset + at.saturating_sub(block.offset);
-            diagnostic.span = diagnostic.span.map(|span| match length {
-                Some(length) => offset..offset + length,
-                None => within(span.start)..within(span.end),
-            });
-            Box::new(diagnostic)
-        });
-    }
-}
-
-/// The blocks of text that was written, none of them a program's name.
-fn each(text: &[u8], dialect: &Dialect, mut read: impl FnMut(&Block<'_>)) {
-    let place = Place { offset: 1, ..Place::START };
-    let mut reader = Reader::part(text, dialect, EnvelopeFinder::new(dialect).open(), place);
-    let mut block = Block::default();
-    while reader.next(&mut block) {
-        read(&block);
     }
 }
 
 /// The block with blanks in place of what is written out later, and of what is asked for before it is: corners, polar words,
-/// calls by name, cycles of lathes. `None` where it has nothing of the kind.
-fn without_shorthand(block: &Block<'_>, dialect: &Dialect) -> Option<Vec<u8>> {
+/// calls by name, cycles of lathes.
+fn plainly(block: &Block<'_>, dialect: &Dialect, mut read: impl FnMut(&Block<'_>)) {
     let mut text: Option<Vec<u8>> = None;
     for item in block.items.iter().filter(|item| is_shorthand(block, item, dialect)) {
         let bytes = text.get_or_insert_with(|| block.bytes.to_vec());
         bytes[item.span.start as usize..item.span.end as usize].fill(b' ');
     }
-    text
+    let Some(text) = text else { return read(block) };
+    let place = Place { offset: block.offset.max(1), line: block.line, expects_name: false };
+    let mut reader = Reader::part(&text, dialect, EnvelopeFinder::new(dialect).open(), place);
+    let mut plain = Block::default();
+    while reader.next(&mut plain) {
+        read(&plain);
+    }
 }
 
 fn is_shorthand(block: &Block<'_>, item: &Item, dialect: &Dialect) -> bool {
@@ -191,49 +179,64 @@ fn is_shorthand(block: &Block<'_>, item: &Item, dialect: &Dialect) -> bool {
     }
 }
 
-/// A text on its way out, read as it is written.
+/// A text on its way out, read as it is written once somebody asks.
+#[derive(Debug)]
 pub(crate) struct Rewriting<'d> {
+    pub(crate) dialect: &'d Dialect,
+    pub(crate) marks: Marks,
     out: Output,
     pub(crate) known: Known<'d>,
-    #[cfg(test)]
-    pub(crate) beliefs: Vec<crate::agreement::Belief>,
+    /// What is known counts: before, nothing was asked.
+    awake: bool,
 }
 
 impl<'d> Rewriting<'d> {
-    pub(crate) fn new(dialect: &'d Dialect, setup: &'d Setup, source: &[u8]) -> Self {
-        Self {
-            out: Output::new(dialect, source),
-            known: Known::new(dialect, setup),
-            #[cfg(test)]
-            beliefs: Vec::new(),
+    pub(crate) fn new(dialect: &'d Dialect, setup: &'d Setup, marks: Marks) -> Self {
+        Self { dialect, marks, out: Output::new(marks), known: Known::new(dialect, setup), awake: false }
+    }
+
+    /// Reads what is written so far, and from here on whatever is.
+    pub(crate) fn wake(&mut self) {
+        if std::mem::replace(&mut self.awake, true) {
+            return;
+        }
+        let Output { text, segments, .. } = &self.out;
+        let mut finder = EnvelopeFinder::new(self.dialect);
+        finder.see(text);
+        let mut reader = Reader::part(text, self.dialect, finder.open(), Place::START);
+        let mut block = Block::default();
+        while reader.next(&mut block) {
+            let start = block.offset;
+            self.known.step(&block, &|span| {
+                let Origin { file, span } = output::origin(segments, &(start + span.start..start + span.end));
+                (u16::try_from(file).unwrap_or(u16::MAX), span)
+            });
         }
     }
 
-    /// Where the text ends so far.
-    #[cfg(test)]
-    pub(crate) fn length(&self) -> u64 {
-        self.out.text.len() as u64
-    }
-
     /// A block as it is.
-    pub(crate) fn block(&mut self, block: &Block<'_>) {
-        self.out.copy(block.bytes, from(block));
-        self.known.block(block);
+    pub(crate) fn block(&mut self, came: &Came<'_>) {
+        self.unread(came);
+        if self.awake {
+            self.known.block(came);
+        }
     }
 
     /// A block as it is, which stands for what another step writes.
-    pub(crate) fn unread(&mut self, block: &Block<'_>) {
-        self.out.copy(block.bytes, from(block));
+    pub(crate) fn unread(&mut self, came: &Came<'_>) {
+        self.out.copy(came.block.bytes, came.from);
     }
 
     /// Bytes that stand for a stretch of the source.
     pub(crate) fn write(&mut self, bytes: &[u8], from: From) {
+        self.wake();
         self.out.write(bytes, from);
         self.known.written(bytes, from);
     }
 
     /// A line of its own that stands for a stretch of the source.
     pub(crate) fn line(&mut self, bytes: &[u8], from: From) {
+        self.wake();
         self.out.line(bytes, from);
         self.known.written(bytes, from);
     }
@@ -250,16 +253,10 @@ impl<'d> Rewriting<'d> {
 
     /// The text and where each stretch of it comes from. Where the program is refused for a block before the `fault`, it is
     /// for that one: what is not known behind it would be blamed on its followers.
-    pub(crate) fn end(self, fault: Option<Fault>) -> Result<Written, Fault> {
-        match (fault, self.known.refused) {
-            (None, _) => Ok(Written {
-                text: self.out.text,
-                segments: self.out.segments,
-                #[cfg(test)]
-                beliefs: self.beliefs,
-            }),
-            (Some(_), Some(refused)) => Err(refused),
-            (Some(fault), None) => Err(fault),
+    pub(crate) fn end(self, fault: Option<Fault>) -> Result<Output, Fault> {
+        match fault {
+            None => Ok(self.out),
+            Some(fault) => Err(self.known.refused.unwrap_or(fault)),
         }
     }
 }

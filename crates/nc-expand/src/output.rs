@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use nc_syntax::dialect::{Paren, Semicolon};
-use nc_syntax::{Dialect, line_ending, line_ends};
+use nc_syntax::{Block, Dialect, Reader, line_ending, line_ends};
 use units::decimal::{self, Spelling};
 
 use crate::Origin;
+use crate::lowering::Came;
 
 /// A stretch of the flat text.
 #[derive(Clone, Copy, Debug)]
@@ -25,16 +26,6 @@ pub(crate) struct Segment {
     pub(crate) exact: bool,
 }
 
-/// A text that one step has written.
-#[derive(Debug)]
-pub(crate) struct Written {
-    pub(crate) text: Vec<u8>,
-    /// Where each stretch of it comes from.
-    pub(crate) segments: Vec<Segment>,
-    #[cfg(test)]
-    pub(crate) beliefs: Vec<crate::agreement::Belief>,
-}
-
 /// Where a stretch comes from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct From {
@@ -42,23 +33,35 @@ pub(crate) struct From {
     pub(crate) offset: u64,
     pub(crate) length: u64,
     pub(crate) line: u32,
+    /// Byte for byte the same: else it stands for all of the stretch.
+    pub(crate) exact: bool,
+    /// It is a block of a cycle's contour.
+    pub(crate) contour: bool,
 }
 
-/// Writes the flat text.
-#[derive(Debug)]
-pub(crate) struct Output {
-    pub(crate) text: Vec<u8>,
-    pub(crate) segments: Vec<Segment>,
-    line_ending: &'static [u8],
+impl From {
+    /// Where bytes that stand at `within` of what comes from here are of the source.
+    pub(crate) fn place(&self, within: Range<u64>) -> Range<u64> {
+        let end = self.offset + self.length;
+        if !self.exact {
+            return self.offset..end;
+        }
+        let shift = |at: u64| (self.offset + at).min(end);
+        shift(within.start)..shift(within.end.max(within.start))
+    }
+}
+
+/// How lines are ended and comments written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Marks {
+    pub(crate) line_ending: &'static [u8],
     open: &'static [u8],
     close: &'static [u8],
     longest: usize,
-    /// Line ends written.
-    lines: u32,
 }
 
-impl Output {
-    pub(crate) fn new(dialect: &Dialect, source: &[u8]) -> Self {
+impl Marks {
+    pub(crate) fn of(dialect: &Dialect, source: &[u8]) -> Self {
         let (open, close): (&[u8], &[u8]) = if matches!(dialect.paren, Paren::Comment { .. }) {
             (b"(", b")")
         } else if dialect.semicolon == Semicolon::Comment {
@@ -66,18 +69,54 @@ impl Output {
         } else {
             (b"", b"")
         };
-        Self {
-            text: Vec::with_capacity(source.len() + 256),
-            segments: Vec::new(),
-            line_ending: line_ending(source),
-            open,
-            close,
-            longest: dialect.output.max_block_bytes as usize,
-            lines: 0,
-        }
+        let longest = dialect.output.max_block_bytes as usize;
+        Self { line_ending: line_ending(source), open, close, longest }
     }
 
-    fn segment(&mut self, from: From, exact: bool) {
+    /// A comment on a line of its own; `None` where the dialect has no comments.
+    ///
+    /// Marks that would end it, or start something in some control, are replaced.
+    pub(crate) fn comment(&self, bytes: &[u8]) -> Option<Vec<u8>> {
+        let start = bytes.iter().position(|byte| *byte > b' ').unwrap_or(bytes.len());
+        let bytes = bytes[start..].trim_ascii_end();
+        if self.open.is_empty() || bytes.is_empty() {
+            return None;
+        }
+        let around = self.open.len() + self.close.len();
+        let room = if self.longest == 0 { usize::MAX } else { self.longest - around };
+        let shown = bytes.iter().take(room).map(|byte| match byte {
+            b'(' | b'{' => b'[',
+            b')' | b'}' => b']',
+            b'%' | b':' | b';' => b'-',
+            byte if *byte < b' ' || *byte == 0x7F => b' ',
+            byte => *byte,
+        });
+        Some([self.open, &shown.collect::<Vec<u8>>(), self.close, self.line_ending].concat())
+    }
+}
+
+/// True where text does not stand at the start of a line.
+pub(crate) fn within_line(text: &[u8]) -> bool {
+    text.last().is_some_and(|byte| !matches!(byte, b'\n' | b'\r'))
+}
+
+/// Writes the flat text.
+#[derive(Debug)]
+pub(crate) struct Output {
+    pub(crate) text: Vec<u8>,
+    pub(crate) segments: Vec<Segment>,
+    marks: Marks,
+    /// Line ends written.
+    lines: u32,
+}
+
+impl Output {
+    pub(crate) const fn new(marks: Marks) -> Self {
+        Self { text: Vec::new(), segments: Vec::new(), marks, lines: 0 }
+    }
+
+    fn segment(&mut self, from: From) {
+        let exact = from.exact;
         let flat = self.text.len() as u64;
         if let Some(last) = self.segments.last_mut() {
             let follows = last.source + (flat - last.flat) == from.offset;
@@ -91,36 +130,36 @@ impl Output {
                 return;
             }
         }
-        let From { file, offset, length, line } = from;
+        let From { file, offset, length, line, .. } = from;
         let flat_line = self.lines + 1;
         self.segments.push(Segment { flat, source: offset, length, line, flat_line, file, exact });
     }
 
-    /// Bytes as they are.
+    /// Bytes as they come.
     pub(crate) fn copy(&mut self, bytes: &[u8], from: From) {
-        self.segment(from, true);
+        self.segment(from);
         self.push(bytes);
     }
 
     /// Bytes that stand for a stretch of the source.
     pub(crate) fn write(&mut self, bytes: &[u8], from: From) {
-        self.segment(from, false);
+        self.segment(From { exact: false, ..from });
         self.push(bytes);
     }
 
     /// Starts a new line unless one was just started.
     pub(crate) fn fresh_line(&mut self) {
-        if self.text.last().is_some_and(|byte| !matches!(byte, b'\n' | b'\r')) {
-            self.push(self.line_ending);
+        if within_line(&self.text) {
+            self.push(self.marks.line_ending);
         }
     }
 
     /// A line of its own that stands for a stretch of the source.
     pub(crate) fn line(&mut self, bytes: &[u8], from: From) {
         self.fresh_line();
-        self.segment(from, false);
+        self.segment(From { exact: false, ..from });
         self.push(bytes);
-        self.push(self.line_ending);
+        self.push(self.marks.line_ending);
     }
 
     fn push(&mut self, bytes: &[u8]) {
@@ -129,31 +168,36 @@ impl Output {
     }
 
     /// A comment on a line of its own. Nothing where the dialect has no comments.
-    ///
-    /// Marks that would end it, or start something in some control, are replaced.
     pub(crate) fn comment(&mut self, bytes: &[u8], from: From) {
-        if self.open.is_empty() {
-            return;
+        if let Some(comment) = self.marks.comment(bytes) {
+            self.fresh_line();
+            self.write(&comment, from);
         }
-        let start = bytes.iter().position(|byte| *byte > b' ').unwrap_or(bytes.len());
-        let bytes = bytes[start..].trim_ascii_end();
-        if bytes.is_empty() {
-            return;
+    }
+}
+
+impl Output {
+    /// Its blocks, each with whom it stands for.
+    pub(crate) fn blocks<'t>(&'t self, dialect: &'t Dialect) -> Vec<Came<'t>> {
+        let (mut reader, mut block, mut came) =
+            (Reader::new(&self.text, dialect), Block::default(), Vec::new());
+        while reader.next(&mut block) {
+            let span = block.offset..block.offset + block.bytes.len() as u64;
+            let Origin { file, span } = origin(&self.segments, &span);
+            let exact =
+                before(&self.segments, |segment| segment.flat <= block.offset).is_some_and(|it| it.exact);
+            let line = source_line(&self.segments, block.line).1;
+            let from = From {
+                file: u16::try_from(file).unwrap_or(u16::MAX),
+                offset: span.start,
+                length: span.end - span.start,
+                line: u32::try_from(line).unwrap_or(u32::MAX),
+                exact,
+                contour: false,
+            };
+            came.push(Came { block: block.clone(), from });
         }
-        self.fresh_line();
-        self.segment(from, false);
-        self.text.extend_from_slice(self.open);
-        let room =
-            if self.longest == 0 { usize::MAX } else { self.longest - self.open.len() - self.close.len() };
-        self.text.extend(bytes.iter().take(room).map(|byte| match byte {
-            b'(' | b'{' => b'[',
-            b')' | b'}' => b']',
-            b'%' | b':' | b';' => b'-',
-            byte if *byte < b' ' || *byte == 0x7F => b' ',
-            byte => *byte,
-        }));
-        self.text.extend_from_slice(self.close);
-        self.push(self.line_ending);
+        came
     }
 }
 

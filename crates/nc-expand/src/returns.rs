@@ -9,14 +9,13 @@
 //! back to what is drilled less a clearance), rapid to the level. The numbers written have 6 decimals.
 
 use diagnostic::{Text, both};
-use nc_program::Setup;
 use nc_syntax::dialect::{Action, CycleCode};
-use nc_syntax::{Block, Dialect, ItemKind, Letters, Reader, Span, Value};
+use nc_syntax::{Block, Dialect, ItemKind, Letters, Span, Value};
 
 use crate::codes;
 use crate::known::Rewriting;
-use crate::output::Written;
-use crate::shorthand::{AXES, Fault, Words, from, number, shown};
+use crate::lowering::{Came, Fault, Lower};
+use crate::shorthand::{AXES, Words, actions, number, shown};
 
 /// Pecks of one hole; more are a wrong depth.
 const MOST_PECKS: f64 = 2_000.0;
@@ -27,23 +26,7 @@ const TAKEN: Letters = Letters::of(b"FGMNPQRXYZ");
 
 /// True where the block has a cycle that this dialect writes out.
 pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
-    dialect.flow.return_by_m
-        && (Words { block, dialect }).actions().any(|(action, _)| matches!(action, Action::Cycle(_)))
-}
-
-/// The program with its cycles written out, and where each stretch of it comes from.
-pub(crate) fn write_out(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Written, Fault> {
-    let out = Rewriting::new(dialect, setup, text);
-    let mut writer = Writer { dialect, out, level: None, cycle: None, open: false };
-    let mut reader = Reader::new(text, dialect);
-    let mut block = Block::default();
-    let mut fault = None;
-    while fault.is_none() && reader.next(&mut block) {
-        fault = writer.block(&block).err();
-        #[cfg(test)]
-        writer.out.believe(writer.out.known.state().belief());
-    }
-    writer.out.end(fault)
+    dialect.flow.return_by_m && actions(block, dialect).any(|(action, _)| matches!(action, Action::Cycle(_)))
 }
 
 /// A cycle in force.
@@ -57,7 +40,8 @@ struct Cycle {
     back: f64,
 }
 
-struct Writer<'d> {
+/// Writes cycles out, block by block.
+pub(crate) struct Writer<'d> {
     dialect: &'d Dialect,
     out: Rewriting<'d>,
     /// G71.
@@ -67,9 +51,9 @@ struct Writer<'d> {
     open: bool,
 }
 
-impl Writer<'_> {
-    fn block(&mut self, block: &Block<'_>) -> Result<(), Fault> {
-        let words = Words { block, dialect: self.dialect };
+impl<'d> Lower<'d> for Writer<'d> {
+    fn came(&mut self, came: &Came<'_>) -> Result<(), Fault> {
+        let words = Words::of(came, self.dialect);
         let begins = words.actions().any(|(action, _)| matches!(action, Action::Cycle(_)));
         let moves = self.names(&words, b"XYZ");
         let ends = words.actions().any(|(action, _)| {
@@ -83,7 +67,8 @@ impl Writer<'_> {
             )
         });
         if begins {
-            return self.begin(&words);
+            self.out.wake();
+            return self.begin(came);
         }
         if ends && self.cycle.is_some() && words.skipped() {
             return Err(self.refuse(
@@ -126,12 +111,31 @@ impl Writer<'_> {
             ));
         }
         if let Some((_, span)) = words.actions().find(|(action, _)| **action == Action::ReturnLevel) {
+            self.out.wake();
             self.level = Some(self.level_of(&words, span)?);
         } else if words.actions().any(|(action, _)| moves_levels(action)) {
             self.level = None;
         }
-        self.out.block(block);
+        self.out.block(came);
         Ok(())
+    }
+
+    fn fresh_line(&mut self) {
+        self.out.fresh_line();
+    }
+
+    fn end(&mut self) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn written(self: Box<Self>) -> Rewriting<'d> {
+        self.out
+    }
+}
+
+impl<'d> Writer<'d> {
+    pub(crate) const fn new(out: Rewriting<'d>) -> Self {
+        Self { dialect: out.dialect, out, level: None, cycle: None, open: false }
     }
 
     fn names(&self, words: &Words<'_, '_>, letters: &[u8]) -> bool {
@@ -166,8 +170,8 @@ impl Writer<'_> {
     }
 
     /// A block with the code of a cycle.
-    fn begin(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
-        let block = words.block;
+    fn begin(&mut self, came: &Came<'_>) -> Result<(), Fault> {
+        let (block, words) = (&came.block, &Words::of(came, self.dialect));
         let refuse = |span: Span, message: Text, label: Text, help: Text| {
             Err(self.refuse(words, span, message, label, help))
         };
@@ -188,7 +192,7 @@ impl Writer<'_> {
         }
         let Some((kind, span)) = kind else { return Ok(()) };
         let Some((here, _)) = self.out.known.codes(block) else {
-            self.out.block(block);
+            self.out.block(came);
             return Ok(());
         };
         if !here.absolute || here.plane != [0, 1, 2] || words.skipped() {
@@ -254,7 +258,7 @@ impl Writer<'_> {
         self.only_known(words)?;
         self.open = false;
         self.cycle = Some(Cycle { bottom, near, peck, back });
-        self.out.comment(shown(block), from(block));
+        self.out.comment(shown(block), words.from);
         let mut head = b"G0".to_vec();
         for (_, span) in
             words.actions().filter(|(action, _)| matches!(action, Action::Absolute | Action::Plane(_)))
@@ -285,14 +289,14 @@ impl Writer<'_> {
                 ),
             ));
         }
-        self.out.comment(shown(words.block), from(words.block));
+        self.out.comment(shown(words.block), words.from);
         self.hole(words, b"G0".to_vec())
     }
 
     /// The moves of a hole; `head` begins the first of them.
     fn hole(&mut self, words: &Words<'_, '_>, head: Vec<u8>) -> Result<(), Fault> {
         let Some(Cycle { bottom, near, peck, back }) = self.cycle else { return Ok(()) };
-        let source = from(words.block);
+        let source = words.from;
         let mut line = head;
         for letter in AXES.into_iter().take(2) {
             if let Some(value) = self.length(words, letter) {

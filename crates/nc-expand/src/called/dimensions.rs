@@ -6,20 +6,20 @@ use nc_syntax::dialect::{Action, Called};
 use nc_syntax::{Block, ItemKind, Reader, Span, Value};
 use units::math;
 
-use super::{Fault, Writer, angle, arguments, called, dimension, names_axes};
+use super::{Writer, angle, arguments, called, dimension, names_axes};
 use crate::codes;
 use crate::known::{Motion, State};
-use crate::shorthand::{AXES, Words, from, number, shown};
+use crate::lowering::{Came, Fault};
+use crate::shorthand::{AXES, Words, number, shown};
 
 impl Writer<'_> {
     /// `X=AC()`, `X=IC()` and `TURN=` in a block.
-    pub(super) fn dimensions(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
-        let block = words.block;
+    pub(super) fn dimensions(&mut self, came: &Came<'_>) -> Result<(), Fault> {
+        let (block, words) = (&came.block, &Words::of(came, self.dialect));
         let start = self.state().at;
-        let Some((here, owner)) = self.out.known.codes(block) else {
+        let Some((here, owner)) = self.out.known().codes(block) else {
             // Its own codes are refused, before its words are asked for.
-            self.out.block(block);
-            return Ok(());
+            return self.out.came(came);
         };
         let owned = matches!(owner, Owner::Motion | Owner::DwellP);
         let refuse = |span: Span, label: Text| {
@@ -118,7 +118,7 @@ impl Writer<'_> {
         if !reader.next(&mut plain_block) {
             return Ok(());
         }
-        let plain_words = Words { block: &plain_block, dialect: self.dialect };
+        let plain_words = Words { block: &plain_block, ..*words };
         if let Some((degrees, span)) = angle {
             if turns.is_some() {
                 return Err(refuse(span, both!("beside TURN", "рядом с TURN")));
@@ -137,7 +137,7 @@ impl Writer<'_> {
         let moves = owned && names_axes(&plain_words);
         match turns {
             Some((count, span)) if count > 0 => self.helix(words, &plain_words, &here, count, span)?,
-            _ => self.out.write(&text, from(block)),
+            _ => self.out.write(&text, words.from)?,
         }
         self.behind(words, moves, start)
     }
@@ -154,8 +154,8 @@ impl Writer<'_> {
         let stop = text.iter().position(|byte| *byte == b';').unwrap_or(text.len());
         let end = text[..stop].trim_ascii_end().len();
         let text = [&text[..end], more, &text[end..]].concat();
-        self.out.comment(shown(words.block), from(words.block));
-        self.out.write(&text, from(words.block));
+        self.out.comment(shown(words.block), words.from)?;
+        self.out.write(&text, words.from)?;
         self.behind(words, true, start)
     }
 
@@ -245,7 +245,7 @@ impl Writer<'_> {
                 line.push(b' ');
                 number(&mut line, letter, offset);
             }
-            self.out.line(&line, from(words.block));
+            self.out.line(&line, words.from)?;
         }
         let mut line = code.to_vec();
         for (k, axis) in [u, v, n].into_iter().enumerate() {
@@ -255,8 +255,7 @@ impl Writer<'_> {
         number(&mut line, centre_letters[0], centre[0]);
         line.push(b' ');
         number(&mut line, centre_letters[1], centre[1]);
-        self.out.line(&line, from(words.block));
-        Ok(())
+        self.out.line(&line, words.from)
     }
 }
 

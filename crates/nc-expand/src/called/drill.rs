@@ -5,10 +5,11 @@ use nc_program::Owner;
 use nc_syntax::dialect::Action;
 
 use super::hole::{Hole, Move};
-use super::{Fault, Writer, names_axes};
+use super::{Writer, names_axes};
 use crate::codes;
 use crate::known::{Motion, State};
-use crate::shorthand::{AXES, Words, from, number};
+use crate::lowering::Fault;
+use crate::shorthand::{AXES, Words, number};
 
 impl Writer<'_> {
     /// Feed and spindle behind a cycle that leaves them open: what the block says of them, or that it had to.
@@ -19,7 +20,7 @@ impl Writer<'_> {
             let code = word.number().filter(|_| word.letter == b'M').and_then(|number| number.integer());
             matches!(code, Some(3..=5))
         });
-        match self.out.known.codes(words.block) {
+        match self.out.known().codes(words.block) {
             Some((here, Owner::Motion | Owner::DwellP))
                 if names_axes(words) && matches!(here.motion, Motion::Line | Motion::Arc) =>
             {
@@ -69,7 +70,7 @@ impl Writer<'_> {
         self.unsaid.feed |= hole.leaves_feed;
         self.unsaid.spindle |= hole.leaves_spindle;
         let axis = plane[2];
-        let (source, letter) = (from(words.block), AXES[axis]);
+        let (source, letter) = (words.from, AXES[axis]);
         for step in &hole.moves {
             let mut line = Vec::new();
             match *step {
@@ -115,7 +116,7 @@ impl Writer<'_> {
                     number(&mut line, if time < 0.0 { b'S' } else { b'F' }, time.abs());
                 }
             }
-            self.out.line(&line, source);
+            self.out.line(&line, source)?;
         }
         Ok(())
     }
@@ -137,10 +138,7 @@ impl Writer<'_> {
     pub(super) fn restore(&mut self, words: &Words<'_, '_>, before: Motion) -> Result<(), Fault> {
         match before {
             Motion::Rapid | Motion::None => Ok(()),
-            Motion::Line => {
-                self.out.line(b"G1", from(words.block));
-                Ok(())
-            }
+            Motion::Line => self.out.line(b"G1", words.from),
             Motion::Arc | Motion::Cycle => Err(words.fault(
                 codes::CALLED_CYCLE,
                 words.whole(),

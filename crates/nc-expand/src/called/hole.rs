@@ -7,8 +7,8 @@
 use diagnostic::{Text, both};
 use nc_syntax::dialect::Called;
 
-use super::Fault;
 use super::arguments::Arguments;
+use crate::lowering::Fault;
 use crate::shorthand::Words;
 
 /// Pecks of one hole; more are a wrong depth.

@@ -21,21 +21,19 @@ mod drill;
 mod hole;
 mod pattern;
 
-use diagnostic::{Diagnostic, both};
-use nc_program::{Owner, Setup};
+use diagnostic::both;
+use nc_program::Owner;
 use nc_syntax::dialect::{Action, Called};
-use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value};
+use nc_syntax::{Block, Dialect, Item, ItemKind, Span, Value};
 
 use crate::codes;
 use crate::known::{Rewriting, State};
-use crate::output::Written;
-use crate::shorthand::{AXES, Words, from, number, shown};
+use crate::lowering::{Came, Fault, Lower};
+use crate::shorthand::{AXES, Corners, Words, number, shown};
 use crate::siemens;
 use arguments::Arguments;
 pub(crate) use arguments::number as plain_number;
 use hole::Hole;
-
-type Fault = Box<Diagnostic>;
 
 /// True where the block has a name that this dialect writes out.
 pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
@@ -74,47 +72,61 @@ fn dimension(letter: u8, text: &[u8]) -> Option<(&str, bool)> {
     }
 }
 
-/// The program with its names written out, and where each stretch of it comes from.
-pub(crate) fn write_out(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Written, Fault> {
-    let out = Rewriting::new(dialect, setup, text);
-    let mut writer = Writer { dialect, out, modal: None, unsaid: Unsaid::default() };
-    let mut reader = Reader::new(text, dialect);
-    let mut block = Block::default();
-    let mut fault = None;
-    while fault.is_none() && reader.next(&mut block) {
-        fault = writer.block(&block).err();
-        // Behind a line with a corner it is the place that it names, from which dimensions count.
-        #[cfg(test)]
-        if (Words { block: &block, dialect }).corner().is_none() {
-            writer.out.believe(writer.out.known.state().belief());
-        }
-    }
-    writer.out.end(fault)
-}
-
-struct Writer<'d> {
+/// Writes names out, block by block.
+pub(crate) struct Writer<'d> {
     dialect: &'d Dialect,
-    out: Rewriting<'d>,
+    out: Corners<'d>,
     /// The cycle of MCALL.
     modal: Option<Hole>,
     unsaid: Unsaid,
 }
 
 /// What a cycle left in force that its manual does not say.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
 struct Unsaid {
     feed: bool,
     spindle: bool,
 }
 
-impl Writer<'_> {
-    fn block(&mut self, block: &Block<'_>) -> Result<(), Fault> {
-        let words = Words { block, dialect: self.dialect };
+impl<'d> Lower<'d> for Writer<'d> {
+    fn came(&mut self, came: &Came<'_>) -> Result<(), Fault> {
+        if self.modal.is_none() && self.unsaid == Unsaid::default() && !needed(&came.block, self.dialect) {
+            return self.out.came(came);
+        }
+        self.out.wake();
+        self.block(came)
+    }
+
+    fn fresh_line(&mut self) {
+        self.out.fresh_line();
+    }
+
+    fn end(&mut self) -> Result<(), Fault> {
+        self.out.end()
+    }
+
+    fn written(self: Box<Self>) -> Rewriting<'d> {
+        self.out.written()
+    }
+}
+
+impl<'d> Writer<'d> {
+    pub(crate) const fn new(out: Rewriting<'d>) -> Self {
+        Self {
+            dialect: out.dialect,
+            out: Corners::new(out),
+            modal: None,
+            unsaid: Unsaid { feed: false, spindle: false },
+        }
+    }
+
+    fn block(&mut self, came: &Came<'_>) -> Result<(), Fault> {
+        let (block, words) = (&came.block, Words::of(came, self.dialect));
         self.said(&words)?;
         if !needed(block, self.dialect) {
             let before = self.state().at;
-            let moves = self.moves(block);
-            self.out.block(block);
+            let moves = self.moves(&words);
+            self.out.came(came)?;
             return self.behind(&words, moves, before);
         }
         if words.skipped() {
@@ -136,7 +148,7 @@ impl Writer<'_> {
             .filter(|(called, _)| !matches!(called, Called::Turns | Called::ArcAngle))
             .collect();
         if calls.is_empty() {
-            return self.dimensions(&words);
+            return self.dimensions(came);
         }
         self.alone(&words)?;
         let comment = shown(block).to_vec();
@@ -167,11 +179,11 @@ impl Writer<'_> {
                     ));
                 }
                 self.modal = None;
-                self.out.comment(&comment, from(block));
+                self.out.comment(&comment, words.from)?;
             }
             [(Called::Modal, _), (cycle, span)] if self.drills(*cycle) => {
                 self.modal = Some(self.hole(&words, *cycle, *span)?);
-                self.out.comment(&comment, from(block));
+                self.out.comment(&comment, words.from)?;
             }
             [(Called::HolesRow | Called::HolesCircle, span)] => {
                 let call = Arguments::read(&words, *span)?;
@@ -190,19 +202,19 @@ impl Writer<'_> {
                 } else {
                     pattern::circle(&words, &call)?
                 };
-                self.out.comment(&comment, from(block));
+                self.out.comment(&comment, words.from)?;
                 let motion = self.state().motion;
                 for place in places {
                     let mut line = b"G0 ".to_vec();
                     self.point(&mut line, place);
-                    self.out.line(&line, from(block));
+                    self.out.line(&line, words.from)?;
                     self.drill(&words, &hole)?;
                 }
                 self.restore(&words, motion)?;
             }
             [(cycle, span)] if self.drills(*cycle) => {
                 let hole = self.hole(&words, *cycle, *span)?;
-                self.out.comment(&comment, from(block));
+                self.out.comment(&comment, words.from)?;
                 let motion = self.state().motion;
                 self.drill(&words, &hole)?;
                 self.restore(&words, motion)?;
@@ -240,14 +252,13 @@ impl Writer<'_> {
 
     /// Behind what is written.
     fn state(&self) -> State {
-        self.out.known.state()
+        self.out.known().state()
     }
 
     /// True where the block has words of a motion.
-    fn moves(&self, block: &Block<'_>) -> bool {
-        let words = Words { block, dialect: self.dialect };
-        let owner = self.out.known.codes(block).map(|(_, owner)| owner);
-        matches!(owner, Some(Owner::Motion | Owner::DwellP)) && names_axes(&words)
+    fn moves(&self, words: &Words<'_, '_>) -> bool {
+        let owner = self.out.known().codes(words.block).map(|(_, owner)| owner);
+        matches!(owner, Some(Owner::Motion | Owner::DwellP)) && names_axes(words)
     }
 
     /// A call stands in a block of its own.

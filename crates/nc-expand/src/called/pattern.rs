@@ -3,9 +3,10 @@
 use diagnostic::both;
 use units::math;
 
+use super::Writer;
 use super::arguments::Arguments;
-use super::{Fault, Writer};
 use crate::known::State;
+use crate::lowering::Fault;
 use crate::shorthand::Words;
 
 /// Holes of one pattern; more are a wrong count.

@@ -14,12 +14,13 @@ use units::math;
 
 use super::emit::Code;
 use super::state::Motion;
-use super::{Fault, MILLION, Spot, Writer};
+use super::{MILLION, Spot, Writer};
+use crate::lowering::Fault;
 
 /// Passes of one thread; more are a wrong infeed.
 const MOST_PASSES: u32 = 1000;
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     pub(super) fn compound_thread(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
         let refuse =

@@ -7,8 +7,9 @@ use units::math;
 
 use super::emit::Code;
 use super::state::Motion;
-use super::{Fault, Spot, Writer};
+use super::{Spot, Writer};
 use crate::codes;
+use crate::lowering::Fault;
 use crate::shorthand::Words;
 
 /// Ends and centres of programs are rounded: so far may a contour turn back, mm or inches.
@@ -178,7 +179,7 @@ impl Way {
     }
 }
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     /// Reads the contour between the blocks that P and Q of a cycle name, from where the tool stands.
     pub(super) fn contour(&self, words: &Words<'_, '_>, start: Spot) -> Result<Contour, Fault> {
         let first = self.numbered(words, b'P')?;

@@ -8,38 +8,39 @@
 //! A cycle leaves the tool where it stood: so does the contour behind a roughing cycle, whose blocks the control passes over.
 
 use diagnostic::{Text, both};
+use nc_program::Owner;
 use nc_program::modal::Distance;
-use nc_program::{Owner, Setup};
 use nc_syntax::dialect::CornerForm;
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
-use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value};
+use nc_syntax::{Block, Dialect, Item, ItemKind, Span, Value};
 use units::math;
 
 use super::contour::Point;
 use super::state::{Motion, State, may_stand_beside};
-use super::{AXES, Fault, MILLION, Spot, cycle_of};
+use super::{AXES, MILLION, Spot, cycle_of};
 use crate::codes;
 use crate::known::{Known, Rewriting};
-use crate::output::{Style, Written, word};
-use crate::shorthand::{Shape, Words, from, shown};
+use crate::lowering::{Came, Fault};
+use crate::output::{Output, Style, word};
+use crate::shorthand::{Shape, Words, shown};
 
 /// Two lines whose directions differ by less have no certain crossing, rad.
 const PARALLEL_RAD: f64 = 1e-3;
 
 /// The program with its drawing words written out; `None` where it has none.
-pub(super) fn write_out(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Option<Written>, Fault> {
-    let Some(turning) = &dialect.turning else { return Ok(None) };
-    let (mut reader, mut block, mut blocks) = (Reader::new(text, dialect), Block::default(), Vec::new());
-    while reader.next(&mut block) {
-        blocks.push(block.clone());
-    }
-    if !dialect.flow.corner_words || !blocks.iter().any(|block| may_draw(block, turning)) {
+pub(super) fn write_out<'d>(
+    blocks: &[Came<'_>],
+    turning: &'d Turning,
+    mut out: Rewriting<'d>,
+) -> Result<Option<Output>, Fault> {
+    let dialect = out.dialect;
+    if !dialect.flow.corner_words || !blocks.iter().any(|came| may_draw(&came.block, turning)) {
         return Ok(None);
     }
-    let out = Rewriting::new(dialect, setup, text);
+    out.wake();
     let mut drawing = Drawing {
         dialect,
-        blocks: &blocks,
+        blocks,
         state: State::initial(turning, &out.known),
         out,
         contour: None,
@@ -51,10 +52,6 @@ pub(super) fn write_out(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result
         match drawing.block(at) {
             Ok(next) => at = next,
             Err(refused) => fault = Some(refused),
-        }
-        #[cfg(test)]
-        if drawing.contour.is_none() {
-            drawing.out.believe(drawing.state.belief());
         }
     }
     drawing.out.end(fault).map(Some)
@@ -82,12 +79,12 @@ struct Ahead<'b> {
     behind: Known<'b>,
 }
 
-struct Drawing<'b, 'a> {
-    dialect: &'b Dialect,
-    blocks: &'b [Block<'a>],
-    out: Rewriting<'b>,
+struct Drawing<'b, 'a, 'd> {
+    dialect: &'d Dialect,
+    blocks: &'b [Came<'a>],
+    out: Rewriting<'d>,
     state: State,
-    contour: Option<Ahead<'b>>,
+    contour: Option<Ahead<'d>>,
     /// X and Z that a cycle left where its parameters say, until they are named.
     unsure: [bool; 2],
     /// A, C and R of lines need no comma.
@@ -115,9 +112,9 @@ struct Line {
     absolute: bool,
 }
 
-impl<'b, 'a> Drawing<'b, 'a> {
+impl<'b, 'a, 'd: 'b> Drawing<'b, 'a, 'd> {
     fn words(&self, at: usize) -> Words<'b, 'a> {
-        Words { block: &self.blocks[at], dialect: self.dialect }
+        Words::of(&self.blocks[at], self.dialect)
     }
 
     /// Writes a block, or the lines that it begins; says which block is next.
@@ -126,7 +123,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
         if let Some(first) = self.first_drawn(&words) {
             return self.lines(at, first);
         }
-        self.step(&words);
+        self.step(at);
         self.leave_contour(&words);
         Ok(at + 1)
     }
@@ -153,7 +150,8 @@ impl<'b, 'a> Drawing<'b, 'a> {
     }
 
     /// A block that is written as it stands.
-    fn step(&mut self, words: &Words<'_, '_>) {
+    fn step(&mut self, at: usize) {
+        let (came, words) = (&self.blocks[at], &self.words(at));
         let repeats = matches!(self.state.motion, Motion::Pass(_)) && !self.state.owns_motion(words);
         // A pass without a place is none, and may stand beside a work offset.
         let is_idle = |cycle: TurningCycle| cycle == TurningCycle::TurnPass && !self.state.moves(words);
@@ -164,17 +162,17 @@ impl<'b, 'a> Drawing<'b, 'a> {
                 let named = AXES.map(|letter| words.number(letter).is_some());
                 self.unsure = [0, 1].map(|axis| self.unsure[axis] && !named[axis]);
             }
-            self.out.block(words.block);
+            self.out.block(came);
             self.state.step(words);
             return self.follow();
         }
-        self.out.unread(words.block);
+        self.out.unread(came);
         let beside: Vec<&[u8]> = words
             .actions()
             .filter(|(action, _)| may_stand_beside(action))
             .map(|(_, span)| words.block.text(span))
             .collect();
-        self.out.known.written(&beside.join(&b' '), from(words.block));
+        self.out.known.written(&beside.join(&b' '), words.from);
         self.state.settings(words);
         let Some((cycle, _)) = cycle else { return self.follow() };
         self.left_by(cycle, words);
@@ -200,22 +198,22 @@ impl<'b, 'a> Drawing<'b, 'a> {
                 let mut text = b"G0 ".to_vec();
                 let _ = word(&mut text, b'X', (to - from_place) as f64 / MILLION, Style::Decimals(6));
                 self.unsure[0] &= !self.state.absolute;
-                self.out.known.written(&text, from(words.block));
+                self.out.known.written(&text, words.from);
             }
             TurningCycle::Finish => {
                 let numbered = |letter: u8| words.number(letter).and_then(|(number, _)| number.integer());
                 let (first, last) = (numbered(b'P'), numbered(b'Q'));
-                let n = |block: &Block<'_>| {
-                    let words = Words { block, dialect: self.dialect };
+                let n = |came: &Came<'_>| {
+                    let words = Words::of(came, self.dialect);
                     words.number(b'N').and_then(|(number, _)| number.integer())
                 };
-                let place = |wanted: Option<i64>| self.blocks.iter().position(|block| n(block) == wanted);
+                let place = |wanted: Option<i64>| self.blocks.iter().position(|came| n(came) == wanted);
                 let (Some(first), Some(last)) = (place(first), place(last)) else { return };
-                for block in self.blocks.get(first..=last).unwrap_or_default() {
-                    let words = Words { block, dialect: self.dialect };
+                for came in self.blocks.get(first..=last).unwrap_or_default() {
+                    let words = Words::of(came, self.dialect);
                     for (action, span) in words.actions() {
                         if matches!(action, Action::Absolute | Action::Incremental) {
-                            self.out.known.written(block.text(span), from(block));
+                            self.out.known.written(came.block.text(span), came.from);
                         }
                     }
                 }
@@ -337,7 +335,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
         let increments = self.contour.is_none() && lines.iter().any(|line| !line.absolute);
         if increments {
             if self.out.known.modal().distance == Distance::Incremental {
-                self.out.line(b"G90", from(words.block));
+                self.out.line(b"G90", words.from);
             }
             for line in &mut lines {
                 line.absolute = true;
@@ -346,7 +344,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
         let ends_incremental = !self.state.absolute;
         self.write(start, &lines, first, at)?;
         if increments && ends_incremental {
-            self.out.line(b"G91", from(&self.blocks[at - 1]));
+            self.out.line(b"G91", self.blocks[at - 1].from);
         }
         self.follow();
         let last = self.words(at - 1);
@@ -507,7 +505,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
                     let _ = word(&mut text, letter, centre[k] - here[k], Style::Decimals(6));
                 }
             }
-            self.out.line(&text, from(block));
+            self.out.line(&text, block.from);
             (stands, says_line) = (ends, true);
         }
         Ok(())
@@ -523,13 +521,14 @@ impl<'b, 'a> Drawing<'b, 'a> {
     }
 
     /// The block as a comment, then the block with a place instead of its own words.
-    fn replaced(&mut self, block: &Block<'_>, counted_from: Option<Spot>, to: Point, says_line: bool) {
-        self.out.comment(shown(block), from(block));
+    fn replaced(&mut self, came: &Came<'_>, counted_from: Option<Spot>, to: Point, says_line: bool) {
+        let block = &came.block;
+        self.out.comment(shown(block), came.from);
         let own = |item: &&Item| match item.kind {
             _ if drawn(item, self.plain).is_some() => true,
             ItemKind::Word { letter: b'X' | b'Z' | b'U' | b'W', .. } => true,
             ItemKind::Word { letter: b'G', value: Value::Number(_) } => {
-                let words = Words { block, dialect: self.dialect };
+                let words = Words::of(came, self.dialect);
                 let own = |action: &Action| {
                     *action == Action::Line || (counted_from.is_none() && *action == Action::Incremental)
                 };
@@ -537,7 +536,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
             }
             _ => false,
         };
-        let of_block = Words { block, dialect: self.dialect };
+        let of_block = Words::of(came, self.dialect);
         let is_line = of_block.actions().any(|(action, _)| *action == Action::Line);
         let kept: Vec<&[u8]> =
             block.items.iter().filter(|item| !own(item)).map(|item| block.text(item.span)).collect();
@@ -556,7 +555,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
             text.push(b' ');
             text.extend_from_slice(part);
         }
-        self.out.line(&text, from(block));
+        self.out.line(&text, came.from);
     }
 }
 

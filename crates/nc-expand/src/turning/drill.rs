@@ -14,7 +14,8 @@ use nc_syntax::{Item, ItemKind, Number, Span, Value};
 
 use super::emit::{Code, Moves};
 use super::state::Motion;
-use super::{Fault, Spot, Writer};
+use super::{Spot, Writer};
+use crate::lowering::Fault;
 use crate::output::{Style, word};
 use crate::shorthand::Words;
 
@@ -39,7 +40,7 @@ impl Hole {
     }
 }
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     /// G83.
     pub(super) fn drill(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);

@@ -6,9 +6,10 @@ use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Item, ItemKind, Span, Value};
 
 use super::state::{may_stand_beside, millionths};
-use super::{AXES, Fault, MILLION, Spot, Writer};
+use super::{AXES, MILLION, Spot, Writer};
+use crate::lowering::Fault;
 use crate::output::{From, Style, word};
-use crate::shorthand::{Words, from, shown};
+use crate::shorthand::{Words, shown};
 
 /// What a written move is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +58,7 @@ impl Moves {
     }
 }
 
-impl<'b> Writer<'b, '_> {
+impl Writer<'_, '_, '_> {
     /// Begins the moves of a block's cycle: the block as a comment; of its words `own` are the cycle's.
     pub(super) fn begin(&mut self, words: &Words<'_, '_>, at: Spot, own: &[u8]) -> Result<Moves, Fault> {
         let block = words.block;
@@ -98,8 +99,8 @@ impl<'b> Writer<'b, '_> {
                 _ => return Err(stray(words, item)),
             }
         }
-        self.out.comment(shown(block), from(block));
-        Ok(Moves { before, behind, incremental, ..Moves::new(from(block), at) })
+        self.out.comment(shown(block), words.from);
+        Ok(Moves { before, behind, incremental, ..Moves::new(words.from, at) })
     }
 
     /// A move to a place. Axes that a feed leaves where they are get no word; a rapid names both, so that both are corrected

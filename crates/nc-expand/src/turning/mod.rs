@@ -31,21 +31,17 @@ mod routine;
 mod state;
 mod threads;
 
-use std::ops::Range;
-
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Text, both};
 use nc_program::Setup;
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
-use nc_syntax::{Block, Dialect, Reader, Span};
+use nc_syntax::{Block, Dialect, Span};
 
 use crate::codes;
 use crate::known::Rewriting;
-use crate::output::Written;
-use crate::shorthand::Words;
+use crate::lowering::{Came, Fault, Held, Lower};
+use crate::shorthand::{Words, actions};
 use pass::Pass;
 use state::{Motion, State};
-
-type Fault = Box<Diagnostic>;
 
 /// X word and Z, in millionths of the unit.
 type Spot = [i64; 2];
@@ -60,7 +56,7 @@ const AXES: [u8; 2] = *b"XZ";
 pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
     dialect.turning.as_ref().is_some_and(|turning| {
         let draws = turning.cycles.plain_drawing && drawing::may_draw(block, turning);
-        draws || cycle_of(&Words { block, dialect }).is_some()
+        draws || actions(block, dialect).any(|(action, _)| matches!(action, Action::Turning(_)))
     })
 }
 
@@ -72,73 +68,104 @@ fn cycle_of(words: &Words<'_, '_>) -> Option<(TurningCycle, Span)> {
     })
 }
 
-/// The program with its corners and angles written out, where it has some.
-pub(crate) fn draw(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Option<Written>, Fault> {
-    drawing::write_out(text, dialect, setup)
+/// Holds a lathe's program, whose cycles name blocks anywhere in it, and writes it at its end.
+pub(crate) struct Lathe<'d> {
+    out: Rewriting<'d>,
+    setup: &'d Setup,
+    held: Vec<Held>,
+    /// Some block is written out.
+    lowers: bool,
 }
 
-/// The program with its cycles written out, and where each stretch of it comes from.
-///
-/// `routines`: bytes that hold the contours of cycles, each behind the block of its cycle.
-pub(crate) fn write_out(
-    text: &[u8],
-    dialect: &Dialect,
-    setup: &Setup,
-    routines: &[Range<u64>],
-) -> Result<Written, Fault> {
-    let out = Rewriting::new(dialect, setup, text);
-    let Some(turning) = &dialect.turning else { return out.end(None) };
-    let mut blocks = Vec::new();
-    let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
-    while reader.next(&mut block) {
-        blocks.push(block.clone());
+impl<'d> Lathe<'d> {
+    pub(crate) const fn new(out: Rewriting<'d>, setup: &'d Setup) -> Self {
+        Self { out, setup, held: Vec::new(), lowers: false }
     }
+
+    fn lower(&mut self, turning: &'d Turning) -> Result<(), Fault> {
+        let dialect = self.out.dialect;
+        let came: Vec<Came<'_>> = self.held.iter().map(Held::came).collect();
+        let Some(drawn) =
+            drawing::write_out(&came, turning, Rewriting::new(dialect, self.setup, self.out.marks))?
+        else {
+            return write_out(&came, turning, &mut self.out);
+        };
+        let came = drawn.blocks(dialect);
+        write_out(&came, turning, &mut self.out)
+    }
+}
+
+impl<'d> Lower<'d> for Lathe<'d> {
+    fn came(&mut self, came: &Came<'_>) -> Result<(), Fault> {
+        self.lowers |= crate::short(&came.block, self.out.dialect);
+        self.held.push(Held::of(came));
+        Ok(())
+    }
+
+    fn fresh_line(&mut self) {
+        if let Some(held) = self.held.last_mut() {
+            held.end_line(self.out.marks.line_ending);
+        }
+    }
+
+    fn end(&mut self) -> Result<(), Fault> {
+        match &self.out.dialect.turning {
+            Some(turning) if self.lowers => self.lower(turning),
+            _ => {
+                for held in &self.held {
+                    self.out.block(&held.came());
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn written(self: Box<Self>) -> Rewriting<'d> {
+        self.out
+    }
+}
+
+/// Writes a program whose drawings are written out.
+fn write_out<'d>(blocks: &[Came<'_>], turning: &'d Turning, out: &mut Rewriting<'d>) -> Result<(), Fault> {
+    out.wake();
     let mut writer = Writer {
-        dialect,
+        dialect: out.dialect,
         turning,
-        blocks: &blocks,
+        blocks,
         state: State::initial(turning, &out.known),
         out,
         pass: None,
         passed: false,
-        routines,
         first_blocks: rough::FirstBlocks::default(),
         unsure_feed: false,
     };
-    let (mut at, mut fault) = (0, None);
-    while fault.is_none() && at < blocks.len() {
-        match writer.block(at) {
-            Ok(next) => at = next,
-            Err(refused) => fault = Some(refused),
-        }
+    let mut at = 0;
+    while at < blocks.len() {
+        at = writer.block(at)?;
         // Within a block or a cycle it is counted on, behind it nobody but the one reader says.
         writer.state.follow(writer.out.known.modal());
-        #[cfg(test)]
-        writer.out.believe(writer.state.belief());
     }
-    writer.out.end(fault)
+    Ok(())
 }
 
 /// Writes the program block by block.
-struct Writer<'b, 'a> {
-    dialect: &'b Dialect,
-    turning: &'b Turning,
-    blocks: &'b [Block<'a>],
-    out: Rewriting<'b>,
+struct Writer<'b, 'a, 'd> {
+    dialect: &'d Dialect,
+    turning: &'d Turning,
+    blocks: &'b [Came<'a>],
+    out: &'b mut Rewriting<'d>,
     state: State,
     /// The single pass in force.
     pass: Option<Pass>,
     /// The program has made a single pass, whose words may still be held.
     passed: bool,
-    /// Where contours stand that are subroutines.
-    routines: &'b [Range<u64>],
     /// What the blocks without P and Q said, which hold for those with them.
     first_blocks: rough::FirstBlocks,
     /// The last F stood in a roughing block: whether it holds behind that the manual leaves open.
     unsure_feed: bool,
 }
 
-impl<'b, 'a> Writer<'b, 'a> {
+impl<'b, 'a> Writer<'b, 'a, '_> {
     /// Writes a block, and says which one is next.
     fn block(&mut self, at: usize) -> Result<usize, Fault> {
         let words = self.words(at);
@@ -146,7 +173,7 @@ impl<'b, 'a> Writer<'b, 'a> {
             if self.repeats(&words) {
                 self.repeated(at)?;
             } else {
-                self.plain(&words)?;
+                self.plain(at)?;
             }
             return Ok(at + 1);
         };
@@ -219,11 +246,12 @@ impl<'b, 'a> Writer<'b, 'a> {
     }
 
     fn words(&self, at: usize) -> Words<'b, 'a> {
-        Words { block: &self.blocks[at], dialect: self.dialect }
+        Words::of(&self.blocks[at], self.dialect)
     }
 
     /// A block that is no cycle's.
-    fn plain(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
+    fn plain(&mut self, at: usize) -> Result<(), Fault> {
+        let words = &self.words(at);
         if self.state.motion == Motion::Unknown && self.state.moves(words) && !self.state.owns_motion(words) {
             return Err(words.cycle_fault(
                 words.whole(),
@@ -243,7 +271,7 @@ impl<'b, 'a> Writer<'b, 'a> {
         if !matches!(self.state.motion, Motion::Pass(_)) {
             self.pass = None;
         }
-        self.out.block(words.block);
+        self.out.block(&self.blocks[at]);
         Ok(())
     }
 

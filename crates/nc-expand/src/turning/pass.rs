@@ -16,8 +16,9 @@ use units::math;
 
 use super::emit::{Code, Moves};
 use super::state::Motion;
-use super::{Fault, MILLION, Spot, Writer};
-use crate::shorthand::{Words, from, shown};
+use super::{MILLION, Spot, Writer};
+use crate::lowering::Fault;
+use crate::shorthand::{Words, shown};
 
 /// What a pass holds.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +35,7 @@ pub(super) struct Pass {
 /// Chamfer at the end of a thread: 45 degrees where the parameter is zero or not said.
 const CHAMFER_DEG: f64 = 45.0;
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     /// A block with the code of a pass.
     pub(super) fn first_pass(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
@@ -87,9 +88,9 @@ impl Writer<'_, '_> {
         let kept =
             block.items.iter().filter(|item| !matches!(item.kind, ItemKind::Comment) && !is_pass(item.span));
         let kept: Vec<&[u8]> = kept.map(|item| block.text(item.span)).collect();
-        self.out.comment(shown(block), from(block));
+        self.out.comment(shown(block), words.from);
         if !kept.is_empty() {
-            self.out.line(&kept.join(&b' '), from(block));
+            self.out.line(&kept.join(&b' '), words.from);
         }
     }
 

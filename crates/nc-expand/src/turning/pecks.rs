@@ -12,12 +12,13 @@ use nc_syntax::dialect::TurningCycle;
 
 use super::emit::Code;
 use super::state::Motion;
-use super::{Fault, Spot, Writer};
+use super::{Spot, Writer};
+use crate::lowering::Fault;
 
 /// Pecks of one cycle at all its places; more are a wrong step.
 const MOST: i64 = 10_000;
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     pub(super) fn pecks(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
         self.require_diameters(&words, span)?;

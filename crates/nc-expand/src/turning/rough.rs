@@ -18,8 +18,9 @@ use nc_syntax::{ItemKind, Span};
 use super::contour::{Axis, Contour, Piece, Point};
 use super::emit::{Code, Moves};
 use super::state::Motion;
-use super::{Fault, MILLION, Spot, Writer, cycle_of};
-use crate::shorthand::{Words, from, shown};
+use super::{MILLION, Spot, Writer, cycle_of};
+use crate::lowering::Fault;
+use crate::shorthand::{Words, shown};
 
 /// Passes of one cycle; more are a wrong depth.
 pub(super) const MOST_PASSES: i64 = 10_000;
@@ -63,7 +64,7 @@ pub(super) struct FirstBlocks {
     pub(super) thread: Option<super::threads::Settings>,
 }
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     /// G71, G72, G73: the block that sets, or the one that cuts; says which block is next.
     pub(super) fn rough(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<usize, Fault> {
         let words = self.words(at);
@@ -116,8 +117,8 @@ impl Writer<'_, '_> {
         }
         self.state.motion = Motion::Unknown;
         for index in contour.first..=contour.last {
-            let block = &self.blocks[index];
-            self.out.comment(shown(block), from(block));
+            let came = &self.blocks[index];
+            self.out.comment(shown(&came.block), came.from);
         }
         Ok(contour.last + 1)
     }
@@ -368,7 +369,7 @@ impl Writer<'_, '_> {
     fn along(&mut self, moves: &mut Moves, contour: &Contour, by: Spot) {
         let whom = moves.from;
         for piece in std::iter::once(&contour.entry).chain(&contour.pieces).chain(&contour.retract) {
-            moves.from = from(&self.blocks[piece.block]);
+            moves.from = self.blocks[piece.block].from;
             self.go_with(moves, piece.code, sum(piece.to, by), &piece.round);
         }
         moves.from = whom;
@@ -427,7 +428,7 @@ impl Writer<'_, '_> {
             ));
         }
         let end = self.standing(&self.words(contour.last), span)?;
-        let mut back = Moves::new(from(words.block), end).with_behind(behind);
+        let mut back = Moves::new(words.from, end).with_behind(behind);
         self.go(&mut back, Code::Rapid, start);
         self.end(back);
         self.state.motion = Motion::Unknown;
@@ -447,7 +448,7 @@ impl Writer<'_, '_> {
             .concat(),
         };
         self.out.fresh_line();
-        self.out.write(&rest, from(block));
+        self.out.write(&rest, words.from);
     }
 }
 

@@ -17,17 +17,18 @@ use nc_syntax::{ItemKind, Span, Value};
 use super::emit::Code;
 use super::profile::{Misfit, Profile, Round, Segment, Stroke};
 use super::state::Motion;
-use super::{Fault, MILLION, Spot, Writer};
+use super::{MILLION, Spot, Writer};
 use crate::codes;
+use crate::lowering::Fault;
 use crate::output::{Style, word};
-use crate::shorthand::{Words, from, shown};
+use crate::shorthand::{Words, shown};
 
 /// Passes of G70; more are a wrong P.
 const MOST_PASSES: i64 = 1000;
 /// So much must the radius of an arc be above half its chord: at less the interpreter may find no centre.
 const HALF_CIRCLE: f64 = 1e-9;
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     /// Writes the cycle, and says which block is next.
     pub(super) fn routine(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<usize, Fault> {
         let words = self.words(at);
@@ -136,11 +137,11 @@ impl Writer<'_, '_> {
         self.end(moves);
         self.state.motion = Motion::Unknown;
         for index in blocks.clone() {
-            let block = &self.blocks[index];
-            if block.acts() {
-                self.out.comment(shown(block), from(block));
+            let came = &self.blocks[index];
+            if came.block.acts() {
+                self.out.comment(shown(&came.block), came.from);
             } else {
-                self.out.block(block);
+                self.out.block(came);
             }
         }
         Ok(blocks.end)
@@ -148,12 +149,8 @@ impl Writer<'_, '_> {
 
     /// The blocks of the subroutine, which stand behind the cycle's.
     fn blocks_behind(&self, at: usize) -> Option<Range<usize>> {
-        let block = &self.blocks[at];
-        let end = block.offset + block.bytes.len() as u64;
-        let text = block.offset + block.bytes.trim_ascii_end().len() as u64;
-        let bytes = self.routines.iter().find(|range| (text..=end).contains(&range.start))?;
-        let behind = self.blocks[at + 1..].iter().take_while(|block| block.offset < bytes.end).count();
-        Some(at + 1..at + 1 + behind)
+        let behind = self.blocks[at + 1..].iter().take_while(|came| came.from.contour).count();
+        (behind > 0).then_some(at + 1..at + 1 + behind)
     }
 
     /// The contour in radius and Z; the first piece leads to it from the start.

@@ -201,18 +201,6 @@ impl State {
         !owned || state.motion != Motion::Unknown
     }
 
-    /// What it takes for granted, Y apart.
-    #[cfg(test)]
-    pub(super) fn belief(&self) -> crate::agreement::Belief {
-        let [x, z] = self.at.map(|place| place.map(|place| place as f64 / MILLION));
-        crate::agreement::Belief {
-            places: [x, None, z],
-            inch: Some(self.inch),
-            absolute: Some(self.absolute),
-            ..crate::agreement::Belief::NONE
-        }
-    }
-
     pub(super) fn stands_at(&mut self, spot: Spot) {
         self.at = spot.map(Some);
     }

@@ -20,7 +20,8 @@ use units::math;
 
 use super::emit::Code;
 use super::state::Motion;
-use super::{Fault, Spot, Writer};
+use super::{Spot, Writer};
+use crate::lowering::Fault;
 use crate::shorthand::Words;
 
 /// Passes of one thread; more are a wrong infeed.
@@ -36,7 +37,7 @@ pub(super) struct Settings {
     allowance: i64,
 }
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     pub(super) fn thread(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
         self.require_diameters(&words, span)?;
