@@ -113,6 +113,16 @@ impl<'d> Known<'d> {
         settings.map(|(modal, owner)| (State::of(&modal), owner))
     }
 
+    /// What codes make of the state; `None` where they are refused.
+    pub(crate) fn settings(&self, codes: &[u8], from: From) -> Option<Modal> {
+        let mut made = Some(self.modal().clone());
+        let read: Result<(), ()> = Came::each(codes, self.dialect, From { exact: false, ..from }, |came| {
+            made = self.interpreter.settings(&came.block).ok().map(|(modal, _)| modal);
+            Ok(())
+        });
+        made.filter(|_| read.is_ok())
+    }
+
     /// Reads a block that is written as it stands.
     pub(crate) fn block(&mut self, came: &Came<'_>) {
         self.step(&came.block, &|span| (came.from.file, came.from.place(span)));
@@ -195,6 +205,11 @@ impl<'d> Rewriting<'d> {
         Self { dialect, marks, out: Output::new(marks), known: Known::new(dialect, setup), awake: false }
     }
 
+    /// Another text from here on, of which the same is known.
+    pub(crate) fn ahead(&self) -> Self {
+        Self { out: Output::new(self.marks), known: self.known.clone(), ..*self }
+    }
+
     /// Reads what is written so far, and from here on whatever is.
     pub(crate) fn wake(&mut self) {
         if std::mem::replace(&mut self.awake, true) {
@@ -216,15 +231,10 @@ impl<'d> Rewriting<'d> {
 
     /// A block as it is.
     pub(crate) fn block(&mut self, came: &Came<'_>) {
-        self.unread(came);
+        self.out.copy(came.block.bytes, came.from);
         if self.awake {
             self.known.block(came);
         }
-    }
-
-    /// A block as it is, which stands for what another step writes.
-    pub(crate) fn unread(&mut self, came: &Came<'_>) {
-        self.out.copy(came.block.bytes, came.from);
     }
 
     /// Bytes that stand for a stretch of the source.

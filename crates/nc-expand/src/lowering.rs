@@ -143,8 +143,8 @@ impl<'d> Driver<'d> {
     pub(crate) fn new(dialect: &'d Dialect, setup: &'d Setup, source: &[u8]) -> Self {
         let marks = Marks::of(dialect, source);
         let out = Rewriting::new(dialect, setup, marks);
-        let room: Box<dyn Lower<'d> + 'd> = if dialect.turning.is_some() {
-            Box::new(turning::Lathe::new(out, setup))
+        let room: Box<dyn Lower<'d> + 'd> = if let Some(turning) = &dialect.turning {
+            Box::new(turning::Lathe::new(out, turning))
         } else if dialect.flow.return_by_m {
             Box::new(returns::Writer::new(out))
         } else {

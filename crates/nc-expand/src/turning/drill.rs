@@ -9,11 +9,11 @@
 //! lead off the hole. The manual's W counts from R, a word of the block from where the tool stands: with W alone nobody knows.
 
 use diagnostic::{Text, both};
+use nc_program::modal::ReturnLevel;
 use nc_syntax::dialect::{DrillPecks, DrillR};
 use nc_syntax::{Item, ItemKind, Number, Span, Value};
 
 use super::emit::{Code, Moves};
-use super::state::Motion;
 use super::{Spot, Writer};
 use crate::lowering::Fault;
 use crate::output::{Style, word};
@@ -46,7 +46,7 @@ impl Writer<'_, '_, '_> {
         let words = self.words(at);
         let start = self.standing(&words, span)?;
         let hole = self.hole(&words, span, start)?;
-        let peck = self.state.depth(&words, b'Q').map_or(hole.deep, i64::abs);
+        let peck = words.depth(&self.here, b'Q').map_or(hole.deep, i64::abs);
         let (style, back) =
             if peck > 0 && peck < hole.deep { self.peck_rules(&words, span)? } else { (DrillPecks::Full, 0) };
         let peck = if peck == 0 { hole.deep } else { peck };
@@ -94,11 +94,7 @@ impl Writer<'_, '_, '_> {
                 "200",
             ));
         };
-        let feed = words
-            .number(b'F')
-            .map(|(feed, _)| feed)
-            .or(self.state.feed)
-            .filter(|_| !self.unsure_feed || words.number(b'F').is_some());
+        let feed = self.feed(&words).filter(|_| !self.unsure_feed || words.number(b'F').is_some());
         let (Some(feed), Some(out)) = (feed, feed.and_then(|feed| out_of(feed, percent))) else {
             return Err(words.cycle_fault(
                 span,
@@ -127,14 +123,12 @@ impl Writer<'_, '_, '_> {
 
     /// Back to the start, or from R where G99 leaves the tool there.
     fn leave(&mut self, mut moves: Moves, words: &Words<'_, '_>, hole: Hole) {
-        if !self.state.returns_to_r {
+        if self.here.return_level != ReturnLevel::R {
             self.go(&mut moves, Code::Rapid, [hole.x, hole.start]);
         }
-        if let Some((feed, _)) = words.number(b'F') {
-            (self.state.feed, self.unsure_feed) = (Some(feed), false);
-        }
+        self.unsure_feed &= words.number(b'F').is_none();
         self.end(moves);
-        self.state.motion = Motion::Unknown;
+        self.leave_open();
     }
 
     /// Where the hole lies, what cannot be one refused.
@@ -151,7 +145,7 @@ impl Writer<'_, '_, '_> {
                 both!("leave K out", "уберите K"),
             ));
         }
-        let [Some(x), Some(target)] = self.state.target(words) else {
+        let [Some(x), Some(target)] = self.target(words) else {
             return refuse(
                 both!("where the cycle leads is not known", "неизвестно, куда ведёт цикл"),
                 both!("above 400 km", "больше 400 км"),
@@ -171,7 +165,7 @@ impl Writer<'_, '_, '_> {
                 ),
             );
         }
-        let Some(r) = self.state.length(words, b'R') else {
+        let Some(r) = self.length(words, b'R') else {
             return refuse(
                 both!("a hole without a depth, or without R", "отверстие без глубины или без R"),
                 both!("R says where drilling begins", "R говорит, где начинается сверление"),
@@ -195,11 +189,11 @@ impl Writer<'_, '_, '_> {
             );
         }
         let sign_to =
-            |level: i64| (if self.state.absolute { target - level } else { target - start[1] }).signum();
+            |level: i64| (if self.here.says_places() { target - level } else { target - start[1] }).signum();
         let level =
             if self.r_is_place(words, span, sign_to(start[1]) * r.signum())? { r } else { start[1] + r };
         // Under G91 Z counts from R.
-        let bottom = if self.state.absolute { target } else { target - start[1] + level };
+        let bottom = if self.here.says_places() { target } else { target - start[1] + level };
         let sign = (bottom - level).signum();
         if sign == 0 || sign != sign_to(start[1]) {
             return refuse(
@@ -222,7 +216,7 @@ impl Writer<'_, '_, '_> {
     /// True where R is a place, false where it is a way from the start; `onwards`: that way leads towards the bottom (1), or
     /// off it (-1).
     fn r_is_place(&self, words: &Words<'_, '_>, span: Span, onwards: i64) -> Result<bool, Fault> {
-        if !self.state.absolute {
+        if !self.here.says_places() {
             return Ok(false);
         }
         match self.turning.cycles.drill_r {

@@ -1,11 +1,11 @@
 //! Blocks out: what a cycle's block sets, then its moves.
 
 use diagnostic::both;
-use nc_program::modal::Distance;
+use nc_program::modal::Modal;
 use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Item, ItemKind, Span, Value};
 
-use super::state::{may_stand_beside, millionths};
+use super::place::{may_stand_beside, millionths};
 use super::{AXES, MILLION, Spot, Writer};
 use crate::lowering::Fault;
 use crate::output::{From, Style, word};
@@ -27,6 +27,8 @@ pub(super) struct Moves {
     /// Whom they stand for.
     pub(super) from: From,
     at: Spot,
+    /// They are written as places, not as ways.
+    places: bool,
     /// Words that go before the first move.
     before: Vec<u8>,
     /// Words that the control executes behind its motion, for the last one.
@@ -38,9 +40,17 @@ pub(super) struct Moves {
 }
 
 impl Moves {
-    /// Moves from a place, for a block that is written already.
-    pub(super) const fn new(from: From, at: Spot) -> Self {
-        Self { from, at, before: Vec::new(), behind: Vec::new(), incremental: Vec::new(), last: None }
+    /// Moves from a place in a state, for a block that is written already.
+    pub(super) fn new(from: From, at: Spot, state: &Modal) -> Self {
+        Self {
+            from,
+            at,
+            places: state.says_places(),
+            before: Vec::new(),
+            behind: Vec::new(),
+            incremental: Vec::new(),
+            last: None,
+        }
     }
 
     /// Takes what the control executes behind the last move, for moves that come later.
@@ -66,10 +76,9 @@ impl Writer<'_, '_, '_> {
         let increments = words.actions().find(|(action, _)| **action == Action::Incremental);
         if let Some((_, span)) = increments {
             incremental = block.text(span).to_vec();
-            if self.out.known.modal().distance == Distance::Incremental {
+            if !self.out.known.modal().says_places() {
                 before = self.row(&Action::Absolute);
             }
-            self.state.absolute = true;
         }
         for item in &block.items {
             match item.kind {
@@ -100,7 +109,8 @@ impl Writer<'_, '_, '_> {
             }
         }
         self.out.comment(shown(block), words.from);
-        Ok(Moves { before, behind, incremental, ..Moves::new(words.from, at) })
+        let moves = Moves::new(words.from, at, &self.here);
+        Ok(Moves { before, behind, places: moves.places || increments.is_some(), incremental, ..moves })
     }
 
     /// A move to a place. Axes that a feed leaves where they are get no word; a rapid names both, so that both are corrected
@@ -116,9 +126,9 @@ impl Writer<'_, '_, '_> {
         }
         let mut line = self.code(code);
         for axis in 0..2 {
-            let named = code == Code::Rapid && self.state.absolute;
+            let named = code == Code::Rapid && moves.places;
             if named || to[axis] != moves.at[axis] {
-                let value = if self.state.absolute { to[axis] } else { to[axis] - moves.at[axis] };
+                let value = if moves.places { to[axis] } else { to[axis] - moves.at[axis] };
                 line.push(b' ');
                 // Millionths of a unit have six decimals.
                 let _ = word(&mut line, AXES[axis], value as f64 / MILLION, Style::Decimals(6));
@@ -143,7 +153,6 @@ impl Writer<'_, '_, '_> {
         if !moves.incremental.is_empty() {
             self.out.line(&moves.incremental, moves.from);
         }
-        self.state.stands_at(moves.at);
     }
 
     /// A block between two moves, which moves nothing.

@@ -24,24 +24,26 @@ mod emit;
 mod levels;
 mod pass;
 mod pecks;
+mod place;
 mod pockets;
 mod profile;
 mod rough;
 mod routine;
-mod state;
 mod threads;
 
 use diagnostic::{Text, both};
-use nc_program::Setup;
+use nc_program::Compensation;
+use nc_program::modal::{Modal, MotionMode};
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
-use nc_syntax::{Block, Dialect, Span};
+use nc_syntax::{Block, Dialect, Number, Span};
 
 use crate::codes;
 use crate::known::Rewriting;
 use crate::lowering::{Came, Fault, Held, Lower};
 use crate::shorthand::{Words, actions};
+use drawing::Drawing;
 use pass::Pass;
-use state::{Motion, State};
+use place::{diameters, ends_pass, plane, spot, standing};
 
 /// X word and Z, in millionths of the unit.
 type Spot = [i64; 2];
@@ -71,27 +73,15 @@ fn cycle_of(words: &Words<'_, '_>) -> Option<(TurningCycle, Span)> {
 /// Holds a lathe's program, whose cycles name blocks anywhere in it, and writes it at its end.
 pub(crate) struct Lathe<'d> {
     out: Rewriting<'d>,
-    setup: &'d Setup,
+    turning: &'d Turning,
     held: Vec<Held>,
     /// Some block is written out.
     lowers: bool,
 }
 
 impl<'d> Lathe<'d> {
-    pub(crate) const fn new(out: Rewriting<'d>, setup: &'d Setup) -> Self {
-        Self { out, setup, held: Vec::new(), lowers: false }
-    }
-
-    fn lower(&mut self, turning: &'d Turning) -> Result<(), Fault> {
-        let dialect = self.out.dialect;
-        let came: Vec<Came<'_>> = self.held.iter().map(Held::came).collect();
-        let Some(drawn) =
-            drawing::write_out(&came, turning, Rewriting::new(dialect, self.setup, self.out.marks))?
-        else {
-            return write_out(&came, turning, &mut self.out);
-        };
-        let came = drawn.blocks(dialect);
-        write_out(&came, turning, &mut self.out)
+    pub(crate) const fn new(out: Rewriting<'d>, turning: &'d Turning) -> Self {
+        Self { out, turning, held: Vec::new(), lowers: false }
     }
 }
 
@@ -109,43 +99,19 @@ impl<'d> Lower<'d> for Lathe<'d> {
     }
 
     fn end(&mut self) -> Result<(), Fault> {
-        match &self.out.dialect.turning {
-            Some(turning) if self.lowers => self.lower(turning),
-            _ => {
-                for held in &self.held {
-                    self.out.block(&held.came());
-                }
-                Ok(())
-            }
+        let blocks: Vec<Came<'_>> = self.held.iter().map(Held::came).collect();
+        if self.lowers {
+            return Writer::new(&blocks, self.turning, &mut self.out).all();
         }
+        for came in &blocks {
+            self.out.block(came);
+        }
+        Ok(())
     }
 
     fn written(self: Box<Self>) -> Rewriting<'d> {
         self.out
     }
-}
-
-/// Writes a program whose drawings are written out.
-fn write_out<'d>(blocks: &[Came<'_>], turning: &'d Turning, out: &mut Rewriting<'d>) -> Result<(), Fault> {
-    out.wake();
-    let mut writer = Writer {
-        dialect: out.dialect,
-        turning,
-        blocks,
-        state: State::initial(turning, &out.known),
-        out,
-        pass: None,
-        passed: false,
-        first_blocks: rough::FirstBlocks::default(),
-        unsure_feed: false,
-    };
-    let mut at = 0;
-    while at < blocks.len() {
-        at = writer.block(at)?;
-        // Within a block or a cycle it is counted on, behind it nobody but the one reader says.
-        writer.state.follow(writer.out.known.modal());
-    }
-    Ok(())
 }
 
 /// Writes the program block by block.
@@ -154,9 +120,12 @@ struct Writer<'b, 'a, 'd> {
     turning: &'d Turning,
     blocks: &'b [Came<'a>],
     out: &'b mut Rewriting<'d>,
-    state: State,
-    /// The single pass in force.
+    /// What the codes of the block in hand make of the one reader's state.
+    here: Modal,
+    /// The single pass in force, which each block with a place repeats.
     pass: Option<Pass>,
+    /// Behind a cycle no motion code was said: which one is in force nobody knows.
+    open: bool,
     /// The program has made a single pass, whose words may still be held.
     passed: bool,
     /// What the blocks without P and Q said, which hold for those with them.
@@ -165,10 +134,44 @@ struct Writer<'b, 'a, 'd> {
     unsure_feed: bool,
 }
 
-impl<'b, 'a> Writer<'b, 'a, '_> {
+impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
+    fn new(blocks: &'b [Came<'a>], turning: &'d Turning, out: &'b mut Rewriting<'d>) -> Self {
+        out.wake();
+        let here = out.known.modal().clone();
+        Self {
+            dialect: out.dialect,
+            turning,
+            blocks,
+            pass: None,
+            passed: false,
+            open: !matches!(here.motion, MotionMode::Rapid(_) | MotionMode::Line(_)),
+            here,
+            out,
+            first_blocks: rough::FirstBlocks::default(),
+            unsure_feed: false,
+        }
+    }
+
+    fn all(mut self) -> Result<(), Fault> {
+        let mut at = 0;
+        while at < self.blocks.len() {
+            at = self.block(at)?;
+        }
+        Ok(())
+    }
+
     /// Writes a block, and says which one is next.
     fn block(&mut self, at: usize) -> Result<usize, Fault> {
         let words = self.words(at);
+        let mut drawing = Drawing::new(self.blocks, self.out, self.open || self.pass.is_some());
+        if let Some(span) = drawing.first_drawn(&words) {
+            let next = drawing.lines(at, span)?;
+            for index in at..next {
+                self.said(&self.words(index));
+            }
+            return Ok(next);
+        }
+        self.here = words.beside(&self.out.known);
         let Some((cycle, span)) = cycle_of(&words) else {
             if self.repeats(&words) {
                 self.repeated(at)?;
@@ -191,7 +194,7 @@ impl<'b, 'a> Writer<'b, 'a, '_> {
                 ),
             ));
         }
-        if self.state.compensated {
+        if self.out.known.modal().compensation != Compensation::Off {
             return Err(words.cycle_fault(
                 span,
                 both!("a cycle under compensation of the nose", "цикл при коррекции на радиус при вершине"),
@@ -205,7 +208,6 @@ impl<'b, 'a> Writer<'b, 'a, '_> {
                 ),
             ));
         }
-        self.state.settings(&words);
         match cycle {
             TurningCycle::TurnPass | TurningCycle::ThreadPass | TurningCycle::FacePass => {
                 self.first_pass(at, cycle, span)?;
@@ -252,7 +254,7 @@ impl<'b, 'a> Writer<'b, 'a, '_> {
     /// A block that is no cycle's.
     fn plain(&mut self, at: usize) -> Result<(), Fault> {
         let words = &self.words(at);
-        if self.state.motion == Motion::Unknown && self.state.moves(words) && !self.state.owns_motion(words) {
+        if self.pass.is_none() && self.open && words.names_a_place() && !words.owns_motion() {
             return Err(words.cycle_fault(
                 words.whole(),
                 both!(
@@ -266,18 +268,34 @@ impl<'b, 'a> Writer<'b, 'a, '_> {
                 both!("write G0 or G1 in this block", "напишите в этом кадре G0 или G1"),
             ));
         }
-        self.unsure_feed &= words.number(b'F').is_none();
-        self.state.step(words);
-        if !matches!(self.state.motion, Motion::Pass(_)) {
-            self.pass = None;
-        }
+        self.said(words);
         self.out.block(&self.blocks[at]);
         Ok(())
     }
 
+    /// What a block that is no cycle's says of what cycles have left.
+    fn said(&mut self, words: &Words<'_, '_>) {
+        self.unsure_feed &= words.number(b'F').is_none();
+        if words.motion().is_some() {
+            (self.pass, self.open) = (None, false);
+        } else if self.pass.is_some() && words.actions().any(|(action, _)| ends_pass(action)) {
+            self.leave_open();
+        }
+    }
+
+    /// Behind a cycle.
+    fn leave_open(&mut self) {
+        (self.pass, self.open) = (None, true);
+    }
+
+    /// The last F; `words`: of the block in hand.
+    fn feed(&self, words: &Words<'_, '_>) -> Option<Number> {
+        words.number(b'F').map(|(feed, _)| feed).or(self.out.known.modal().feed)
+    }
+
     /// Where the tool stands, both axes.
     fn standing(&self, words: &Words<'_, '_>, span: Span) -> Result<Spot, Fault> {
-        if let [Some(x), Some(z)] = self.state.at {
+        if let [Some(x), Some(z)] = standing(self.out.known.modal()) {
             return Ok([x, z]);
         }
         Err(words.cycle_fault(
@@ -294,26 +312,34 @@ impl<'b, 'a> Writer<'b, 'a, '_> {
         ))
     }
 
-    /// Millimetres or inches of radius and Z in a millionth of the words.
-    fn scale(&self) -> [f64; 2] {
-        [if self.state.diameters == Some(true) { 0.5 / MILLION } else { 1.0 / MILLION }, 1.0 / MILLION]
+    /// Where the words of the block in hand lead.
+    fn target(&self, words: &Words<'_, '_>) -> [Option<i64>; 2] {
+        words.target(&self.here, standing(self.out.known.modal()))
+    }
+
+    /// A length in millionths of the unit.
+    fn length(&self, words: &Words<'_, '_>, letter: u8) -> Option<i64> {
+        words.millionths(&self.here, letter)
+    }
+
+    /// Millionths of an X word in one of the radius.
+    fn twice(&self) -> i64 {
+        if diameters(&self.here) == Some(true) { 2 } else { 1 }
     }
 
     /// A place in the plane of radius and Z.
     fn plane(&self, spot: Spot) -> [f64; 2] {
-        let scale = self.scale();
-        [0, 1].map(|k| spot[k] as f64 * scale[k])
+        plane(&self.here, spot)
     }
 
     /// The place whose words are nearest.
-    fn spot(&self, plane: [f64; 2]) -> Spot {
-        let scale = self.scale();
-        [0, 1].map(|k| units::decimal::round(plane[k] / scale[k]))
+    fn spot(&self, place: [f64; 2]) -> Spot {
+        spot(&self.here, place)
     }
 
     /// Whether X is a diameter must be known for depths and tapers, which are radii.
     fn require_diameters(&self, words: &Words<'_, '_>, span: Span) -> Result<(), Fault> {
-        if self.state.diameters.is_some() {
+        if diameters(&self.here).is_some() {
             return Ok(());
         }
         Err(words.cycle_fault(

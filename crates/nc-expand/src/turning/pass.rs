@@ -15,7 +15,6 @@ use nc_syntax::{ItemKind, Span};
 use units::math;
 
 use super::emit::{Code, Moves};
-use super::state::Motion;
 use super::{MILLION, Spot, Writer};
 use crate::lowering::Fault;
 use crate::shorthand::{Words, shown};
@@ -39,7 +38,7 @@ impl Writer<'_, '_, '_> {
     /// A block with the code of a pass.
     pub(super) fn first_pass(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
-        if !self.state.moves(&words) {
+        if !words.names_a_place() {
             let holds_a_place = self.passed || taper_word(&words, cycle).is_some();
             if !holds_a_place && cycle == TurningCycle::TurnPass {
                 self.idle_pass(&words);
@@ -54,7 +53,7 @@ impl Writer<'_, '_, '_> {
         }
         self.require_diameters(&words, span)?;
         let start = self.standing(&words, span)?;
-        let held = self.pass.filter(|_| matches!(self.state.motion, Motion::Pass(_)));
+        let held = self.pass;
         let tapered = held.is_some_and(|pass| pass.taper != 0);
         if tapered && taper_word(&words, cycle).is_none() {
             return Err(words.cycle_fault(
@@ -67,7 +66,6 @@ impl Writer<'_, '_, '_> {
                 both!("write R in this block, R0 for none", "напишите R в этом кадре, R0 — без конуса"),
             ));
         }
-        self.state.motion = Motion::Pass(cycle);
         let to = held.map_or([None; 2], |pass| if pass.cycle == cycle { pass.to } else { [None; 2] });
         self.pass = Some(Pass { cycle, start, to, taper: 0 });
         self.repeated(at)
@@ -79,8 +77,7 @@ impl Writer<'_, '_, '_> {
     /// same would come back to where the tool stands. It is left out, and which motion is in force behind it nobody knows.
     fn idle_pass(&mut self, words: &Words<'_, '_>) {
         self.unsure_feed &= words.number(b'F').is_none();
-        self.state.step(words);
-        (self.state.motion, self.pass) = (Motion::Unknown, None);
+        self.leave_open();
         let block = words.block;
         let is_pass = |span: Span| {
             words.actions().any(|(action, other)| other == span && matches!(action, Action::Turning(_)))
@@ -111,7 +108,7 @@ impl Writer<'_, '_, '_> {
                     | Action::MachineCoordinates
             )
         };
-        matches!(self.state.motion, Motion::Pass(_))
+        self.pass.is_some()
             && words.block.acts()
             && !ends.is_some_and(|row| row.ends_program)
             && !words.actions().any(|(action, _)| own(action))
@@ -123,7 +120,7 @@ impl Writer<'_, '_, '_> {
         let span = words.whole();
         let Some(mut pass) = self.pass else { return Ok(()) };
         let taper = taper_word(&words, pass.cycle);
-        if words.skipped() || (!self.state.moves(&words) && taper.is_none()) {
+        if words.skipped() || (!words.names_a_place() && taper.is_none()) {
             return Err(words.cycle_fault(
                 span,
                 both!(
@@ -140,9 +137,7 @@ impl Writer<'_, '_, '_> {
                 ),
             ));
         }
-        self.state.settings(&words);
-        self.state.stands_at(pass.start);
-        let target = self.state.target(&words);
+        let target = words.target(&self.here, pass.start.map(Some));
         let letters = [(b'X', b'U'), (b'Z', b'W')];
         for (axis, (own, increment)) in letters.into_iter().enumerate() {
             if words.number(own).is_some() || words.number(increment).is_some() {
@@ -150,7 +145,7 @@ impl Writer<'_, '_, '_> {
             }
         }
         if let Some(letter) = taper {
-            pass.taper = self.state.length(&words, letter).unwrap_or_default();
+            pass.taper = self.length(&words, letter).unwrap_or_default();
         }
         let [Some(x), Some(z)] = pass.to else {
             return Err(words.cycle_fault(
@@ -170,10 +165,7 @@ impl Writer<'_, '_, '_> {
             _ => b"XZUWRI",
         };
         let mut moves = self.begin(&words, pass.start, own)?;
-        if words.number(b'F').is_some() {
-            self.state.feed = words.number(b'F').map(|(number, _)| number);
-            self.unsure_feed = false;
-        }
+        self.unsure_feed &= words.number(b'F').is_none();
         let to = [x, z];
         if pass.cycle == TurningCycle::ThreadPass {
             self.thread_pass(&mut moves, &words, &pass, to)?;
@@ -196,8 +188,7 @@ impl Writer<'_, '_, '_> {
 
     /// R as the words of its axis count.
     fn taper(&self, pass: &Pass) -> i64 {
-        let twice = pass.cycle != TurningCycle::FacePass && self.state.diameters == Some(true);
-        if twice { 2 * pass.taper } else { pass.taper }
+        if pass.cycle == TurningCycle::FacePass { pass.taper } else { self.twice() * pass.taper }
     }
 
     fn thread_pass(
@@ -257,7 +248,7 @@ impl Writer<'_, '_, '_> {
         let exact = |lead: nc_syntax::Number| {
             lead.has_point || self.dialect.numbers.point_free == nc_syntax::dialect::PointFree::Unit
         };
-        let lead = self.state.feed.filter(|lead| exact(*lead));
+        let lead = self.feed(words).filter(|lead| exact(*lead));
         let start = moves.at();
         let length = match (leads > 0.0, lead, words.number(b'E')) {
             (false, ..) => 0.0,
@@ -314,8 +305,7 @@ impl Writer<'_, '_, '_> {
 
     /// Words of a number with six decimals.
     pub(super) fn millionths_of(&self, mm: f64) -> i64 {
-        let unit_mm = if self.state.inch { 25.4 } else { 1.0 };
-        units::decimal::round(mm / unit_mm * MILLION)
+        units::decimal::round(mm / self.here.units.mm() * MILLION)
     }
 }
 

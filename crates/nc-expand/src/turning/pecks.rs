@@ -11,7 +11,6 @@ use nc_syntax::Span;
 use nc_syntax::dialect::TurningCycle;
 
 use super::emit::Code;
-use super::state::Motion;
 use super::{Spot, Writer};
 use crate::lowering::Fault;
 
@@ -25,8 +24,8 @@ impl Writer<'_, '_, '_> {
         // The axis of the pecks: Z of G74, X of G75.
         let down = if cycle == TurningCycle::PeckFace { 1 } else { 0 };
         let along = 1 - down;
-        if !self.state.moves(&words) {
-            let Some(back) = self.state.length(&words, b'R') else {
+        if !words.names_a_place() {
+            let Some(back) = self.length(&words, b'R') else {
                 return Err(words.cycle_fault(
                     span,
                     both!("a cycle without a place", "цикл без конечной точки"),
@@ -54,7 +53,7 @@ impl Writer<'_, '_, '_> {
                 both!("leave R out of this block", "уберите R из этого кадра"),
             ));
         }
-        let target = self.state.target(&words);
+        let target = self.target(&words);
         let [Some(x), Some(z)] = target else {
             return Err(words.cycle_fault(
                 span,
@@ -65,10 +64,10 @@ impl Writer<'_, '_, '_> {
         };
         let to = [x, z];
         let whole = [to[0] - start[0], to[1] - start[1]];
-        let twice = [if self.state.diameters == Some(true) { 2 } else { 1 }, 1];
+        let twice = [self.twice(), 1];
         let letters = [b'P', b'Q'];
         let step = |axis: usize| {
-            let said = self.state.depth(&words, letters[axis]).map(|step| twice[axis] * step.abs());
+            let said = words.depth(&self.here, letters[axis]).map(|step| twice[axis] * step.abs());
             said.filter(|step| *step > 0).unwrap_or_else(|| whole[axis].abs())
         };
         let (peck, across) = (step(down), step(along));
@@ -139,11 +138,9 @@ impl Writer<'_, '_, '_> {
             sideways = (sideways + across).min(whole[along].abs());
         }
         self.go(&mut moves, Code::Rapid, start);
-        if let Some((feed, _)) = words.number(b'F') {
-            (self.state.feed, self.unsure_feed) = (Some(feed), false);
-        }
+        self.unsure_feed &= words.number(b'F').is_none();
         self.end(moves);
-        self.state.motion = Motion::Unknown;
+        self.leave_open();
         Ok(())
     }
 }
