@@ -6,14 +6,14 @@
 
 use std::ops::Range;
 
-use nc_program::modal::{Distance, Modal, MotionMode, Naming, Units};
+use nc_program::modal::{Modal, MotionMode};
 use nc_program::{Interpreter, Owner, Setup};
 use nc_syntax::dialect::{Action, Dialect};
 use nc_syntax::{Block, EnvelopeFinder, Item, ItemKind, Place, Reader, Value};
 
 use crate::lowering::{Came, Fault, Refused};
 use crate::output::{self, From, Marks, Output};
-use crate::shorthand::{self, Words};
+use crate::shorthand;
 use crate::{Origin, called};
 
 /// The motion code in force.
@@ -26,57 +26,15 @@ pub(crate) enum Motion {
     None,
 }
 
-/// What shorthand needs of the state between two blocks; lengths as the words have them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct State {
-    pub(crate) motion: Motion,
-    /// First and second axis of the plane, and its normal.
-    pub(crate) plane: [usize; 3],
-    pub(crate) absolute: bool,
-    pub(crate) inch: bool,
-    /// Where the program has itself said that the axes stand.
-    pub(crate) at: [Option<f64>; 3],
-}
-
-impl State {
-    fn of(modal: &Modal) -> Self {
-        Self {
-            motion: match modal.motion {
-                _ if modal.cycle.is_some() => Motion::Cycle,
-                MotionMode::Rapid(_) => Motion::Rapid,
-                MotionMode::Line(_) | MotionMode::Thread(_) => Motion::Line,
-                MotionMode::Arc(..) | MotionMode::Curve(..) => Motion::Arc,
-                MotionMode::None | MotionMode::Undecided { .. } => Motion::None,
-            },
-            plane: modal.plane.axes(),
-            absolute: modal.distance == Distance::Absolute,
-            inch: modal.units == Units::Inch,
-            at: places(modal),
-        }
+/// Which it is.
+pub(crate) const fn motion(modal: &Modal) -> Motion {
+    match modal.motion {
+        _ if modal.cycle.is_some() => Motion::Cycle,
+        MotionMode::Rapid(_) => Motion::Rapid,
+        MotionMode::Line(_) | MotionMode::Thread(_) => Motion::Line,
+        MotionMode::Arc(..) | MotionMode::Curve(..) => Motion::Arc,
+        MotionMode::None | MotionMode::Undecided { .. } => Motion::None,
     }
-
-    /// Where the words of a motion lead from here.
-    pub(crate) fn target(&self, words: &Words<'_, '_>) -> [Option<f64>; 3] {
-        [0, 1, 2].map(|axis| match words.length(shorthand::AXES[axis], self.inch) {
-            None => self.at[axis],
-            Some(value) if self.absolute => Some(value),
-            Some(value) => self.at[axis].map(|at| at + value),
-        })
-    }
-}
-
-/// Where X, Y and Z stand, as words of the state would say it: those that the program has itself named in the frame in force.
-pub(crate) fn places(modal: &Modal) -> [Option<f64>; 3] {
-    // Behind a block that may be skipped the tool stands in one of two places.
-    let (Some(frame), None) = (&modal.frame, &modal.aside) else { return [None; 3] };
-    let stands = modal.axes.linear.map(nc_program::modal::Axis::known);
-    let program_mm = frame.to_program(stands.map(Option::unwrap_or_default));
-    [0, 1, 2].map(|axis| {
-        let known = (0..3).all(|other| frame.inverse()[axis][other] == 0.0 || stands[other].is_some());
-        let diameters = axis == 0 && modal.x_words.are_diameters(modal.distance);
-        let word = program_mm[axis] / modal.units.mm() * if diameters { 2.0 } else { 1.0 };
-        (known && modal.named[axis] == Naming::Named).then_some(word)
-    })
 }
 
 /// Reads what is written, block by block.
@@ -93,10 +51,6 @@ impl<'d> Known<'d> {
         Self { dialect, interpreter: Interpreter::new(dialect, setup), refused: None }
     }
 
-    pub(crate) fn state(&self) -> State {
-        State::of(self.modal())
-    }
-
     pub(crate) const fn modal(&self) -> &Modal {
         self.interpreter.modal()
     }
@@ -107,10 +61,10 @@ impl<'d> Known<'d> {
     }
 
     /// The state that the codes of a block make before it moves, and whose its axis words are; `None` where it is refused.
-    pub(crate) fn codes(&self, block: &Block<'_>) -> Option<(State, Owner)> {
+    pub(crate) fn codes(&self, block: &Block<'_>) -> Option<(Modal, Owner)> {
         let mut settings = None;
         plainly(block, self.dialect, |block| settings = self.interpreter.settings(block).ok());
-        settings.map(|(modal, owner)| (State::of(&modal), owner))
+        settings
     }
 
     /// What codes make of the state; `None` where they are refused.

@@ -11,6 +11,7 @@
 use diagnostic::{Text, both};
 use nc_syntax::dialect::{Action, CycleCode};
 use nc_syntax::{Block, Dialect, ItemKind, Letters, Span, Value};
+use toolpath::Plane;
 
 use crate::codes;
 use crate::known::Rewriting;
@@ -143,16 +144,14 @@ impl<'d> Writer<'d> {
     }
 
     fn length(&self, words: &Words<'_, '_>, letter: u8) -> Option<f64> {
-        words
-            .number(letter)
-            .map(|(number, _)| self.dialect.numbers.length(number, self.out.known.state().inch).to_f64())
+        words.length(letter, self.out.known.modal().units)
     }
 
     /// G71 Z.
     fn level_of(&self, words: &Words<'_, '_>, span: Span) -> Result<f64, Fault> {
         let alone = words.block.words().all(|word| matches!(word.letter, b'G' | b'N' | b'Z'))
             && words.actions().count() == 1
-            && self.out.known.state().absolute
+            && self.out.known.modal().says_places()
             && !words.skipped();
         match self.length(words, b'Z').filter(|_| alone) {
             Some(level) => Ok(level),
@@ -195,7 +194,7 @@ impl<'d> Writer<'d> {
             self.out.block(came);
             return Ok(());
         };
-        if !here.absolute || here.plane != [0, 1, 2] || words.skipped() {
+        if !here.says_places() || here.plane != Plane::Xy || words.skipped() {
             return refuse(
                 span,
                 both!("a cycle that cannot be written out", "цикл, который нельзя расписать"),
@@ -308,8 +307,7 @@ impl<'d> Writer<'d> {
             self.out.line(&line, source);
         }
         let feed = words.number(b'F').map(|(_, span)| words.block.text(span).to_vec());
-        let unit_mm = if self.out.known.state().inch { 25.4 } else { 1.0 };
-        let clearance = self.dialect.output.peck_clearance_mm / unit_mm;
+        let clearance = self.dialect.output.peck_clearance_mm / self.out.known.modal().units.mm();
         let mut line = |code: &[u8], level: f64, feed: Option<&Vec<u8>>| {
             let mut text = code.to_vec();
             number(&mut text, b'Z', level);

@@ -15,12 +15,13 @@
 
 use diagnostic::{Code, Diagnostic, Text, both};
 use nc_program::Owner;
+use nc_program::modal::{Modal, Units};
 use nc_syntax::dialect::{Action, Called, CornerForm, GCode};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Number, Span, Value};
 use units::math;
 
 use crate::codes;
-use crate::known::{Known, Motion, Rewriting, State};
+use crate::known::{Known, Motion, Rewriting, motion};
 use crate::lowering::{Came, Fault, Held, Refused};
 use crate::output::{From, Style, word};
 
@@ -119,8 +120,20 @@ impl Words<'_, '_> {
             _ => None,
         })
     }
-    pub(crate) fn length(&self, letter: u8, inch: bool) -> Option<f64> {
-        self.number(letter).map(|(number, _)| self.dialect.numbers.length(number, inch).to_f64())
+    pub(crate) fn length(&self, letter: u8, units: Units) -> Option<f64> {
+        self.number(letter).map(|(number, _)| self.lengthy(number, units))
+    }
+    fn lengthy(&self, number: Number, units: Units) -> f64 {
+        self.dialect.numbers.length(number, units == Units::Inch).to_f64()
+    }
+    /// Where the words of a motion lead from where the axes stand.
+    pub(crate) fn end(&self, modal: &Modal) -> [Option<f64>; 3] {
+        let stands = modal.places();
+        [0, 1, 2].map(|axis| match self.length(AXES[axis], modal.units) {
+            None => stands[axis],
+            Some(value) if modal.says_places() => Some(value),
+            Some(value) => stands[axis].map(|at| at + value),
+        })
     }
     pub(crate) fn actions(&self) -> impl Iterator<Item = (&Action, Span)> {
         actions(self.block, self.dialect)
@@ -137,7 +150,7 @@ impl Words<'_, '_> {
         }
     }
     /// Its form and size, in units of the program, where they are plain.
-    fn corner_size(&self, item: &Item, inch: bool) -> Option<(CornerForm, f64)> {
+    fn corner_size(&self, item: &Item, units: Units) -> Option<(CornerForm, f64)> {
         match item.kind {
             ItemKind::CommaWord { letter, value: Value::Number(size) } => {
                 let form = match letter {
@@ -145,7 +158,7 @@ impl Words<'_, '_> {
                     b'C' => CornerForm::Chamfer,
                     _ => return None,
                 };
-                Some((form, self.dialect.numbers.length(size, inch).to_f64()))
+                Some((form, self.lengthy(size, units)))
             }
             ItemKind::BracketCommand => {
                 let text = self.block.text(item.span);
@@ -209,6 +222,11 @@ impl<'d> Corners<'d> {
     /// What is known behind what came, a corner that waits apart.
     pub(crate) fn known(&self) -> &Known<'d> {
         self.waiting.as_ref().map_or(&self.out.known, |corner| &corner.behind)
+    }
+
+    /// First and second axis of the plane, and its normal.
+    fn plane(&self) -> [usize; 3] {
+        self.out.known.modal().plane.axes()
     }
 
     pub(crate) fn wake(&mut self) {
@@ -275,8 +293,8 @@ impl<'d> Corners<'d> {
         let words = Words::of(came, self.dialect());
         if words.corner().is_some() {
             let known = self.out.known.clone();
-            let [first, second, _] = known.state().plane;
-            let start = [first, second].map(|axis| known.state().at[axis]);
+            let [first, second, _] = known.modal().plane.axes();
+            let start = [first, second].map(|axis| known.modal().places()[axis]);
             return self.corner(came, start, known).map(Some);
         }
         let rotates = words.actions().find(|(action, _)| **action == Action::RotationOn);
@@ -294,7 +312,7 @@ impl<'d> Corners<'d> {
 
     /// A rotation about where the tool stands: the control would take the corrected place for it.
     fn rotation(&mut self, words: &Words<'_, '_>, span: Span) -> Result<(), Fault> {
-        let State { plane: [first, second, _], at, .. } = self.out.known.state();
+        let ([first, second, _], at) = (self.plane(), self.out.known.modal().places());
         let [Some(u), Some(v)] = [at[first], at[second]] else {
             return Err(words.refuse(
                 span,
@@ -332,8 +350,8 @@ impl<'d> Corners<'d> {
         let span = item.span;
         let refuse = |label: Text| words.refuse(span, NO_CORNER, label, POST_IT);
         let mut behind = known;
-        let here = behind.codes(block).map(|(state, _)| state);
-        let Some((form, size)) = words.corner_size(item, behind.state().inch) else {
+        let here = behind.codes(block).map(|(modal, _)| modal);
+        let Some((form, size)) = words.corner_size(item, behind.modal().units) else {
             return Err(refuse(both!(
                 "only a rounding or a chamfer with a number can, one in a block",
                 "развернуть можно только скругление или фаску с числом, одно в кадре"
@@ -358,23 +376,24 @@ impl<'d> Corners<'d> {
         let (Some(here), None) = (here, behind.refused()) else {
             return Err(behind.refused().unwrap_or_else(|| refuse(NOT_KNOWN)));
         };
-        let target = here.target(&words);
+        let (target, plane) = (words.end(&here), here.plane.axes());
         let place = |[u, v]: [Option<f64>; 2]| Some([u?, v?]);
-        let ends = place(start).zip(place([target[here.plane[0]], target[here.plane[1]]]));
+        let ends = place(start).zip(place([target[plane[0]], target[plane[1]]]));
         let Some((from, to)) = ends else { return Err(refuse(NOT_KNOWN)) };
         Ok(Corner { block: Held::of(came), from, to, form, size, place: span, behind_corner: false, behind })
     }
 
     /// Refuses what is no line of the plane in G90; `span` says where.
-    fn plain_line(&self, words: &Words<'_, '_>, here: &State, span: Span) -> Result<(), Fault> {
-        let normal = AXES[here.plane[2]];
+    fn plain_line(&self, words: &Words<'_, '_>, here: &Modal, span: Span) -> Result<(), Fault> {
+        let plane = here.plane.axes();
+        let normal = AXES[plane[2]];
         let command = |item: &Item| item.kind == ItemKind::BracketCommand && !words.is_corner(item);
         let others = words.block.items.iter().any(command)
             || words.actions().any(|(action, _)| !matches!(action, Action::Line | Action::Absolute));
-        let moves = here.plane[..2].iter().any(|axis| words.number(AXES[*axis]).is_some());
-        let label = if here.motion != Motion::Line {
+        let moves = plane[..2].iter().any(|axis| words.number(AXES[*axis]).is_some());
+        let label = if motion(here) != Motion::Line {
             both!("G1 was expected on both sides of a corner", "по обе стороны сопряжения ожидалось G1")
-        } else if !here.absolute {
+        } else if !here.says_places() {
             both!("under G91; write G90", "при G91; напишите G90")
         } else if self.polar.is_some() {
             both!("under G16; write the points in X and Y", "при G16; напишите точки в X и Y")
@@ -411,8 +430,8 @@ impl<'d> Corners<'d> {
                 .unwrap_or_else(|| words.refuse(whole, NO_CORNER, NOT_KNOWN, POST_IT)));
         };
         self.plain_line(&words, &here, whole)?;
-        let [first, second, _] = here.plane;
-        let target = here.target(&words);
+        let [first, second, _] = here.plane.axes();
+        let target = words.end(&here);
         let next = [(first, 0), (second, 1)].map(|(axis, k)| target[axis].unwrap_or(corner.to[k]));
         let shape = Shape::of(corner.from, corner.to, next, corner.form, corner.size);
         let Some(shape) = shape else {
@@ -465,7 +484,7 @@ impl<'d> Corners<'d> {
                 both!("write the points in X and Y, G15 in force", "напишите точки в X и Y, при G15"),
             )
         };
-        let plane = self.out.known.state().plane;
+        let plane = self.plane();
         let axis_word =
             |axes: &[usize]| axes.iter().find_map(|axis| words.number(AXES[*axis])).map(|(_, span)| span);
         let off = words.actions().any(|(action, _)| *action == Action::PolarOff);
@@ -522,7 +541,7 @@ impl<'d> Corners<'d> {
             }
             _ => return Err(refuse(span, DIFFERS)),
         }
-        if words.skipped() || !here.absolute {
+        if words.skipped() || !here.says_places() {
             return Err(refuse(
                 span,
                 both!(
@@ -532,15 +551,15 @@ impl<'d> Corners<'d> {
             ));
         }
         let radius_of_arc = words.number(b'R').is_some();
-        if here.motion == Motion::None {
+        if motion(&here) == Motion::None {
             return Err(refuse(span, both!("no motion code is in force", "функция движения не действует")));
         }
         let centred = b"IJK".iter().any(|letter| words.number(*letter).is_some());
-        if here.motion == Motion::Arc && (centred || !radius_of_arc) {
+        if motion(&here) == Motion::Arc && (centred || !radius_of_arc) {
             return Err(refuse(span, both!("an arc under G16 takes R", "дуга при G16 принимает R")));
         }
-        let radius = words.length(AXES[plane[0]], here.inch).or(held[0]);
-        let angle = words.length(AXES[plane[1]], false).or(held[1]);
+        let radius = words.length(AXES[plane[0]], here.units).or(held[0]);
+        let angle = words.length(AXES[plane[1]], Units::Millimetre).or(held[1]);
         let (Some(radius), Some(angle)) = (radius, angle) else {
             return Err(refuse(
                 span,
@@ -578,7 +597,7 @@ impl<'d> Corners<'d> {
 
     /// First and second axis' words.
     fn point(&self, line: &mut Vec<u8>, point: [f64; 2]) {
-        let [first, second, _] = self.out.known.state().plane;
+        let [first, second, _] = self.plane();
         let mut both = [(first, point[0]), (second, point[1])];
         both.sort_by_key(|(axis, _)| *axis);
         for (at, (axis, value)) in both.into_iter().enumerate() {
@@ -594,7 +613,7 @@ impl<'d> Corners<'d> {
     fn rewritten(&mut self, came: &Came<'_>, words: &[u8]) {
         let block = &came.block;
         self.out.comment(shown(block), came.from);
-        let [first, second, _] = self.out.known.state().plane;
+        let [first, second, _] = self.plane();
         let replaces_motion = words.starts_with(b"G");
         let of_block = Words::of(came, self.dialect());
         let taken = |item: &Item| match item.kind {

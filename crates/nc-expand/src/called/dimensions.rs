@@ -2,13 +2,14 @@
 
 use diagnostic::{Text, both};
 use nc_program::Owner;
+use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Called};
 use nc_syntax::{Block, ItemKind, Reader, Span, Value};
 use units::math;
 
 use super::{Writer, angle, arguments, called, dimension, names_axes};
 use crate::codes;
-use crate::known::{Motion, State};
+use crate::known::{Motion, motion};
 use crate::lowering::{Came, Fault};
 use crate::shorthand::{AXES, Words, number, shown};
 
@@ -16,7 +17,7 @@ impl Writer<'_> {
     /// `X=AC()`, `X=IC()` and `TURN=` in a block.
     pub(super) fn dimensions(&mut self, came: &Came<'_>) -> Result<(), Fault> {
         let (block, words) = (&came.block, &Words::of(came, self.dialect));
-        let start = self.state().at;
+        let start = self.modal().places();
         let Some((here, owner)) = self.out.known().codes(block) else {
             // Its own codes are refused, before its words are asked for.
             return self.out.came(came);
@@ -164,7 +165,7 @@ impl Writer<'_> {
         &mut self,
         words: &Words<'_, '_>,
         plain: &Words<'_, '_>,
-        here: &State,
+        here: &Modal,
         count: u32,
         span: Span,
     ) -> Result<(), Fault> {
@@ -177,10 +178,10 @@ impl Writer<'_> {
                 both!("let the CAM write each turn", "выводите из CAM каждый оборот"),
             )
         };
-        if here.motion != Motion::Arc {
+        if motion(here) != Motion::Arc {
             return Err(refuse(both!("G2 or G3 was expected", "ожидалось G2 или G3")));
         }
-        if !here.absolute {
+        if !here.says_places() {
             return Err(refuse(both!("under G91; write G90", "при G91; напишите G90")));
         }
         if plain.number(b'M').is_some()
@@ -196,15 +197,15 @@ impl Writer<'_> {
                 "рядом с функциями M, радиусом или командами"
             )));
         }
-        let [u, v, n] = here.plane;
+        let ([u, v, n], at) = (here.plane.axes(), here.places());
         let centre_letters = [b"IJK"[u], b"IJK"[v]];
-        let (Some(a), Some(b), Some(h)) = (here.at[u], here.at[v], here.at[n]) else {
+        let (Some(a), Some(b), Some(h)) = (at[u], at[v], at[n]) else {
             return Err(refuse(both!(
                 "where the helix starts is not known: name X, Y and Z before it, in G90",
                 "неизвестно, откуда начинается винтовая линия: назовите до неё X, Y и Z при G90"
             )));
         };
-        let target = here.target(plain);
+        let target = plain.end(here);
         let end = [u, v, n].map(|axis| target[axis].unwrap_or(f64::NAN));
         let centre = centre_letters
             .map(|letter| plain.number(letter).map_or(0.0, |(value, _)| value.decimal.to_f64()));
@@ -284,14 +285,15 @@ fn kept(words: &Words<'_, '_>, without: [u8; 5]) -> Vec<u8> {
 }
 
 /// The number that a word without AC and IC needs.
-fn place(state: &State, letter: u8, value: f64, by: bool) -> Option<f64> {
+fn place(modal: &Modal, letter: u8, value: f64, by: bool) -> Option<f64> {
+    let at = modal.places();
     if let Some(axis) = AXES.iter().position(|axis| *axis == letter) {
-        return match (by, state.absolute) {
+        return match (by, modal.says_places()) {
             (false, true) | (true, false) => Some(value),
-            (true, true) => Some(state.at[axis]? + value),
-            (false, false) => Some(value - state.at[axis]?),
+            (true, true) => Some(at[axis]? + value),
+            (false, false) => Some(value - at[axis]?),
         };
     }
     let axis = usize::from(letter - b'I');
-    if by { Some(value) } else { Some(value - state.at[axis]?) }
+    if by { Some(value) } else { Some(value - at[axis]?) }
 }

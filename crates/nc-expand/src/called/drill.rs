@@ -7,7 +7,7 @@ use nc_syntax::dialect::Action;
 use super::hole::{Hole, Move};
 use super::{Writer, names_axes};
 use crate::codes;
-use crate::known::{Motion, State};
+use crate::known::{Motion, motion};
 use crate::lowering::Fault;
 use crate::shorthand::{AXES, Words, number};
 
@@ -22,7 +22,7 @@ impl Writer<'_> {
         });
         match self.out.known().codes(words.block) {
             Some((here, Owner::Motion | Owner::DwellP))
-                if names_axes(words) && matches!(here.motion, Motion::Line | Motion::Arc) =>
+                if names_axes(words) && matches!(motion(&here), Motion::Line | Motion::Arc) =>
             {
                 self.needs(words, true, true)
             }
@@ -56,8 +56,8 @@ impl Writer<'_> {
 
     /// The moves of a hole where the axes stand.
     pub(super) fn drill(&mut self, words: &Words<'_, '_>, hole: &Hole) -> Result<(), Fault> {
-        let State { absolute, plane, at: hole_at, .. } = self.state();
-        if !absolute {
+        let (plane, hole_at) = (self.plane(), self.modal().places());
+        if !self.modal().says_places() {
             return Err(words.fault(
                 codes::CALLED_CYCLE,
                 words.whole(),
@@ -103,7 +103,7 @@ impl Writer<'_> {
                 }
                 Move::Over(to) => {
                     line.extend_from_slice(b"G0");
-                    let here = self.state().at;
+                    let here = self.modal().places();
                     for axis in plane[..2].iter().filter(|axis| here[**axis] != hole_at[**axis]) {
                         line.push(b' ');
                         number(&mut line, AXES[*axis], hole_at[*axis].unwrap_or(f64::NAN));
@@ -123,7 +123,7 @@ impl Writer<'_> {
 
     /// Where an axis stands.
     fn place(&self, words: &Words<'_, '_>, axis: usize) -> Result<f64, Fault> {
-        self.state().at[axis].ok_or_else(|| {
+        self.modal().places()[axis].ok_or_else(|| {
             words.fault(
                 codes::CALLED_CYCLE,
                 words.whole(),

@@ -23,11 +23,12 @@ mod pattern;
 
 use diagnostic::both;
 use nc_program::Owner;
+use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Called};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Span, Value};
 
 use crate::codes;
-use crate::known::{Rewriting, State};
+use crate::known::{Rewriting, motion};
 use crate::lowering::{Came, Fault, Lower};
 use crate::shorthand::{AXES, Corners, Words, number, shown};
 use crate::siemens;
@@ -124,7 +125,7 @@ impl<'d> Writer<'d> {
         let (block, words) = (&came.block, Words::of(came, self.dialect));
         self.said(&words)?;
         if !needed(block, self.dialect) {
-            let before = self.state().at;
+            let before = self.modal().places();
             let moves = self.moves(&words);
             self.out.came(came)?;
             return self.behind(&words, moves, before);
@@ -203,7 +204,7 @@ impl<'d> Writer<'d> {
                     pattern::circle(&words, &call)?
                 };
                 self.out.comment(&comment, words.from)?;
-                let motion = self.state().motion;
+                let motion = motion(self.modal());
                 for place in places {
                     let mut line = b"G0 ".to_vec();
                     self.point(&mut line, place);
@@ -215,7 +216,7 @@ impl<'d> Writer<'d> {
             [(cycle, span)] if self.drills(*cycle) => {
                 let hole = self.hole(&words, *cycle, *span)?;
                 self.out.comment(&comment, words.from)?;
-                let motion = self.state().motion;
+                let motion = motion(self.modal());
                 self.drill(&words, &hole)?;
                 self.restore(&words, motion)?;
             }
@@ -246,13 +247,17 @@ impl<'d> Writer<'d> {
 
     fn hole(&self, words: &Words<'_, '_>, cycle: Called, span: Span) -> Result<Hole, Fault> {
         let call = Arguments::read(words, span)?;
-        let State { inch, plane, .. } = self.state();
-        Hole::read(words, cycle, &call, if inch { 25.4 } else { 1.0 }, plane[2])
+        Hole::read(words, cycle, &call, self.modal().units.mm(), self.plane()[2])
     }
 
     /// Behind what is written.
-    fn state(&self) -> State {
-        self.out.known().state()
+    fn modal(&self) -> &Modal {
+        self.out.known().modal()
+    }
+
+    /// First and second axis of the plane, and its normal.
+    fn plane(&self) -> [usize; 3] {
+        self.modal().plane.axes()
     }
 
     /// True where the block has words of a motion.
@@ -287,7 +292,7 @@ impl<'d> Writer<'d> {
     /// * `before` – where the axes stood
     fn behind(&mut self, at: &Words<'_, '_>, moves: bool, before: [Option<f64>; 3]) -> Result<(), Fault> {
         let Some(hole) = self.modal.clone() else { return Ok(()) };
-        if !moves && self.state().at == before {
+        if !moves && self.modal().places() == before {
             return Ok(());
         }
         if at.skipped() {
@@ -299,8 +304,8 @@ impl<'d> Writer<'d> {
                 both!("remove the `/`, or the block", "уберите `/` или кадр"),
             ));
         }
-        let State { motion, plane, at: places, .. } = self.state();
-        if !moves || plane[..2].iter().any(|axis| places[*axis].is_none()) {
+        let (motion, places) = (motion(self.modal()), self.modal().places());
+        if !moves || self.plane()[..2].iter().any(|axis| places[*axis].is_none()) {
             return Err(at.fault(
                 codes::CALLED_CYCLE,
                 at.whole(),
@@ -320,7 +325,7 @@ impl<'d> Writer<'d> {
     }
 
     fn point(&self, line: &mut Vec<u8>, place: [f64; 2]) {
-        let [u, v, _] = self.state().plane;
+        let [u, v, _] = self.plane();
         number(line, AXES[u], place[0]);
         line.push(b' ');
         number(line, AXES[v], place[1]);
