@@ -14,7 +14,7 @@ use nc_syntax::{Block, EnvelopeFinder, Item, ItemKind, Place, Reader, Value};
 use crate::lowering::{Came, Fault, Refused};
 use crate::output::{self, From, Marks, Output};
 use crate::shorthand;
-use crate::{Origin, called};
+use crate::{Origin, called, short};
 
 /// The motion code in force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,11 +70,10 @@ impl<'d> Known<'d> {
     /// What codes make of the state; `None` where they are refused.
     pub(crate) fn settings(&self, codes: &[u8], from: From) -> Option<Modal> {
         let mut made = Some(self.modal().clone());
-        let read: Result<(), ()> = Came::each(codes, self.dialect, From { exact: false, ..from }, |came| {
+        for came in Came::all(codes, self.dialect, From { exact: false, ..from }) {
             made = self.interpreter.settings(&came.block).ok().map(|(modal, _)| modal);
-            Ok(())
-        });
-        made.filter(|_| read.is_ok())
+        }
+        made
     }
 
     /// Reads a block that is written as it stands.
@@ -84,11 +83,9 @@ impl<'d> Known<'d> {
 
     /// Reads text that stands for bytes of the source.
     pub(crate) fn written(&mut self, text: &[u8], from: From) {
-        let read: Result<(), Fault> = Came::each(text, self.dialect, From { exact: false, ..from }, |came| {
-            self.block(came);
-            Ok(())
-        });
-        debug_assert!(read.is_ok(), "refusals are kept");
+        for came in Came::all(text, self.dialect, From { exact: false, ..from }) {
+            self.block(&came);
+        }
     }
 
     /// Reads a block; `told` says where bytes of it come from.
@@ -117,12 +114,9 @@ fn plainly(block: &Block<'_>, dialect: &Dialect, mut read: impl FnMut(&Block<'_>
         let bytes = text.get_or_insert_with(|| block.bytes.to_vec());
         bytes[item.span.start as usize..item.span.end as usize].fill(b' ');
     }
-    let Some(text) = text else { return read(block) };
-    let place = Place { offset: block.offset.max(1), line: block.line, expects_name: false };
-    let mut reader = Reader::part(&text, dialect, EnvelopeFinder::new(dialect).open(), place);
-    let mut plain = Block::default();
-    while reader.next(&mut plain) {
-        read(&plain);
+    match text {
+        None => read(block),
+        Some(text) => Came::all(&text, dialect, From::of(block)).iter().for_each(|came| read(&came.block)),
     }
 }
 
@@ -181,6 +175,14 @@ impl<'d> Rewriting<'d> {
                 (u16::try_from(file).unwrap_or(u16::MAX), span)
             });
         }
+    }
+
+    /// True from the first block on that stands for others.
+    pub(crate) fn wakes(&mut self, block: &Block<'_>) -> bool {
+        if !self.awake && short(block, self.dialect) {
+            self.wake();
+        }
+        self.awake
     }
 
     /// A block as it is.

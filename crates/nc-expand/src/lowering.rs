@@ -31,7 +31,7 @@ pub(crate) struct Came<'a> {
 impl<'a> Came<'a> {
     /// A block of the program itself.
     pub(crate) fn of(block: &Block<'a>) -> Self {
-        Self { from: from(block), block: block.clone() }
+        Self { from: From::of(block), block: block.clone() }
     }
 
     fn new(bytes: &'a [u8], items: Vec<Item>, from: From) -> Self {
@@ -39,35 +39,15 @@ impl<'a> Came<'a> {
     }
 
     /// The blocks of text that stands for something, none of them a program's name.
-    pub(crate) fn each<E>(
-        text: &'a [u8],
-        dialect: &'a Dialect,
-        from: From,
-        mut take: impl FnMut(&Self) -> Result<(), E>,
-    ) -> Result<(), E> {
+    pub(crate) fn all(text: &'a [u8], dialect: &'a Dialect, from: From) -> Vec<Self> {
         let starts = from.exact && from.offset == 0;
         let place = Place { offset: u64::from(!starts), ..Place::START };
         let mut reader = Reader::part(text, dialect, EnvelopeFinder::new(dialect).open(), place);
-        let mut block = Block::default();
+        let (mut block, mut came) = (Block::default(), Vec::new());
         while reader.next(&mut block) {
-            (block.offset, block.line) = (from.offset, u64::from(from.line));
-            let came = Self { block, from };
-            take(&came)?;
-            block = came.block;
+            came.push(Self::new(block.bytes, std::mem::take(&mut block.items), from));
         }
-        Ok(())
-    }
-}
-
-/// Where a block of the program itself stands.
-fn from(block: &Block<'_>) -> From {
-    From {
-        file: 0,
-        offset: block.offset,
-        length: block.bytes.len() as u64,
-        line: u32::try_from(block.line).unwrap_or(u32::MAX),
-        exact: true,
-        contour: false,
+        came
     }
 }
 
@@ -203,12 +183,9 @@ impl<'d> Driver<'d> {
 
     /// Text of blocks.
     pub(crate) fn text(&mut self, text: &[u8], from: From) {
-        let dialect = self.dialect;
-        let taken: Result<(), Fault> = Came::each(text, dialect, from, |came| {
-            self.block(came);
-            Ok(())
-        });
-        debug_assert!(taken.is_ok(), "faults are kept");
+        for came in Came::all(text, self.dialect, from) {
+            self.block(&came);
+        }
     }
 
     /// Text that stands for something else.

@@ -14,16 +14,9 @@ use crate::lowering::Came;
 pub(crate) struct Segment {
     /// Where it starts.
     pub(crate) flat: u64,
-    /// Where it comes from.
-    pub(crate) source: u64,
-    /// Bytes of the source.
-    pub(crate) length: u64,
-    pub(crate) line: u32,
     /// Line of the flat text, from 1.
     pub(crate) flat_line: u32,
-    pub(crate) file: u16,
-    /// Byte for byte the same.
-    pub(crate) exact: bool,
+    pub(crate) from: From,
 }
 
 /// Where a stretch comes from.
@@ -40,6 +33,18 @@ pub(crate) struct From {
 }
 
 impl From {
+    /// A block of the program itself.
+    pub(crate) fn of(block: &Block<'_>) -> Self {
+        Self {
+            file: 0,
+            offset: block.offset,
+            length: block.bytes.len() as u64,
+            line: u32::try_from(block.line).unwrap_or(u32::MAX),
+            exact: true,
+            contour: false,
+        }
+    }
+
     /// Where bytes that stand at `within` of what comes from here are of the source.
     pub(crate) fn place(&self, within: Range<u64>) -> Range<u64> {
         let end = self.offset + self.length;
@@ -116,23 +121,16 @@ impl Output {
     }
 
     fn segment(&mut self, from: From) {
-        let exact = from.exact;
         let flat = self.text.len() as u64;
-        if let Some(last) = self.segments.last_mut() {
-            let follows = last.source + (flat - last.flat) == from.offset;
-            if exact
-                && last.exact
-                && last.file == from.file
-                && follows
-                && last.source + last.length == from.offset
-            {
-                last.length += from.length;
-                return;
-            }
+        if let Some(Segment { flat: start, from: last, .. }) = self.segments.last_mut()
+            && (from.exact && last.exact && last.file == from.file)
+            && last.offset + (flat - *start) == from.offset
+            && last.offset + last.length == from.offset
+        {
+            last.length += from.length;
+            return;
         }
-        let From { file, offset, length, line, .. } = from;
-        let flat_line = self.lines + 1;
-        self.segments.push(Segment { flat, source: offset, length, line, flat_line, file, exact });
+        self.segments.push(Segment { flat, flat_line: self.lines + 1, from });
     }
 
     /// Bytes as they come.
@@ -182,22 +180,34 @@ impl Output {
         let (mut reader, mut block, mut came) =
             (Reader::new(&self.text, dialect), Block::default(), Vec::new());
         while reader.next(&mut block) {
-            let span = block.offset..block.offset + block.bytes.len() as u64;
-            let Origin { file, span } = origin(&self.segments, &span);
-            let exact =
-                before(&self.segments, |segment| segment.flat <= block.offset).is_some_and(|it| it.exact);
-            let line = source_line(&self.segments, block.line).1;
+            let end = block.offset + block.bytes.len() as u64;
+            let Some(segment) = before(&self.segments, |segment| segment.flat <= block.offset) else {
+                continue;
+            };
+            let span = segment.place(&(block.offset..end));
             let from = From {
-                file: u16::try_from(file).unwrap_or(u16::MAX),
                 offset: span.start,
                 length: span.end - span.start,
-                line: u32::try_from(line).unwrap_or(u32::MAX),
-                exact,
-                contour: false,
+                line: segment.line_of(block.line),
+                ..segment.from
             };
             came.push(Came { block: block.clone(), from });
         }
         came
+    }
+}
+
+impl Segment {
+    /// Where bytes of it come from.
+    fn place(&self, span: &Range<u64>) -> Range<u64> {
+        self.from.place(span.start - self.flat..span.end.saturating_sub(self.flat))
+    }
+
+    /// The line that one of its lines comes from.
+    fn line_of(&self, line: u64) -> u32 {
+        let below = line.saturating_sub(u64::from(self.flat_line));
+        let below = if self.from.exact { u32::try_from(below).unwrap_or(u32::MAX) } else { 0 };
+        self.from.line.saturating_add(below)
     }
 }
 
@@ -207,29 +217,17 @@ fn before(segments: &[Segment], key: impl Fn(&Segment) -> bool) -> Option<&Segme
 
 /// Where bytes of the flat text come from.
 pub(crate) fn origin(segments: &[Segment], span: &Range<u64>) -> Origin {
-    let Some(segment) = before(segments, |segment| segment.flat <= span.start) else {
-        return Origin { file: 0, span: 0..0 };
-    };
-    let end = segment.source + segment.length;
-    let span = if segment.exact {
-        let shift = |at: u64| (segment.source + (at - segment.flat)).min(end);
-        shift(span.start)..shift(span.end.max(span.start))
-    } else {
-        segment.source..end
-    };
-    Origin { file: usize::from(segment.file), span }
+    let segment = before(segments, |segment| segment.flat <= span.start);
+    segment.map_or(Origin { file: 0, span: 0..0 }, |segment| Origin {
+        file: usize::from(segment.from.file),
+        span: segment.place(span),
+    })
 }
 
 /// File and line that a line of the flat text comes from.
 pub(crate) fn source_line(segments: &[Segment], line: u64) -> (usize, u64) {
-    match before(segments, |segment| u64::from(segment.flat_line) <= line) {
-        Some(segment) if segment.exact => {
-            let below = line.saturating_sub(u64::from(segment.flat_line));
-            (usize::from(segment.file), u64::from(segment.line) + below)
-        }
-        Some(segment) => (usize::from(segment.file), u64::from(segment.line)),
-        None => (0, line),
-    }
+    let segment = before(segments, |segment| u64::from(segment.flat_line) <= line);
+    segment.map_or((0, line), |segment| (usize::from(segment.from.file), u64::from(segment.line_of(line))))
 }
 
 /// How the number of a word is written.

@@ -11,17 +11,13 @@
 use diagnostic::{Text, both};
 use nc_syntax::dialect::{Action, CycleCode};
 use nc_syntax::{Block, Dialect, ItemKind, Letters, Span, Value};
-use toolpath::Plane;
+use toolpath::{MOST_PECKS, Plane, Retreat, Stroke, peck_depths, strokes, whole_pecks};
 
 use crate::codes;
 use crate::known::Rewriting;
 use crate::lowering::{Came, Fault, Lower};
 use crate::shorthand::{AXES, Words, actions, number, shown};
 
-/// Pecks of one hole; more are a wrong depth.
-const MOST_PECKS: f64 = 2_000.0;
-/// A peck below this is none: the last bits of a sum, in units of the program.
-const NOTHING: f64 = 1e-9;
 /// Words that a block of a cycle may have.
 const TAKEN: Letters = Letters::of(b"FGMNPQRXYZ");
 
@@ -308,6 +304,9 @@ impl<'d> Writer<'d> {
         }
         let feed = words.number(b'F').map(|(_, span)| words.block.text(span).to_vec());
         let clearance = self.dialect.output.peck_clearance_mm / self.out.known.modal().units.mm();
+        let deep = near - bottom;
+        let peck = peck.unwrap_or(deep);
+        let depths = peck_depths(deep, peck, whole_pecks(deep / peck));
         let mut line = |code: &[u8], level: f64, feed: Option<&Vec<u8>>| {
             let mut text = code.to_vec();
             number(&mut text, b'Z', level);
@@ -318,16 +317,12 @@ impl<'d> Writer<'d> {
             self.out.line(&text, source);
         };
         line(b"G0 ", near, None);
-        let mut reached = near;
-        loop {
-            let next = peck.map_or(bottom, |peck| (reached - peck).max(bottom));
-            line(b"G1 ", next, feed.as_ref());
-            reached = next;
-            if reached - bottom <= NOTHING {
-                break;
+        for stroke in strokes(depths, Retreat::Out { clearance }) {
+            match stroke {
+                Stroke::In(depth) => line(b"G1 ", near - depth, feed.as_ref()),
+                Stroke::Out => line(b"G0 ", near, None),
+                Stroke::Again(depth) => line(b"G0 ", near - depth, None),
             }
-            line(b"G0 ", near, None);
-            line(b"G0 ", (reached + clearance).min(near), None);
         }
         line(b"G0 ", back, None);
         Ok(())

@@ -264,8 +264,10 @@ impl<'d> Corners<'d> {
 
     /// Text that stands for a block that came, as the next one.
     pub(crate) fn write(&mut self, text: &[u8], from: From) -> Result<(), Fault> {
-        let dialect = self.dialect();
-        Came::each(text, dialect, From { exact: false, ..from }, |came| self.came(came))
+        for came in Came::all(text, self.dialect(), From { exact: false, ..from }) {
+            self.came(&came)?;
+        }
+        Ok(())
     }
 
     /// The same on a line of its own.

@@ -12,15 +12,13 @@ use diagnostic::{Text, both};
 use nc_program::modal::ReturnLevel;
 use nc_syntax::dialect::{DrillPecks, DrillR};
 use nc_syntax::{Item, ItemKind, Number, Span, Value};
+use toolpath::{MOST_PECKS, Retreat, Stroke, peck_depths, strokes, whole_pecks};
 
 use super::emit::{Code, Moves};
 use super::{Spot, Writer};
 use crate::lowering::Fault;
 use crate::output::{Style, word};
 use crate::shorthand::Words;
-
-/// Pecks of one hole; more are a wrong step.
-const MOST: i64 = 2_000;
 
 /// A hole on the axis, Z in millionths of the unit.
 #[derive(Clone, Copy, Debug)]
@@ -47,10 +45,11 @@ impl Writer<'_, '_, '_> {
         let start = self.standing(&words, span)?;
         let hole = self.hole(&words, span, start)?;
         let peck = words.depth(&self.here, b'Q').map_or(hole.deep, i64::abs);
-        let (style, back) =
-            if peck > 0 && peck < hole.deep { self.peck_rules(&words, span)? } else { (DrillPecks::Full, 0) };
-        let peck = if peck == 0 { hole.deep } else { peck };
-        if hole.deep / peck > MOST {
+        let peck = if (1..hole.deep).contains(&peck) { peck } else { hole.deep };
+        let retreat =
+            if peck < hole.deep { self.peck_rules(&words, span)? } else { Retreat::Back { by: 0.0 } };
+        let pecks = hole.deep as f64 / peck as f64;
+        if pecks > MOST_PECKS {
             return Err(words.cycle_fault(
                 span,
                 both!("a hole of more than 2000 pecks", "отверстие больше чем в 2000 проходов"),
@@ -61,18 +60,8 @@ impl Writer<'_, '_, '_> {
         let mut moves = self.begin(&words, start, b"XZUWRQPK")?;
         self.go(&mut moves, Code::Rapid, [hole.x, hole.start]);
         self.go(&mut moves, Code::Rapid, hole.place(0));
-        let mut reached = 0;
-        while reached < hole.deep {
-            if reached > 0 {
-                let up = (reached - back).max(0);
-                if style == DrillPecks::Full {
-                    self.go(&mut moves, Code::Rapid, hole.place(0));
-                }
-                self.go(&mut moves, Code::Rapid, hole.place(up));
-            }
-            reached = (reached + peck).min(hole.deep);
-            self.go(&mut moves, Code::Line, hole.place(reached));
-        }
+        let depths = peck_depths(hole.deep as f64, peck as f64, whole_pecks(pecks));
+        self.strokes(&mut moves, depths, retreat, |depth| hole.place(depth));
         if let Some(dwell) = self.dwell(&words) {
             self.between(&mut moves, &dwell);
         }
@@ -235,8 +224,26 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// How the control pecks, and by how much it stays off what is drilled, millionths of the unit.
-    fn peck_rules(&self, words: &Words<'_, '_>, span: Span) -> Result<(DrillPecks, i64), Fault> {
+    /// The moves of pecks down to these depths; `place` is that of a depth, all in millionths of the unit.
+    pub(super) fn strokes(
+        &mut self,
+        moves: &mut Moves,
+        depths: impl Iterator<Item = f64>,
+        retreat: Retreat,
+        place: impl Fn(i64) -> Spot,
+    ) {
+        for stroke in strokes(depths, retreat) {
+            let (code, depth) = match stroke {
+                Stroke::In(depth) => (Code::Line, depth),
+                Stroke::Out => (Code::Rapid, 0.0),
+                Stroke::Again(depth) => (Code::Rapid, depth),
+            };
+            self.go(moves, code, place(depth as i64));
+        }
+    }
+
+    /// How the control comes back between pecks, millionths of the unit.
+    fn peck_rules(&self, words: &Words<'_, '_>, span: Span) -> Result<Retreat, Fault> {
         let cycles = &self.turning.cycles;
         let Some(style) = cycles.drill_pecks else {
             return Err(words.parameter_fault(
@@ -257,7 +264,11 @@ impl Writer<'_, '_, '_> {
                 "0.5",
             ));
         };
-        Ok((style, self.millionths_of(back)))
+        let back = self.millionths_of(back) as f64;
+        Ok(match style {
+            DrillPecks::Full => Retreat::Out { clearance: back },
+            DrillPecks::Chip => Retreat::Back { by: back },
+        })
     }
 
     /// The dwell at the bottom, as a block.

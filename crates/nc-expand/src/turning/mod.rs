@@ -33,7 +33,7 @@ mod threads;
 
 use diagnostic::{Text, both};
 use nc_program::Compensation;
-use nc_program::modal::{Modal, MotionMode};
+use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
 use nc_syntax::{Block, Dialect, Number, Span};
 
@@ -75,19 +75,16 @@ pub(crate) struct Lathe<'d> {
     out: Rewriting<'d>,
     turning: &'d Turning,
     held: Vec<Held>,
-    /// Some block is written out.
-    lowers: bool,
 }
 
 impl<'d> Lathe<'d> {
     pub(crate) const fn new(out: Rewriting<'d>, turning: &'d Turning) -> Self {
-        Self { out, turning, held: Vec::new(), lowers: false }
+        Self { out, turning, held: Vec::new() }
     }
 }
 
 impl<'d> Lower<'d> for Lathe<'d> {
     fn came(&mut self, came: &Came<'_>) -> Result<(), Fault> {
-        self.lowers |= crate::short(&came.block, self.out.dialect);
         self.held.push(Held::of(came));
         Ok(())
     }
@@ -100,13 +97,7 @@ impl<'d> Lower<'d> for Lathe<'d> {
 
     fn end(&mut self) -> Result<(), Fault> {
         let blocks: Vec<Came<'_>> = self.held.iter().map(Held::came).collect();
-        if self.lowers {
-            return Writer::new(&blocks, self.turning, &mut self.out).all();
-        }
-        for came in &blocks {
-            self.out.block(came);
-        }
-        Ok(())
+        Writer::new(&blocks, self.turning, &mut self.out).all()
     }
 
     fn written(self: Box<Self>) -> Rewriting<'d> {
@@ -136,16 +127,14 @@ struct Writer<'b, 'a, 'd> {
 
 impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
     fn new(blocks: &'b [Came<'a>], turning: &'d Turning, out: &'b mut Rewriting<'d>) -> Self {
-        out.wake();
-        let here = out.known.modal().clone();
         Self {
             dialect: out.dialect,
             turning,
             blocks,
             pass: None,
             passed: false,
-            open: !matches!(here.motion, MotionMode::Rapid(_) | MotionMode::Line(_)),
-            here,
+            open: false,
+            here: out.known.modal().clone(),
             out,
             first_blocks: rough::FirstBlocks::default(),
             unsure_feed: false,
@@ -163,6 +152,10 @@ impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
     /// Writes a block, and says which one is next.
     fn block(&mut self, at: usize) -> Result<usize, Fault> {
         let words = self.words(at);
+        if !self.out.wakes(words.block) {
+            self.out.block(&self.blocks[at]);
+            return Ok(at + 1);
+        }
         let mut drawing = Drawing::new(self.blocks, self.out, self.open || self.pass.is_some());
         if let Some(span) = drawing.first_drawn(&words) {
             let next = drawing.lines(at, span)?;

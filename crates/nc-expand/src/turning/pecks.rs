@@ -9,6 +9,7 @@
 use diagnostic::both;
 use nc_syntax::Span;
 use nc_syntax::dialect::TurningCycle;
+use toolpath::{Retreat, peck_depths, whole_pecks};
 
 use super::emit::Code;
 use super::{Spot, Writer};
@@ -123,14 +124,11 @@ impl Writer<'_, '_, '_> {
         let mut sideways = 0;
         loop {
             self.go(&mut moves, Code::Rapid, place(sideways, 0));
-            let (deep, mut reached) = (whole[down].abs(), 0);
-            while reached < deep {
-                reached = (reached + peck).min(deep);
-                self.go(&mut moves, Code::Line, place(sideways, reached));
-                if reached < deep {
-                    self.go(&mut moves, Code::Rapid, place(sideways, (reached - back).max(0)));
-                }
-            }
+            let deep = whole[down].abs() as f64;
+            let depths = peck_depths(deep, peck as f64, whole_pecks(deep / peck as f64));
+            self.strokes(&mut moves, depths, Retreat::Back { by: back as f64 }, |depth| {
+                place(sideways, depth)
+            });
             self.go(&mut moves, Code::Rapid, place(sideways, 0));
             if sideways >= whole[along].abs() {
                 break;
