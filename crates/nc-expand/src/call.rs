@@ -414,7 +414,7 @@ impl<'a> Run<'a, '_> {
         if self.in_routine() {
             return Err(within_routine());
         }
-        let Some(number) = self.out.last_q() else { return Ok(()) };
+        let Some(number) = self.out.last_q else { return Ok(()) };
         let name = self.names.id(number.to_string().as_bytes());
         self.store.learn(&self.names);
         let Some(start) = source.subroutines.get(&name).filter(|start| **start < place.statement) else {

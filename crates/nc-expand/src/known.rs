@@ -4,17 +4,15 @@
 //! for that: what it writes is read by [`Interpreter`], as it will be read once more when it is corrected, and what that
 //! does not know for certain nobody here knows.
 
-use std::ops::Range;
-
 use nc_program::modal::{Modal, MotionMode};
 use nc_program::{Interpreter, Owner, Setup};
 use nc_syntax::dialect::{Action, Dialect};
-use nc_syntax::{Block, EnvelopeFinder, Item, ItemKind, Place, Reader, Value};
+use nc_syntax::{Block, Item, ItemKind, Value};
 
 use crate::lowering::{Came, Fault, Refused};
-use crate::output::{self, From, Marks, Output};
+use crate::output::{From, Marks, Output};
 use crate::shorthand;
-use crate::{Origin, called, short};
+use crate::{called, short};
 
 /// The motion code in force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,7 +76,14 @@ impl<'d> Known<'d> {
 
     /// Reads a block that is written as it stands.
     pub(crate) fn block(&mut self, came: &Came<'_>) {
-        self.step(&came.block, &|span| (came.from.file, came.from.place(span)));
+        let Came { block, from } = came;
+        plainly(block, self.dialect, |plain| {
+            let refused = self.interpreter.step(plain).err().filter(|_| self.refused.is_none());
+            let Some(mut diagnostic) = refused.and_then(|refused| refused.into_iter().next()) else { return };
+            let within = |at: u64| at.saturating_sub(plain.offset);
+            diagnostic.span = diagnostic.span.map(|span| from.place(within(span.start)..within(span.end)));
+            self.refused = Some(Box::new(Refused { diagnostic, file: from.file }));
+        });
     }
 
     /// Reads text that stands for bytes of the source.
@@ -86,23 +91,6 @@ impl<'d> Known<'d> {
         for came in Came::all(text, self.dialect, From { exact: false, ..from }) {
             self.block(&came);
         }
-    }
-
-    /// Reads a block; `told` says where bytes of it come from.
-    fn step(&mut self, block: &Block<'_>, told: &dyn Fn(Range<u64>) -> (u16, Range<u64>)) {
-        let dialect = self.dialect;
-        plainly(block, dialect, |plain| {
-            let Err(diagnostics) = self.interpreter.step(plain) else { return };
-            let Some(mut diagnostic) = diagnostics.into_iter().next().filter(|_| self.refused.is_none())
-            else {
-                return;
-            };
-            let within = |at: u64| at.saturating_sub(plain.offset);
-            let place = diagnostic.span.take().map(|span| told(within(span.start)..within(span.end)));
-            let (file, span) = place.unzip();
-            diagnostic.span = span;
-            self.refused = Some(Box::new(Refused { diagnostic, file: file.unwrap_or_default() }));
-        });
     }
 }
 
@@ -163,18 +151,7 @@ impl<'d> Rewriting<'d> {
         if std::mem::replace(&mut self.awake, true) {
             return;
         }
-        let Output { text, segments, .. } = &self.out;
-        let mut finder = EnvelopeFinder::new(self.dialect);
-        finder.see(text);
-        let mut reader = Reader::part(text, self.dialect, finder.open(), Place::START);
-        let mut block = Block::default();
-        while reader.next(&mut block) {
-            let start = block.offset;
-            self.known.step(&block, &|span| {
-                let Origin { file, span } = output::origin(segments, &(start + span.start..start + span.end));
-                (u16::try_from(file).unwrap_or(u16::MAX), span)
-            });
-        }
+        self.out.each_block(self.dialect, |came| self.known.block(came));
     }
 
     /// True from the first block on that stands for others.

@@ -64,7 +64,7 @@ use nc_syntax::dialect::{Dialect, Macros};
 use nc_syntax::{Block, ItemKind, Reader};
 
 use lowering::{Came, Driver, Lowered};
-use output::Segment;
+use output::{From, Segment};
 pub use variables::Preset;
 
 /// Where work ends that would not.
@@ -106,7 +106,7 @@ pub struct Refusal {
 }
 
 /// A plain program.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Expanded<'a> {
     text: Cow<'a, [u8]>,
     /// Called files: name and bytes.
@@ -127,20 +127,6 @@ pub struct Origin {
     pub file: usize,
     /// Bytes of that file.
     pub span: Range<u64>,
-}
-
-impl<'a> Expanded<'a> {
-    /// A program that is plain as it is.
-    const fn plain(text: &'a [u8]) -> Self {
-        Self {
-            text: Cow::Borrowed(text),
-            files: Vec::new(),
-            segments: Vec::new(),
-            flows: false,
-            lowers: false,
-            warnings: Vec::new(),
-        }
-    }
 }
 
 impl Expanded<'_> {
@@ -222,28 +208,41 @@ pub fn expand<'a>(
     dialect: &Dialect,
     environment: &Environment<'_>,
 ) -> Result<Expanded<'a>, Refusal> {
-    let work = Work::of(text, dialect);
-    if work.flow {
-        return run::run(text, dialect, environment);
+    let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
+    let (mut runs, mut has_shorthand) = (false, false);
+    while reader.next(&mut block) {
+        // What stands behind a `%` that closes the program is not executed, whatever it would be.
+        if runs && block.items.iter().any(|item| item.kind == ItemKind::Percent) {
+            break;
+        }
+        runs |= block.acts();
+        if flows(&block, dialect) {
+            return run::run(text, dialect, environment);
+        }
+        has_shorthand |= short(&block, dialect);
     }
-    if !work.shorthand {
-        return Ok(Expanded::plain(text));
+    if !has_shorthand {
+        return Ok(Expanded { text: Cow::Borrowed(text), ..Expanded::default() });
     }
     let mut driver = Driver::new(dialect, environment.setup, text);
-    let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
+    reader = Reader::new(text, dialect);
     while reader.next(&mut block) {
-        driver.block(&Came::of(&block));
+        driver.block(&Came { from: From::of(&block), block: block.clone() });
     }
-    let Lowered { out, lowers, .. } = driver
-        .end(text.len() as u64)
-        .map_err(|fault| Refusal { diagnostics: vec![fault.diagnostic], file: None })?;
-    Ok(Expanded { text: Cow::Owned(out.text), segments: out.segments, lowers, ..Expanded::plain(text) })
+    let lowered = driver.end(text.len() as u64);
+    let Lowered { out, lowers, .. } = lowered.map_err(|fault| fault.in_files(&[]))?;
+    Ok(Expanded { text: Cow::Owned(out.text), segments: out.segments, lowers, ..Expanded::default() })
 }
 
 /// True where a block computes, jumps, calls, or has shorthand to be written out: a program that has one is not plain.
 #[must_use]
 pub fn computes(block: &Block<'_>, dialect: &Dialect) -> bool {
-    (dialect.flow.macros != Macros::None && statement::needs_work(block, dialect)) || short(block, dialect)
+    flows(block, dialect) || short(block, dialect)
+}
+
+/// True where a block computes, jumps or calls.
+fn flows(block: &Block<'_>, dialect: &Dialect) -> bool {
+    dialect.flow.macros != Macros::None && statement::needs_work(block, dialect)
 }
 
 /// True where a block has shorthand: of drawings, or a cycle of a lathe.
@@ -252,45 +251,4 @@ fn short(block: &Block<'_>, dialect: &Dialect) -> bool {
         || turning::needed(block, dialect)
         || called::needed(block, dialect)
         || returns::needed(block, dialect)
-}
-
-/// What a program asks for.
-#[derive(Clone, Copy, Default)]
-struct Work {
-    /// Some block computes, jumps or calls.
-    flow: bool,
-    /// Some block has shorthand.
-    shorthand: bool,
-}
-
-impl Work {
-    fn of(text: &[u8], dialect: &Dialect) -> Self {
-        let mut work = Self::default();
-        let may_flow = dialect.flow.macros != Macros::None;
-        let may_be_short = dialect.flow.corner_words
-            || dialect.flow.polar_words
-            || dialect.flow.called
-            || dialect.flow.return_by_m
-            || dialect.turning.is_some();
-        if !may_flow && !may_be_short {
-            return work;
-        }
-        let mut reader = Reader::new(text, dialect);
-        let mut block = Block::default();
-        let mut runs = false;
-        while reader.next(&mut block) {
-            // What stands behind a `%` that closes the program is not executed, whatever it would be.
-            let percent = block.items.iter().any(|item| item.kind == ItemKind::Percent);
-            if percent && runs {
-                break;
-            }
-            runs |= block.acts();
-            work.flow |= may_flow && statement::needs_work(&block, dialect);
-            work.shorthand |= may_be_short && short(&block, dialect);
-            if (work.flow || !may_flow) && (work.shorthand || !may_be_short) {
-                break;
-            }
-        }
-        work
-    }
 }

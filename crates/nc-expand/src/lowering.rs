@@ -10,13 +10,21 @@ use nc_syntax::{Block, Dialect, EnvelopeFinder, Item, ItemKind, Place, Reader};
 
 use crate::known::Rewriting;
 use crate::output::{From, Marks, Output, within_line};
-use crate::{called, returns, short, turning};
+use crate::{Refusal, called, returns, short, turning};
 
 /// A block that cannot be written, in a file of the source.
 #[derive(Clone, Debug)]
 pub(crate) struct Refused {
     pub(crate) diagnostic: Diagnostic,
     pub(crate) file: u16,
+}
+
+impl Refused {
+    /// The refusal of a program that has called these files.
+    pub(crate) fn in_files(self, files: &[(String, Vec<u8>)]) -> Refusal {
+        let file = usize::from(self.file).checked_sub(1).and_then(|at| files.get(at)).cloned();
+        Refusal { diagnostics: vec![self.diagnostic], file }
+    }
 }
 
 pub(crate) type Fault = Box<Refused>;
@@ -29,11 +37,6 @@ pub(crate) struct Came<'a> {
 }
 
 impl<'a> Came<'a> {
-    /// A block of the program itself.
-    pub(crate) fn of(block: &Block<'a>) -> Self {
-        Self { from: From::of(block), block: block.clone() }
-    }
-
     fn new(bytes: &'a [u8], items: Vec<Item>, from: From) -> Self {
         Self { block: Block { bytes, items, offset: from.offset, line: u64::from(from.line) }, from }
     }
@@ -84,11 +87,8 @@ pub(crate) trait Lower<'d> {
     /// What comes next stands on a line of its own.
     fn fresh_line(&mut self);
 
-    /// Nothing more comes.
-    fn end(&mut self) -> Result<(), Fault>;
-
-    /// What it has written.
-    fn written(self: Box<Self>) -> Rewriting<'d>;
+    /// Nothing more comes: what was written.
+    fn end(self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>);
 }
 
 /// Takes what comes of a program.
@@ -97,7 +97,7 @@ pub(crate) struct Driver<'d> {
     room: Box<dyn Lower<'d> + 'd>,
     marks: Marks,
     /// Bytes that came.
-    bytes: u64,
+    pub(crate) bytes: u64,
     /// So far the program itself came, byte for byte up to here.
     same_to: Option<u64>,
     /// Some block stands for others.
@@ -106,7 +106,7 @@ pub(crate) struct Driver<'d> {
     /// Behind the `%` that closes the program nothing is executed, whatever it would be.
     closed: bool,
     /// Q of the block that came last, where a lathe's cycles have it.
-    last_q: Option<i64>,
+    pub(crate) last_q: Option<i64>,
     /// Flow goes on behind it: what is wrong there is told first.
     fault: Option<Fault>,
 }
@@ -142,16 +142,6 @@ impl<'d> Driver<'d> {
             last_q: None,
             fault: None,
         }
-    }
-
-    /// Q of the block that came last.
-    pub(crate) const fn last_q(&self) -> Option<i64> {
-        self.last_q
-    }
-
-    /// How many bytes have come.
-    pub(crate) const fn bytes(&self) -> u64 {
-        self.bytes
     }
 
     /// A block as it was read.
@@ -207,9 +197,9 @@ impl<'d> Driver<'d> {
     }
 
     /// What became of it; `length`: of the program itself.
-    pub(crate) fn end(mut self, length: u64) -> Result<Lowered, Fault> {
-        let fault = self.fault.take().or_else(|| self.room.end().err());
-        let out = self.room.written().end(fault)?;
+    pub(crate) fn end(self, length: u64) -> Result<Lowered, Fault> {
+        let (out, ended) = self.room.end();
+        let out = out.end(self.fault.or(ended.err()))?;
         Ok(Lowered { out, lowers: self.lowers, same: self.same_to == Some(length) })
     }
 }

@@ -176,9 +176,8 @@ impl Output {
 
 impl Output {
     /// Its blocks, each with whom it stands for.
-    pub(crate) fn blocks<'t>(&'t self, dialect: &'t Dialect) -> Vec<Came<'t>> {
-        let (mut reader, mut block, mut came) =
-            (Reader::new(&self.text, dialect), Block::default(), Vec::new());
+    pub(crate) fn each_block(&self, dialect: &Dialect, mut take: impl FnMut(&Came<'_>)) {
+        let (mut reader, mut block) = (Reader::new(&self.text, dialect), Block::default());
         while reader.next(&mut block) {
             let end = block.offset + block.bytes.len() as u64;
             let Some(segment) = before(&self.segments, |segment| segment.flat <= block.offset) else {
@@ -191,9 +190,10 @@ impl Output {
                 line: segment.line_of(block.line),
                 ..segment.from
             };
-            came.push(Came { block: block.clone(), from });
+            let came = Came { block, from };
+            take(&came);
+            block = came.block;
         }
-        came
     }
 }
 

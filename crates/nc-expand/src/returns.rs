@@ -52,17 +52,15 @@ impl<'d> Lower<'d> for Writer<'d> {
     fn came(&mut self, came: &Came<'_>) -> Result<(), Fault> {
         let words = Words::of(came, self.dialect);
         let begins = words.actions().any(|(action, _)| matches!(action, Action::Cycle(_)));
-        let moves = self.names(&words, b"XYZ");
-        let ends = words.actions().any(|(action, _)| {
+        let moves = b"XYZ".iter().any(|letter| words.number(*letter).is_some());
+        let cancels = words.actions().any(|(action, _)| *action == Action::CycleCancel);
+        let codes = words.actions().any(|(action, _)| {
             matches!(
                 action,
-                Action::CycleCancel
-                    | Action::Rapid
-                    | Action::Line
-                    | Action::ArcClockwise
-                    | Action::ArcCounterClockwise
+                Action::Rapid | Action::Line | Action::ArcClockwise | Action::ArcCounterClockwise
             )
         });
+        let ends = cancels || codes;
         if begins {
             self.out.wake();
             return self.begin(came);
@@ -87,13 +85,6 @@ impl<'d> Lower<'d> for Writer<'d> {
         if self.cycle.is_some() && !ends && (moves || codes_between) {
             return self.again(&words);
         }
-        let cancels = words.actions().any(|(action, _)| *action == Action::CycleCancel);
-        let codes = words.actions().any(|(action, _)| {
-            matches!(
-                action,
-                Action::Rapid | Action::Line | Action::ArcClockwise | Action::ArcCounterClockwise
-            )
-        });
         self.open = (self.open || (cancels && self.cycle.is_some())) && !codes;
         if ends {
             self.cycle = None;
@@ -121,22 +112,14 @@ impl<'d> Lower<'d> for Writer<'d> {
         self.out.fresh_line();
     }
 
-    fn end(&mut self) -> Result<(), Fault> {
-        Ok(())
-    }
-
-    fn written(self: Box<Self>) -> Rewriting<'d> {
-        self.out
+    fn end(self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>) {
+        (self.out, Ok(()))
     }
 }
 
 impl<'d> Writer<'d> {
     pub(crate) const fn new(out: Rewriting<'d>) -> Self {
         Self { dialect: out.dialect, out, level: None, cycle: None, open: false }
-    }
-
-    fn names(&self, words: &Words<'_, '_>, letters: &[u8]) -> bool {
-        letters.iter().any(|letter| words.number(*letter).is_some())
     }
 
     fn length(&self, words: &Words<'_, '_>, letter: u8) -> Option<f64> {

@@ -256,7 +256,7 @@ impl<'a> Run<'a, '_> {
     }
 
     fn bounded(&self) -> Result<(), Stop> {
-        if self.out.bytes() > self.most_bytes {
+        if self.out.bytes > self.most_bytes {
             return Err(faults::too_long(self.most_bytes));
         }
         Ok(())
@@ -592,14 +592,12 @@ impl<'a> Run<'a, '_> {
         }
         warnings.extend(self.left_alone.iter().map(|(call, span)| faults::left_alone(span.clone(), call)));
         let files: Vec<_> = self.sources[1..].iter().map(|s| (s.name.clone(), s.text.to_vec())).collect();
-        let Lowered { out, lowers, same } = self.out.end(main.text.len() as u64).map_err(|fault| {
-            let file = usize::from(fault.file).checked_sub(1).and_then(|at| files.get(at)).cloned();
-            Refusal { diagnostics: vec![fault.diagnostic], file }
-        })?;
+        let Lowered { out, lowers, same } =
+            self.out.end(main.text.len() as u64).map_err(|fault| fault.in_files(&files))?;
         // Where all of it is left alone it is no other program.
         Ok(match main.text {
             Cow::Borrowed(source) if same && !lowers => {
-                Expanded { files, warnings, ..Expanded::plain(source) }
+                Expanded { text: Cow::Borrowed(source), files, warnings, ..Expanded::default() }
             }
             _ => Expanded {
                 text: Cow::Owned(out.text),

@@ -123,7 +123,7 @@ impl Words<'_, '_> {
     pub(crate) fn length(&self, letter: u8, units: Units) -> Option<f64> {
         self.number(letter).map(|(number, _)| self.lengthy(number, units))
     }
-    fn lengthy(&self, number: Number, units: Units) -> f64 {
+    pub(crate) fn lengthy(&self, number: Number, units: Units) -> f64 {
         self.dialect.numbers.length(number, units == Units::Inch).to_f64()
     }
     /// Where the words of a motion lead from where the axes stand.
@@ -233,10 +233,6 @@ impl<'d> Corners<'d> {
         self.out.wake();
     }
 
-    pub(crate) fn written(self) -> Rewriting<'d> {
-        self.out
-    }
-
     pub(crate) fn came(&mut self, came: &Came<'_>) -> Result<(), Fault> {
         let words = Words::of(came, self.dialect());
         match self.waiting.take() {
@@ -283,11 +279,14 @@ impl<'d> Corners<'d> {
         self.write(&comment, from)
     }
 
-    pub(crate) fn end(&mut self) -> Result<(), Fault> {
-        let Some(corner) = self.waiting.take() else { return Ok(()) };
-        let came = corner.block.came();
-        let words = Words::of(&came, self.dialect());
-        Err(words.refuse(corner.place, NO_NEXT, both!("nothing follows", "дальше ничего нет"), POST_IT))
+    pub(crate) fn end(self) -> (Rewriting<'d>, Result<(), Fault>) {
+        let ended = self.waiting.map_or(Ok(()), |corner| {
+            let came = corner.block.came();
+            let words = Words::of(&came, self.out.dialect);
+            let label = both!("nothing follows", "дальше ничего нет");
+            Err(words.refuse(corner.place, NO_NEXT, label, POST_IT))
+        });
+        (self.out, ended)
     }
 
     /// A block that follows no corner.

@@ -70,38 +70,29 @@ impl Writer<'_> {
                     };
                     (letter, place)
                 }
-                ItemKind::BracketCommand if called(block, self.dialect, item) == Some(Called::ArcAngle) => {
-                    let written = block.text(item.span);
-                    let value = written.iter().position(|byte| *byte == b'=').map(|at| &written[at + 1..]);
-                    let value = value.and_then(|value| std::str::from_utf8(value).ok());
-                    let Some(value) = value.and_then(|value| arguments::number(value.trim())) else {
-                        return Err(refuse(
-                            item.span,
-                            both!(
+                ItemKind::BracketCommand => {
+                    let written = std::str::from_utf8(block.text(item.span)).unwrap_or_default();
+                    let value = written.split_once('=').map(|(_, value)| value.trim());
+                    match called(block, self.dialect, item) {
+                        Some(Called::ArcAngle) => {
+                            let label = both!(
                                 "a plain number of degrees was expected",
                                 "ожидалось простое число градусов"
-                            ),
-                        ));
-                    };
-                    angle = Some((value, item.span));
-                    text.extend_from_slice(block.bytes[done..item.span.start as usize].trim_ascii_end());
-                    done = item.span.end as usize;
-                    continue;
-                }
-                ItemKind::BracketCommand if called(block, self.dialect, item) == Some(Called::Turns) => {
-                    let written = String::from_utf8_lossy(block.text(item.span)).into_owned();
-                    let count =
-                        written.split_once('=').and_then(|(_, count)| count.trim().parse::<u32>().ok());
-                    let Some(count) = count.filter(|count| *count <= 999) else {
-                        return Err(refuse(
-                            item.span,
-                            both!(
+                            );
+                            let value = value.and_then(arguments::number);
+                            angle = Some((value.ok_or_else(|| refuse(item.span, label))?, item.span));
+                        }
+                        Some(Called::Turns) => {
+                            let label = both!(
                                 "a whole number of turns up to 999 was expected",
                                 "ожидалось целое число оборотов до 999"
-                            ),
-                        ));
-                    };
-                    turns = Some((count, item.span));
+                            );
+                            let count =
+                                value.and_then(|value| value.parse().ok()).filter(|count| *count <= 999);
+                            turns = Some((count.ok_or_else(|| refuse(item.span, label))?, item.span));
+                        }
+                        _ => continue,
+                    }
                     text.extend_from_slice(block.bytes[done..item.span.start as usize].trim_ascii_end());
                     done = item.span.end as usize;
                     continue;

@@ -332,24 +332,22 @@ fn pecks(
     if let Some(last_depth) = depths.last_mut() {
         *last_depth = whole;
     }
+    let place = |depth: f64| near + inwards * depth;
     let retreat = if chips_out { Retreat::Out { clearance: ahead } } else { Retreat::Back { by: back } };
     for stroke in strokes(depths.into_iter(), retreat) {
         match stroke {
-            Stroke::In(depth) if depth == whole => {
-                moves.push(Move::Feed(bottom));
-                dwell(last, moves);
-            }
             Stroke::In(depth) => {
-                moves.push(Move::Feed(near + inwards * depth));
-                dwell(at_bottom, moves);
+                let (to, time) = if depth == whole { (bottom, last) } else { (place(depth), at_bottom) };
+                moves.push(Move::Feed(to));
+                dwell(time, moves);
             }
             Stroke::Out => {
                 moves.push(Move::Rapid(near));
                 dwell(at_start, moves);
             }
             // Never out of the hole on the way in.
-            Stroke::Again(depth) if chips_out => moves.push(Move::Rapid(near + inwards * depth)),
-            Stroke::Again(depth) => moves.push(Move::Feed(near + inwards * depth)),
+            Stroke::Again(depth) if chips_out => moves.push(Move::Rapid(place(depth))),
+            Stroke::Again(depth) => moves.push(Move::Feed(place(depth))),
         }
     }
     Ok(())

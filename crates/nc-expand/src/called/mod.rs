@@ -102,12 +102,8 @@ impl<'d> Lower<'d> for Writer<'d> {
         self.out.fresh_line();
     }
 
-    fn end(&mut self) -> Result<(), Fault> {
+    fn end(self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>) {
         self.out.end()
-    }
-
-    fn written(self: Box<Self>) -> Rewriting<'d> {
-        self.out.written()
     }
 }
 

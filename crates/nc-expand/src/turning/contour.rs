@@ -3,7 +3,6 @@
 use std::ops::RangeInclusive;
 
 use diagnostic::{Text, both};
-use nc_program::modal::Units;
 use nc_syntax::dialect::Action;
 use nc_syntax::{ItemKind, Span, Value};
 use units::math;
@@ -312,9 +311,14 @@ impl Writer<'_, '_, '_> {
         out.known.written(&words.codes(may_stand_beside), words.from);
         let fault = Drawing::new(blocks, &mut out, true).contour().err();
         let out = out.end(fault)?;
-        // Its first line, as it was drawn, is no part of it.
-        let idle = |came: &Came<'_>| Words::of(came, self.dialect).idle();
-        Ok(out.blocks(self.dialect).iter().skip_while(|came| idle(came)).map(Held::of).collect())
+        let mut drawn = Vec::new();
+        out.each_block(self.dialect, |came| {
+            // Its first line, as it was drawn, is no part of it.
+            if !drawn.is_empty() || !Words::of(came, self.dialect).idle() {
+                drawn.push(Held::of(came));
+            }
+        });
+        Ok(drawn)
     }
 
     /// The only block whose N is the number of P or Q.
@@ -450,10 +454,7 @@ impl Writer<'_, '_, '_> {
         let refuse = |label: Text| {
             Err(words.contour_fault(words.whole(), both!("an arc that cannot be", "невозможная дуга"), label))
         };
-        let value = |letter: u8| {
-            let (number, _) = words.number(letter)?;
-            Some(words.dialect.numbers.length(number, self.here.units == Units::Inch).to_f64())
-        };
+        let value = |letter: u8| words.length(letter, self.here.units);
         let centre = match (value(b'R'), value(b'I'), value(b'K')) {
             (Some(radius), None, None) => {
                 let chord = [to[0] - from[0], to[1] - from[1]];

@@ -8,7 +8,7 @@
 //! A contour's lines are drawn when its cycle reads them.
 
 use diagnostic::{Text, both};
-use nc_program::modal::{Modal, MotionMode, Units};
+use nc_program::modal::{Modal, MotionMode};
 use nc_syntax::dialect::CornerForm;
 use nc_syntax::dialect::{Action, Turning};
 use nc_syntax::{Block, Item, ItemKind, Span, Value};
@@ -264,7 +264,7 @@ impl<'w, 'b, 'a, 'd> Drawing<'w, 'b, 'a, 'd> {
             let Value::Number(number) = value else {
                 return refuse(both!("a number was expected", "ожидалось число"));
             };
-            let size = words.dialect.numbers.length(number, modal.units == Units::Inch).to_f64();
+            let size = words.lengthy(number, modal.units);
             match letter {
                 b'A' if angle_rad.is_none() => angle_rad = Some(number.to_f64().to_radians()),
                 b'R' | b'C' if corner.is_none() && size > 0.0 => {

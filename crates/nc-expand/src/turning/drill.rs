@@ -84,7 +84,8 @@ impl Writer<'_, '_, '_> {
             ));
         };
         let feed = self.feed(&words).filter(|_| !self.unsure_feed || words.number(b'F').is_some());
-        let (Some(feed), Some(out)) = (feed, feed.and_then(|feed| out_of(feed, percent))) else {
+        let of_feed = |percent: f64| feed.and_then(|feed| feed_word(feed.to_f64() * percent / 100.0, feed));
+        let (Some(back), Some(out)) = (of_feed(100.0), of_feed(percent)) else {
             return Err(words.cycle_fault(
                 span,
                 both!(
@@ -104,7 +105,6 @@ impl Writer<'_, '_, '_> {
         }
         self.go_with(&mut moves, Code::Line, hole.place(0), &out);
         // Behind the hole F holds as it was.
-        let back = [&b"F"[..], &feed_text(feed)].concat();
         self.between(&mut moves, &back);
         self.leave(moves, &words, hole);
         Ok(())
@@ -279,25 +279,11 @@ impl Writer<'_, '_, '_> {
     }
 }
 
-/// F of the way out, as a word; `None` where it would count in increments that are none.
-fn out_of(feed: Number, percent: f64) -> Option<Vec<u8>> {
-    let value = feed.to_f64() * percent / 100.0;
-    let style = if feed.has_point {
-        Style::Decimals(6)
-    } else if value.fract() == 0.0 {
-        Style::Whole
-    } else {
-        return None;
-    };
+/// F as a word, with its point or without; `None` where it would count in increments that are none.
+fn feed_word(value: f64, like: Number) -> Option<Vec<u8>> {
+    let has_point = like.has_point;
+    let style = if has_point { Style::Decimals(6) } else { Style::Whole };
     let mut text = Vec::new();
     word(&mut text, b'F', value, style)?;
-    (value > 0.0).then_some(text)
-}
-
-/// F as it was written, near enough: a number with its point or without.
-fn feed_text(feed: Number) -> Vec<u8> {
-    let mut text = Vec::new();
-    let style = if feed.has_point { Style::Decimals(6) } else { Style::Whole };
-    let _ = word(&mut text, b'F', feed.to_f64(), style);
-    text.split_off(1)
+    (value > 0.0 && (has_point || value.fract() == 0.0)).then_some(text)
 }

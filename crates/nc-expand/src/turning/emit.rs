@@ -21,6 +21,15 @@ pub(super) enum Code {
     Thread,
 }
 
+/// Which codes of a dialect they are.
+pub(super) const CODES: [(Action, Code); 5] = [
+    (Action::Rapid, Code::Rapid),
+    (Action::Line, Code::Line),
+    (Action::ArcClockwise, Code::Clockwise),
+    (Action::ArcCounterClockwise, Code::CounterClockwise),
+    (Action::Thread, Code::Thread),
+];
+
 /// The moves of one cycle on their way out.
 #[derive(Debug)]
 pub(super) struct Moves {
@@ -124,7 +133,8 @@ impl Writer<'_, '_, '_> {
         if to == moves.at && further.is_empty() {
             return;
         }
-        let mut line = self.code(code);
+        let own = CODES.iter().find(|(_, of)| *of == code);
+        let mut line = own.map_or_else(Vec::new, |(action, _)| self.row(action));
         for axis in 0..2 {
             let named = code == Code::Rapid && moves.places;
             if named || to[axis] != moves.at[axis] {
@@ -169,18 +179,6 @@ impl Writer<'_, '_, '_> {
         let parts: Vec<&[u8]> =
             [&before, &line, behind].into_iter().filter(|part| !part.is_empty()).collect();
         self.out.line(&parts.join(&b' '), from);
-    }
-
-    /// The dialect's own code.
-    fn code(&self, code: Code) -> Vec<u8> {
-        let action = match code {
-            Code::Rapid => Action::Rapid,
-            Code::Line => Action::Line,
-            Code::Clockwise => Action::ArcClockwise,
-            Code::CounterClockwise => Action::ArcCounterClockwise,
-            Code::Thread => Action::Thread,
-        };
-        self.row(&action)
     }
 
     /// The dialect's code for what is done.

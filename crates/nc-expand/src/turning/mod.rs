@@ -43,7 +43,7 @@ use crate::lowering::{Came, Fault, Held, Lower};
 use crate::shorthand::{Words, actions};
 use drawing::Drawing;
 use pass::Pass;
-use place::{diameters, ends_pass, plane, spot, standing};
+use place::{diameters, ends_pass, may_stand_beside, plane, spot, standing};
 
 /// X word and Z, in millionths of the unit.
 type Spot = [i64; 2];
@@ -95,13 +95,10 @@ impl<'d> Lower<'d> for Lathe<'d> {
         }
     }
 
-    fn end(&mut self) -> Result<(), Fault> {
+    fn end(mut self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>) {
         let blocks: Vec<Came<'_>> = self.held.iter().map(Held::came).collect();
-        Writer::new(&blocks, self.turning, &mut self.out).all()
-    }
-
-    fn written(self: Box<Self>) -> Rewriting<'d> {
-        self.out
+        let ended = Writer::new(&blocks, self.turning, &mut self.out).all();
+        (self.out, ended)
     }
 }
 
@@ -164,7 +161,8 @@ impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
             }
             return Ok(next);
         }
-        self.here = words.beside(&self.out.known);
+        let beside = self.out.known.settings(&words.codes(may_stand_beside), words.from);
+        self.here = beside.unwrap_or_else(|| self.out.known.modal().clone());
         let Some((cycle, span)) = cycle_of(&words) else {
             if self.repeats(&words) {
                 self.repeated(at)?;
@@ -204,40 +202,24 @@ impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
         match cycle {
             TurningCycle::TurnPass | TurningCycle::ThreadPass | TurningCycle::FacePass => {
                 self.first_pass(at, cycle, span)?;
-                Ok(at + 1)
-            }
-            TurningCycle::Finish => {
-                self.finish(at, span)?;
-                Ok(at + 1)
             }
             TurningCycle::RoughTurn | TurningCycle::RoughFace | TurningCycle::RoughPattern => {
-                self.rough(at, cycle, span)
+                return self.rough(at, cycle, span);
             }
             TurningCycle::FinishRoutine
             | TurningCycle::RoughTurnRoutine(_)
-            | TurningCycle::RoughFaceRoutine(_) => self.routine(at, cycle, span),
-            TurningCycle::PeckFace | TurningCycle::PeckGroove => {
-                self.pecks(at, cycle, span)?;
-                Ok(at + 1)
+            | TurningCycle::RoughFaceRoutine(_) => return self.routine(at, cycle, span),
+            TurningCycle::Finish => self.finish(at, span)?,
+            TurningCycle::PeckFace | TurningCycle::PeckGroove => self.pecks(at, cycle, span)?,
+            TurningCycle::DrillFace => self.drill(at, span)?,
+            TurningCycle::BoreFace => self.bore(at, span)?,
+            // Where K is the lead of a thread, its cycle has LinuxCNC's words.
+            TurningCycle::ThreadPasses if self.turning.thread_lead == b'K' => {
+                self.compound_thread(at, span)?;
             }
-            TurningCycle::DrillFace => {
-                self.drill(at, span)?;
-                Ok(at + 1)
-            }
-            TurningCycle::BoreFace => {
-                self.bore(at, span)?;
-                Ok(at + 1)
-            }
-            TurningCycle::ThreadPasses => {
-                // Where K is the lead of a thread, its cycle has LinuxCNC's words.
-                if self.turning.thread_lead == b'K' {
-                    self.compound_thread(at, span)?;
-                } else {
-                    self.thread(at, span)?;
-                }
-                Ok(at + 1)
-            }
+            TurningCycle::ThreadPasses => self.thread(at, span)?,
         }
+        Ok(at + 1)
     }
 
     fn words(&self, at: usize) -> Words<'b, 'a> {

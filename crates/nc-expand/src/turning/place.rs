@@ -4,9 +4,8 @@ use nc_program::modal::{Modal, Units, XWords};
 use nc_syntax::dialect::Action;
 use units::decimal::{self, Decimal};
 
-use super::emit::Code;
+use super::emit::{CODES, Code};
 use super::{AXES, MILLION, Spot};
-use crate::known::Known;
 use crate::shorthand::Words;
 
 /// Where X and Z stand, as far as the program has said.
@@ -102,22 +101,10 @@ impl Words<'_, '_> {
         let of_kind = self.actions().filter(|(action, _)| kind(action));
         of_kind.map(|(_, span)| self.block.text(span)).collect::<Vec<_>>().join(&b' ')
     }
-
-    /// What those of its codes that may stand beside a cycle make of the state.
-    pub(super) fn beside(&self, known: &Known<'_>) -> Modal {
-        known.settings(&self.codes(may_stand_beside), self.from).unwrap_or_else(|| known.modal().clone())
-    }
 }
 
-const fn motion_of(action: &Action) -> Option<Code> {
-    match action {
-        Action::Rapid => Some(Code::Rapid),
-        Action::Line => Some(Code::Line),
-        Action::ArcClockwise => Some(Code::Clockwise),
-        Action::ArcCounterClockwise => Some(Code::CounterClockwise),
-        Action::Thread => Some(Code::Thread),
-        _ => None,
-    }
+fn motion_of(action: &Action) -> Option<Code> {
+    CODES.iter().find(|(of, _)| of == action).map(|(_, code)| *code)
 }
 
 /// True for codes whose words stand beside them, and are no places.

@@ -11,7 +11,7 @@
 use std::ops::Range;
 
 use diagnostic::{Text, both};
-use nc_program::modal::{ArcCentres, FeedMode, Units};
+use nc_program::modal::{ArcCentres, FeedMode};
 use nc_syntax::dialect::{Action, TurningCycle};
 use nc_syntax::{ItemKind, Span, Value};
 
@@ -163,7 +163,6 @@ impl Writer<'_, '_, '_> {
         start: Spot,
         blocks: Range<usize>,
     ) -> Result<Vec<Segment>, Fault> {
-        let inch = self.here.units == Units::Inch;
         let (mut spot, mut motion) = (start, None);
         let (mut at, mut pieces) = (self.plane(start), Vec::new());
         for index in blocks {
@@ -216,7 +215,7 @@ impl Writer<'_, '_, '_> {
                 );
             }
             let round = if arc {
-                let radius = words.number(b'R').map(|(r, _)| words.dialect.numbers.length(r, inch).to_f64());
+                let radius = words.length(b'R', self.here.units);
                 let half = 0.5 * units::math::hypot(to[0] - at[0], to[1] - at[1]);
                 if radius.is_some_and(|radius| radius * radius - half * half < HALF_CIRCLE || radius < 0.0) {
                     return refuse(
