@@ -16,7 +16,7 @@ use toolpath::{MOST_PECKS, Plane, Retreat, Stroke, peck_depths, strokes, whole_p
 use crate::codes;
 use crate::known::Rewriting;
 use crate::lowering::{Came, Fault, Lower};
-use crate::shorthand::{AXES, Words, actions, number, shown};
+use crate::shorthand::{AXES, Words, actions, add, line_of, number, shown};
 
 /// Words that a block of a cycle may have.
 const TAKEN: Letters = Letters::of(b"FGMNPQRXYZ");
@@ -241,8 +241,7 @@ impl<'d> Writer<'d> {
         for (_, span) in
             words.actions().filter(|(action, _)| matches!(action, Action::Absolute | Action::Plane(_)))
         {
-            head.push(b' ');
-            head.extend_from_slice(block.text(span));
+            add(&mut head, block.text(span));
         }
         self.hole(words, head)
     }
@@ -278,36 +277,31 @@ impl<'d> Writer<'d> {
         let mut line = head;
         for letter in AXES.into_iter().take(2) {
             if let Some(value) = self.length(words, letter) {
-                line.push(b' ');
                 number(&mut line, letter, value);
             }
         }
         if line.len() > 2 {
             self.out.line(&line, source);
         }
-        let feed = words.number(b'F').map(|(_, span)| words.block.text(span).to_vec());
+        let feed = words.texts(b"F");
         let clearance = self.dialect.output.peck_clearance_mm / self.out.known.modal().units.mm();
         let deep = near - bottom;
         let peck = peck.unwrap_or(deep);
         let depths = peck_depths(deep, peck, whole_pecks(deep / peck));
-        let mut line = |code: &[u8], level: f64, feed: Option<&Vec<u8>>| {
-            let mut text = code.to_vec();
-            number(&mut text, b'Z', level);
-            if let Some(feed) = feed {
-                text.push(b' ');
-                text.extend_from_slice(feed);
-            }
+        let mut line = |code: &[u8], level: f64, feed: &[u8]| {
+            let mut text = line_of(code, [(b'Z', level)]);
+            add(&mut text, feed);
             self.out.line(&text, source);
         };
-        line(b"G0 ", near, None);
+        line(b"G0", near, b"");
         for stroke in strokes(depths, Retreat::Out { clearance }) {
             match stroke {
-                Stroke::In(depth) => line(b"G1 ", near - depth, feed.as_ref()),
-                Stroke::Out => line(b"G0 ", near, None),
-                Stroke::Again(depth) => line(b"G0 ", near - depth, None),
+                Stroke::In(depth) => line(b"G1", near - depth, &feed),
+                Stroke::Out => line(b"G0", near, b""),
+                Stroke::Again(depth) => line(b"G0", near - depth, b""),
             }
         }
-        line(b"G0 ", back, None);
+        line(b"G0", back, b"");
         Ok(())
     }
 

@@ -126,6 +126,14 @@ impl Words<'_, '_> {
     pub(crate) fn lengthy(&self, number: Number, units: Units) -> f64 {
         self.dialect.numbers.length(number, units == Units::Inch).to_f64()
     }
+    /// The words of some letters, as they stand.
+    pub(crate) fn texts(&self, letters: &[u8]) -> Vec<u8> {
+        let mut text = Vec::new();
+        for (_, span) in letters.iter().filter_map(|letter| self.number(*letter)) {
+            add(&mut text, self.block.text(span));
+        }
+        text
+    }
     /// Where the words of a motion lead from where the axes stand.
     pub(crate) fn end(&self, modal: &Modal) -> [Option<f64>; 3] {
         let stands = modal.places();
@@ -457,7 +465,6 @@ impl<'d> Corners<'d> {
         self.point(&mut line, shape.to);
         if round {
             for (axis, k) in [(first, 0), (second, 1)] {
-                line.push(b' ');
                 number(&mut line, b"IJK"[axis], shape.centre[k] - rounded(shape.from[k]));
             }
         }
@@ -601,12 +608,7 @@ impl<'d> Corners<'d> {
         let [first, second, _] = self.plane();
         let mut both = [(first, point[0]), (second, point[1])];
         both.sort_by_key(|(axis, _)| *axis);
-        for (at, (axis, value)) in both.into_iter().enumerate() {
-            if at > 0 {
-                line.push(b' ');
-            }
-            number(line, AXES[axis], value);
-        }
+        numbers(line, both.map(|(axis, value)| (AXES[axis], value)));
     }
 
     /// The block as a comment, then the block with `words` in place of its words of the plane, its corner and,
@@ -699,9 +701,32 @@ pub(crate) fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }
 
+/// Adds text to a line, with a blank before it where something stands.
+pub(crate) fn add(line: &mut Vec<u8>, text: &[u8]) {
+    if !text.is_empty() && line.last().is_some_and(|byte| *byte != b' ') {
+        line.push(b' ');
+    }
+    line.extend_from_slice(text);
+}
+
+/// Adds a word to a line.
 pub(crate) fn number(line: &mut Vec<u8>, letter: u8, value: f64) {
+    let mut text = Vec::new();
     // Fifteen digits hold whatever a program's own numbers make.
-    let _ = word(line, letter, value, Style::Decimals(6));
+    let _ = word(&mut text, letter, value, Style::Decimals(6));
+    add(line, &text);
+}
+
+/// Adds words to a line.
+pub(crate) fn numbers(line: &mut Vec<u8>, words: impl IntoIterator<Item = (u8, f64)>) {
+    words.into_iter().for_each(|(letter, value)| number(line, letter, value));
+}
+
+/// A code and its words.
+pub(crate) fn line_of(code: &[u8], words: impl IntoIterator<Item = (u8, f64)>) -> Vec<u8> {
+    let mut line = code.to_vec();
+    numbers(&mut line, words);
+    line
 }
 
 /// The block without its end.

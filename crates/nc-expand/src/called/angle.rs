@@ -51,11 +51,8 @@ pub(super) fn words(modal: &Modal, words: &Words<'_, '_>, degrees: f64) -> Resul
     };
     let centres = [b"IJK"[u], b"IJK"[v]];
     let has = |letters: [u8; 2]| letters.map(|letter| words.number(letter).is_some());
-    let mut line = Vec::new();
-    let mut word = |letter: u8, value: f64| {
-        line.push(b' ');
-        number(&mut line, letter, value);
-    };
+    let mut line = b" ".to_vec();
+    let mut word = |letter: u8, value: f64| number(&mut line, letter, value);
     match (has([AXES[u], AXES[v]]), has(centres)) {
         (ends, [false, false]) if ends != [false, false] => {
             let end = words.end(modal);

@@ -11,7 +11,8 @@ use super::{Writer, angle, arguments, called, dimension, names_axes};
 use crate::codes;
 use crate::known::{Motion, motion};
 use crate::lowering::{Came, Fault};
-use crate::shorthand::{AXES, Words, number, shown};
+use crate::output::{Style, word};
+use crate::shorthand::{AXES, Words, add, line_of, numbers, shown};
 
 impl Writer<'_> {
     /// `X=AC()`, `X=IC()` and `TURN=` in a block.
@@ -100,7 +101,7 @@ impl Writer<'_> {
                 _ => continue,
             };
             text.extend_from_slice(&block.bytes[done..item.span.start as usize]);
-            number(&mut text, letter, place);
+            let _ = word(&mut text, letter, place, Style::Decimals(6));
             done = item.span.end as usize;
         }
         text.extend_from_slice(&block.bytes[done..]);
@@ -220,7 +221,8 @@ impl Writer<'_> {
             )));
         }
         let all = f64::from(count) * full + rest;
-        let code: &[u8] = if clockwise { b"G2 " } else { b"G3 " };
+        let code: &[u8] = if clockwise { b"G2" } else { b"G3" };
+        let centres = [(centre_letters[0], centre[0]), (centre_letters[1], centre[1])];
         for turn in 1..=count {
             let mut line = if turn == 1 {
                 kept(plain, [AXES[u], AXES[v], AXES[n], centre_letters[0], centre_letters[1]])
@@ -228,26 +230,11 @@ impl Writer<'_> {
                 code.to_vec()
             };
             let level = h + (end[2] - h) * (f64::from(turn) * full / all);
-            number(&mut line, AXES[u], a);
-            line.push(b' ');
-            number(&mut line, AXES[v], b);
-            line.push(b' ');
-            number(&mut line, AXES[n], level);
-            for (letter, offset) in centre_letters.into_iter().zip(centre) {
-                line.push(b' ');
-                number(&mut line, letter, offset);
-            }
+            numbers(&mut line, [(AXES[u], a), (AXES[v], b), (AXES[n], level)].into_iter().chain(centres));
             self.out.line(&line, words.from)?;
         }
-        let mut line = code.to_vec();
-        for (k, axis) in [u, v, n].into_iter().enumerate() {
-            number(&mut line, AXES[axis], end[k]);
-            line.push(b' ');
-        }
-        number(&mut line, centre_letters[0], centre[0]);
-        line.push(b' ');
-        number(&mut line, centre_letters[1], centre[1]);
-        self.out.line(&line, words.from)
+        let places = [u, v, n].map(|axis| AXES[axis]).into_iter().zip(end);
+        self.out.line(&line_of(code, places.chain(centres)), words.from)
     }
 }
 
@@ -261,15 +248,14 @@ fn refuse_angle(words: &Words<'_, '_>, span: Span, label: Text) -> Fault {
     )
 }
 
-/// The words of a block but for some letters, each with a blank behind it.
+/// The words of a block but for some letters.
 fn kept(words: &Words<'_, '_>, without: [u8; 5]) -> Vec<u8> {
     let mut line = Vec::new();
     for item in &words.block.items {
         if let ItemKind::Word { letter, .. } = item.kind
             && !without.contains(&letter)
         {
-            line.extend_from_slice(words.block.text(item.span));
-            line.push(b' ');
+            add(&mut line, words.block.text(item.span));
         }
     }
     line

@@ -9,7 +9,7 @@ use super::{Writer, names_axes};
 use crate::codes;
 use crate::known::{Motion, motion};
 use crate::lowering::Fault;
-use crate::shorthand::{AXES, Words, number};
+use crate::shorthand::{AXES, Words, line_of, number};
 
 impl Writer<'_> {
     /// Feed and spindle behind a cycle that leaves them open: what the block says of them, or that it had to.
@@ -72,50 +72,27 @@ impl Writer<'_> {
         let axis = plane[2];
         let (source, letter) = (words.from, AXES[axis]);
         for step in &hole.moves {
-            let mut line = Vec::new();
-            match *step {
-                Move::Rapid(to) => {
-                    line.extend_from_slice(b"G0 ");
-                    number(&mut line, letter, to);
-                }
-                Move::Feed(to) => {
-                    line.extend_from_slice(b"G1 ");
-                    number(&mut line, letter, to);
-                }
-                Move::FeedAt(to, feed) => {
-                    line.extend_from_slice(b"G1 ");
-                    number(&mut line, letter, to);
-                    line.push(b' ');
-                    number(&mut line, b'F', feed);
-                }
-                Move::Spindle(code) => line.extend_from_slice(format!("M{code}").as_bytes()),
-                Move::Orient(angle) => {
-                    number(&mut line, b'=', angle);
-                    line.splice(0..0, *b"SPOS");
-                }
+            let line = match *step {
+                Move::Rapid(to) => line_of(b"G0", [(letter, to)]),
+                Move::Feed(to) => line_of(b"G1", [(letter, to)]),
+                Move::FeedAt(to, feed) => line_of(b"G1", [(letter, to), (b'F', feed)]),
+                Move::Spindle(code) => format!("M{code}").into_bytes(),
+                Move::Orient(angle) => [&b"SPOS"[..], &line_of(b"", [(b'=', angle)])].concat(),
                 Move::Aside(by) => {
-                    line.extend_from_slice(b"G0");
+                    let mut line = b"G0".to_vec();
                     for (axis, by) in plane.into_iter().zip(by).filter(|(_, by)| *by != 0.0) {
-                        let at = self.place(words, axis)? + by;
-                        line.push(b' ');
-                        number(&mut line, AXES[axis], at);
+                        number(&mut line, AXES[axis], self.place(words, axis)? + by);
                     }
+                    line
                 }
                 Move::Over(to) => {
-                    line.extend_from_slice(b"G0");
                     let here = self.modal().places();
-                    for axis in plane[..2].iter().filter(|axis| here[**axis] != hole_at[**axis]) {
-                        line.push(b' ');
-                        number(&mut line, AXES[*axis], hole_at[*axis].unwrap_or(f64::NAN));
-                    }
-                    line.push(b' ');
-                    number(&mut line, letter, to);
+                    let moved = plane[..2].iter().filter(|axis| here[**axis] != hole_at[**axis]);
+                    let back = moved.map(|axis| (AXES[*axis], hole_at[*axis].unwrap_or(f64::NAN)));
+                    line_of(b"G0", back.chain([(letter, to)]))
                 }
-                Move::Dwell(time) => {
-                    line.extend_from_slice(b"G4 ");
-                    number(&mut line, if time < 0.0 { b'S' } else { b'F' }, time.abs());
-                }
-            }
+                Move::Dwell(time) => line_of(b"G4", [(if time < 0.0 { b'S' } else { b'F' }, time.abs())]),
+            };
             self.out.line(&line, source)?;
         }
         Ok(())

@@ -30,7 +30,7 @@ use nc_syntax::{Block, Dialect, Item, ItemKind, Span, Value};
 use crate::codes;
 use crate::known::{Rewriting, motion};
 use crate::lowering::{Came, Fault, Lower};
-use crate::shorthand::{AXES, Corners, Words, number, shown};
+use crate::shorthand::{AXES, Corners, Words, numbers, shown};
 use crate::siemens;
 use arguments::Arguments;
 pub(crate) use arguments::number as plain_number;
@@ -322,9 +322,7 @@ impl<'d> Writer<'d> {
 
     fn point(&self, line: &mut Vec<u8>, place: [f64; 2]) {
         let [u, v, _] = self.plane();
-        number(line, AXES[u], place[0]);
-        line.push(b' ');
-        number(line, AXES[v], place[1]);
+        numbers(line, [(AXES[u], place[0]), (AXES[v], place[1])]);
     }
 }
 

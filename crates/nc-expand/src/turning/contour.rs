@@ -274,7 +274,7 @@ impl Writer<'_, '_, '_> {
             let (arc, round) = match code {
                 Code::Clockwise | Code::CounterClockwise => {
                     let arc = self.arc(&block, from_plane, to_plane, code == Code::Clockwise)?;
-                    (Some(arc), round_words(&block))
+                    (Some(arc), block.texts(b"IKR"))
                 }
                 _ => (None, Vec::new()),
             };
@@ -542,18 +542,4 @@ fn corner_fault(words: &Words<'_, '_>, span: Span) -> Fault {
 
 fn math_sqrt(square: f64) -> f64 {
     square.max(0.0).sqrt()
-}
-
-/// The words of a centre or a radius, as they stand.
-fn round_words(words: &Words<'_, '_>) -> Vec<u8> {
-    let mut text = Vec::new();
-    for letter in *b"IKR" {
-        if let Some((_, span)) = words.number(letter) {
-            if !text.is_empty() {
-                text.push(b' ');
-            }
-            text.extend_from_slice(words.block.text(span));
-        }
-    }
-    text
 }

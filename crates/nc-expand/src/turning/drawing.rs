@@ -21,8 +21,7 @@ use super::{AXES, MILLION, Spot, cycle_of};
 use crate::codes;
 use crate::known::{Known, Rewriting};
 use crate::lowering::{Came, Fault};
-use crate::output::{Style, word};
-use crate::shorthand::{Shape, Words, shown};
+use crate::shorthand::{Shape, Words, add, number, shown};
 
 /// Two lines whose directions differ by less have no certain crossing, rad.
 const PARALLEL_RAD: f64 = 1e-3;
@@ -372,8 +371,7 @@ impl<'w, 'b, 'a, 'd> Drawing<'w, 'b, 'a, 'd> {
             if corner.round {
                 let here = plane(self.out.known.modal(), self.spot(begins));
                 for (letter, k) in [(b'I', 0), (b'K', 1)] {
-                    text.push(b' ');
-                    let _ = word(&mut text, letter, centre[k] - here[k], Style::Decimals(6));
+                    number(&mut text, letter, centre[k] - here[k]);
                 }
             }
             self.out.line(&text, block.from);
@@ -386,8 +384,7 @@ impl<'w, 'b, 'a, 'd> Drawing<'w, 'b, 'a, 'd> {
     fn place(&self, text: &mut Vec<u8>, counted_from: Option<Spot>, to: Point) {
         let (to, zero) = (self.spot(to), counted_from.unwrap_or_default());
         for axis in 0..2 {
-            text.push(b' ');
-            let _ = word(text, AXES[axis], (to[axis] - zero[axis]) as f64 / MILLION, Style::Decimals(6));
+            number(text, AXES[axis], (to[axis] - zero[axis]) as f64 / MILLION);
         }
     }
 
@@ -411,20 +408,13 @@ impl<'w, 'b, 'a, 'd> Drawing<'w, 'b, 'a, 'd> {
         let is_line = of_block.actions().any(|(action, _)| *action == Action::Line);
         let kept: Vec<&[u8]> =
             block.items.iter().filter(|item| !own(item)).map(|item| block.text(item.span)).collect();
-        let (number, rest): (Vec<&[u8]>, Vec<&[u8]>) =
+        let (numbered, rest): (Vec<&[u8]>, Vec<&[u8]>) =
             kept.into_iter().partition(|text| text[0].eq_ignore_ascii_case(&b'N'));
-        let mut text = number.join(&b' ');
-        if is_line || says_line {
-            if !text.is_empty() {
-                text.push(b' ');
-            }
-            text.extend_from_slice(b"G1");
-        }
+        let mut text = numbered.join(&b' ');
+        add(&mut text, if is_line || says_line { b"G1" } else { b"" });
         self.place(&mut text, counted_from, to);
-        let mut text = text.trim_ascii().to_vec();
         for part in rest {
-            text.push(b' ');
-            text.extend_from_slice(part);
+            add(&mut text, part);
         }
         self.out.line(&text, came.from);
     }

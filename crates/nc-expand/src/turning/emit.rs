@@ -3,13 +3,13 @@
 use diagnostic::both;
 use nc_program::modal::Modal;
 use nc_syntax::dialect::Action;
-use nc_syntax::{Block, Item, ItemKind, Span, Value};
+use nc_syntax::{Item, ItemKind, Span, Value};
 
 use super::place::{may_stand_beside, millionths};
 use super::{AXES, MILLION, Spot, Writer};
 use crate::lowering::Fault;
-use crate::output::{From, Style, word};
-use crate::shorthand::{Words, shown};
+use crate::output::From;
+use crate::shorthand::{Words, add, number, shown};
 
 /// What a written move is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,15 +104,15 @@ impl Writer<'_, '_, '_> {
                 ItemKind::Word { letter: b'G', value: Value::Number(_) } => {
                     let taken = increments.is_some_and(|(_, span)| span == item.span);
                     if setting(words, item.span)? && !taken {
-                        push(&mut before, block, item.span);
+                        add(&mut before, block.text(item.span));
                     }
                 }
                 ItemKind::Word { letter: b'M', value: Value::Number(number) } => {
                     let row = number.integer().and_then(|m| words.dialect.m_code(u16::try_from(m).ok()?));
                     let late = row.is_some_and(|row| row.after_motion);
-                    push(if late { &mut behind } else { &mut before }, block, item.span);
+                    add(if late { &mut behind } else { &mut before }, block.text(item.span));
                 }
-                ItemKind::Word { letter: b'N' | b'F' | b'S', .. } => push(&mut before, block, item.span),
+                ItemKind::Word { letter: b'N' | b'F' | b'S', .. } => add(&mut before, block.text(item.span)),
                 ItemKind::Comment | ItemKind::Name => {}
                 _ => return Err(stray(words, item)),
             }
@@ -139,15 +139,11 @@ impl Writer<'_, '_, '_> {
             let named = code == Code::Rapid && moves.places;
             if named || to[axis] != moves.at[axis] {
                 let value = if moves.places { to[axis] } else { to[axis] - moves.at[axis] };
-                line.push(b' ');
                 // Millionths of a unit have six decimals.
-                let _ = word(&mut line, AXES[axis], value as f64 / MILLION, Style::Decimals(6));
+                number(&mut line, AXES[axis], value as f64 / MILLION);
             }
         }
-        if !further.is_empty() {
-            line.push(b' ');
-            line.extend_from_slice(further);
-        }
+        add(&mut line, further);
         moves.at = to;
         let last = moves.last.replace((line, moves.from));
         self.line(moves, last, false);
@@ -175,23 +171,16 @@ impl Writer<'_, '_, '_> {
     fn line(&mut self, moves: &mut Moves, line: Option<(Vec<u8>, From)>, last: bool) {
         let Some((line, from)) = line else { return };
         let behind: &[u8] = if last { &moves.behind } else { b"" };
-        let before = std::mem::take(&mut moves.before);
-        let parts: Vec<&[u8]> =
-            [&before, &line, behind].into_iter().filter(|part| !part.is_empty()).collect();
-        self.out.line(&parts.join(&b' '), from);
+        let mut text = std::mem::take(&mut moves.before);
+        add(&mut text, &line);
+        add(&mut text, behind);
+        self.out.line(&text, from);
     }
 
     /// The dialect's code for what is done.
     fn row(&self, action: &Action) -> Vec<u8> {
         self.dialect.row_of(action).map_or_else(Vec::new, |row| row.code.to_string().into_bytes())
     }
-}
-
-fn push(words: &mut Vec<u8>, block: &Block<'_>, span: Span) {
-    if !words.is_empty() {
-        words.push(b' ');
-    }
-    words.extend_from_slice(block.text(span));
 }
 
 /// True for a code beside a cycle that sets something, false for the cycle's own; what moves or owns words is refused.

@@ -199,15 +199,7 @@ impl Writer<'_, '_, '_> {
         to: Spot,
     ) -> Result<(), Fault> {
         let first = [to[0] + self.taper(pass), pass.start[1]];
-        let mut further = Vec::new();
-        for letter in *b"QE" {
-            if let Some((_, span)) = words.number(letter) {
-                if !further.is_empty() {
-                    further.push(b' ');
-                }
-                further.extend_from_slice(words.block.text(span));
-            }
-        }
+        let further = words.texts(b"QE");
         self.go(moves, Code::Rapid, first);
         self.chamfered_thread(moves, words, to, pass.start[0], &further)?;
         self.go(moves, Code::Rapid, [pass.start[0], to[1]]);

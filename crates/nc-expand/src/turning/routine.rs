@@ -22,8 +22,7 @@ use super::profile::{Misfit, Profile, Round, Segment, Stroke};
 use super::{MILLION, Spot, Writer};
 use crate::codes;
 use crate::lowering::Fault;
-use crate::output::{Style, word};
-use crate::shorthand::{Words, shown};
+use crate::shorthand::{Words, numbers, shown};
 
 /// Passes of G70; more are a wrong P.
 const MOST_PASSES: i64 = 1000;
@@ -130,9 +129,7 @@ impl Writer<'_, '_, '_> {
                     continue;
                 }
                 let here = self.plane(moves.at());
-                let _ = word(&mut round, b'I', centre[0] - here[0], Style::Decimals(6));
-                round.push(b' ');
-                let _ = word(&mut round, b'K', centre[1] - here[1], Style::Decimals(6));
+                numbers(&mut round, [(b'I', centre[0] - here[0]), (b'K', centre[1] - here[1])]);
             }
             self.go_with(&mut moves, code, to, &round);
         }
