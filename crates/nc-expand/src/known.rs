@@ -104,7 +104,7 @@ fn plainly(block: &Block<'_>, dialect: &Dialect, mut read: impl FnMut(&Block<'_>
     }
     match text {
         None => read(block),
-        Some(text) => Came::all(&text, dialect, From::of(block)).iter().for_each(|came| read(&came.block)),
+        Some(text) => Came::all(&text, dialect, From::of(block)).for_each(|came| read(&came.block)),
     }
 }
 

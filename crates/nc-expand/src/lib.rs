@@ -42,6 +42,8 @@ mod known;
 mod lowering;
 mod o_word;
 mod okuma;
+#[cfg(test)]
+mod one_reader;
 mod output;
 mod program;
 mod returns;

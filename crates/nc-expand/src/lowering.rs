@@ -42,15 +42,14 @@ impl<'a> Came<'a> {
     }
 
     /// The blocks of text that stands for something, none of them a program's name.
-    pub(crate) fn all(text: &'a [u8], dialect: &'a Dialect, from: From) -> Vec<Self> {
+    pub(crate) fn all(text: &'a [u8], dialect: &'a Dialect, from: From) -> impl Iterator<Item = Self> {
         let starts = from.exact && from.offset == 0;
         let place = Place { offset: u64::from(!starts), ..Place::START };
         let mut reader = Reader::part(text, dialect, EnvelopeFinder::new(dialect).open(), place);
-        let (mut block, mut came) = (Block::default(), Vec::new());
-        while reader.next(&mut block) {
-            came.push(Self::new(block.bytes, std::mem::take(&mut block.items), from));
-        }
-        came
+        let mut block = Block::default();
+        std::iter::from_fn(move || {
+            reader.next(&mut block).then(|| Self::new(block.bytes, std::mem::take(&mut block.items), from))
+        })
     }
 }
 
@@ -149,7 +148,7 @@ impl<'d> Driver<'d> {
         let block = &came.block;
         self.closed |= self.runs && block.items.iter().any(|item| item.kind == ItemKind::Percent);
         self.runs |= block.acts();
-        self.lowers |= !self.closed && short(block, self.dialect);
+        self.lowers = self.lowers || (!self.closed && short(block, self.dialect));
         let From { file, offset, length, exact, .. } = came.from;
         self.same_to = self.same_to.filter(|to| exact && (file, offset) == (0, *to)).map(|to| to + length);
         self.bytes += block.bytes.len() as u64;

@@ -1,7 +1,5 @@
 //! Where axes stand and what is in force, the interpreter alone says: no struct of this room keeps any of it.
 
-#![allow(missing_docs, clippy::unwrap_used)]
-
 use std::path::{Path, PathBuf};
 
 use syn::visit::{self, Visit};
