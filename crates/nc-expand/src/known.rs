@@ -184,6 +184,13 @@ impl<'d> Rewriting<'d> {
         self.known.written(bytes, from);
     }
 
+    /// The same for a block that says no more itself, once what is written out is taken from it.
+    pub(crate) fn line_of(&mut self, bytes: &[u8], came: &Came<'_>) {
+        self.wake();
+        self.out.line(bytes, came.from);
+        self.known.block(came);
+    }
+
     /// A comment on a line of its own.
     pub(crate) fn comment(&mut self, bytes: &[u8], from: From) {
         self.out.comment(bytes, from);

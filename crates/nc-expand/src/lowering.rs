@@ -70,6 +70,11 @@ impl Held {
         Came::new(&self.bytes, self.items.clone(), self.from)
     }
 
+    /// The block, for once.
+    pub(crate) fn taken(&mut self) -> Came<'_> {
+        Came::new(&self.bytes, std::mem::take(&mut self.items), self.from)
+    }
+
     /// Ends its line, where that has no end.
     pub(crate) fn end_line(&mut self, line_ending: &[u8]) {
         if within_line(&self.bytes) {

@@ -21,7 +21,7 @@ mod drill;
 mod hole;
 mod pattern;
 
-use diagnostic::both;
+use diagnostic::{Text, both};
 use nc_program::Owner;
 use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Called};
@@ -127,15 +127,12 @@ impl<'d> Writer<'d> {
             return self.behind(&words, moves, before);
         }
         if words.skipped() {
-            return Err(words.fault(
-                codes::BLOCK_DELETE,
-                words.whole(),
+            return Err(skipped(
+                &words,
                 both!(
                     "a cycle or an increment behind block delete",
                     "цикл или приращение в кадре с пропуском"
                 ),
-                both!("two programs in one", "две программы в одной"),
-                both!("remove the `/`, or the block", "уберите `/` или кадр"),
             ));
         }
         let calls: Vec<(Called, Span)> = block
@@ -292,13 +289,7 @@ impl<'d> Writer<'d> {
             return Ok(());
         }
         if at.skipped() {
-            return Err(at.fault(
-                codes::BLOCK_DELETE,
-                at.whole(),
-                both!("a hole behind block delete", "отверстие в кадре с пропуском"),
-                both!("two programs in one", "две программы в одной"),
-                both!("remove the `/`, or the block", "уберите `/` или кадр"),
-            ));
+            return Err(skipped(at, both!("a hole behind block delete", "отверстие в кадре с пропуском")));
         }
         let (motion, places) = (motion(self.modal()), self.modal().places());
         if !moves || self.plane()[..2].iter().any(|axis| places[*axis].is_none()) {
@@ -324,6 +315,17 @@ impl<'d> Writer<'d> {
         let [u, v, _] = self.plane();
         numbers(line, [(AXES[u], place[0]), (AXES[v], place[1])]);
     }
+}
+
+/// Refuses what is done or not, by a switch.
+fn skipped(words: &Words<'_, '_>, message: Text) -> Fault {
+    words.fault(
+        codes::BLOCK_DELETE,
+        words.whole(),
+        message,
+        both!("two programs in one", "две программы в одной"),
+        both!("remove the `/`, or the block", "уберите `/` или кадр"),
+    )
 }
 
 /// The block has words that a motion takes: rotary axes move too, and a full circle names its centre alone.

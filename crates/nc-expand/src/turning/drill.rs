@@ -134,13 +134,7 @@ impl Writer<'_, '_, '_> {
                 both!("leave K out", "уберите K"),
             ));
         }
-        let [Some(x), Some(target)] = self.target(words) else {
-            return refuse(
-                both!("where the cycle leads is not known", "неизвестно, куда ведёт цикл"),
-                both!("above 400 km", "больше 400 км"),
-                both!("correct X and Z", "исправьте X и Z"),
-            );
-        };
+        let [x, target] = self.known_target(words, span)?;
         if x != 0 {
             return refuse(
                 both!("a hole off the axis", "отверстие не на оси"),

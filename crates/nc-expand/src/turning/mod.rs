@@ -5,7 +5,7 @@
 //! "Canned cycle", "Multiple repetitive cycle"), and by parameters of the control, which the profile has to say
 //! ([`nc_syntax::dialect::TurningParameters`]).
 //!
-//! * [`drawing`]: corners and angles of drawings, before all else.
+//! * [`drawing`]: corners and angles of drawings, where they come and in contours.
 //! * [`pass`]: one pass there and back, repeated by each block that names a place.
 //! * [`contour`]: the blocks between P and Q as a way in the plane.
 //! * [`rough`]: passes down to a contour, and the contour itself; [`pockets`]: where it has pockets.
@@ -96,7 +96,7 @@ impl<'d> Lower<'d> for Lathe<'d> {
     }
 
     fn end(mut self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>) {
-        let blocks: Vec<Came<'_>> = self.held.iter().map(Held::came).collect();
+        let blocks: Vec<Came<'_>> = self.held.iter_mut().map(Held::taken).collect();
         let ended = Writer::new(&blocks, self.turning, &mut self.out).all();
         (self.out, ended)
     }
@@ -290,6 +290,19 @@ impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
     /// Where the words of the block in hand lead.
     fn target(&self, words: &Words<'_, '_>) -> [Option<i64>; 2] {
         words.target(&self.here, standing(self.out.known.modal()))
+    }
+
+    /// The same where it is known.
+    fn known_target(&self, words: &Words<'_, '_>, span: Span) -> Result<Spot, Fault> {
+        if let [Some(x), Some(z)] = self.target(words) {
+            return Ok([x, z]);
+        }
+        Err(words.cycle_fault(
+            span,
+            both!("where the cycle leads is not known", "неизвестно, куда ведёт цикл"),
+            both!("above 400 km", "больше 400 км"),
+            both!("correct X and Z", "исправьте X и Z"),
+        ))
     }
 
     /// A length in millionths of the unit.

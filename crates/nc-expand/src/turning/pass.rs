@@ -41,7 +41,7 @@ impl Writer<'_, '_, '_> {
         if !words.names_a_place() {
             let holds_a_place = self.passed || taper_word(&words, cycle).is_some();
             if !holds_a_place && cycle == TurningCycle::TurnPass {
-                self.idle_pass(&words);
+                self.idle_pass(at);
                 return Ok(());
             }
             return Err(words.cycle_fault(
@@ -75,7 +75,8 @@ impl Writer<'_, '_, '_> {
     ///
     /// It has no place and none is held from a pass before it, so nothing moves; and what a control might make of it all the
     /// same would come back to where the tool stands. It is left out, and which motion is in force behind it nobody knows.
-    fn idle_pass(&mut self, words: &Words<'_, '_>) {
+    fn idle_pass(&mut self, at: usize) {
+        let words = self.words(at);
         self.unsure_feed &= words.number(b'F').is_none();
         self.leave_open();
         let block = words.block;
@@ -87,7 +88,7 @@ impl Writer<'_, '_, '_> {
         let kept: Vec<&[u8]> = kept.map(|item| block.text(item.span)).collect();
         self.out.comment(shown(block), words.from);
         if !kept.is_empty() {
-            self.out.line(&kept.join(&b' '), words.from);
+            self.out.line_of(&kept.join(&b' '), &self.blocks[at]);
         }
     }
 

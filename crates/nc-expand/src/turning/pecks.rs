@@ -54,16 +54,7 @@ impl Writer<'_, '_, '_> {
                 both!("leave R out of this block", "уберите R из этого кадра"),
             ));
         }
-        let target = self.target(&words);
-        let [Some(x), Some(z)] = target else {
-            return Err(words.cycle_fault(
-                span,
-                both!("where the cycle leads is not known", "неизвестно, куда ведёт цикл"),
-                both!("above 400 km", "больше 400 км"),
-                both!("correct X and Z", "исправьте X и Z"),
-            ));
-        };
-        let to = [x, z];
+        let to = self.known_target(&words, span)?;
         let whole = [to[0] - start[0], to[1] - start[1]];
         let twice = [self.twice(), 1];
         let letters = [b'P', b'Q'];
