@@ -30,7 +30,7 @@ fn no_block_is_put_in_under_cutter_compensation() {
     let place = Place::new();
     let program = place.write("in.nc", POCKET);
     let out = place.0.path().join("out.nc").display().to_string();
-    let ran = run(&[&program, "-m", &place.machine(10.0, ""), START, "-o", &out]);
+    let ran = run(&[&program, "-m", &place.machine(10.0, ""), START, "-o", &out, "--accept", "5"]);
     assert_eq!(ran.status.code(), Some(1), "{}", messages(&ran));
     // Where Y turns first.
     assert!(messages(&ran).contains("VP0503") && messages(&ran).contains("in.nc:7:"), "{}", messages(&ran));

@@ -6,7 +6,6 @@ use std::rc::Rc;
 
 use diagnostic::{Text, both, of_system};
 use nc_syntax::dialect::{Macros, PointFree};
-use nc_syntax::{Block, Reader};
 
 use crate::codes;
 use crate::faults::{self, Stop, say, whole};
@@ -400,28 +399,22 @@ impl<'a> Run<'a, '_> {
     }
 
     /// True while the contour of a cycle is read.
-    fn in_routine(&self) -> bool {
-        self.frames.iter().any(|frame| matches!(frame.kind, CallKind::Routine(..)))
+    pub(crate) fn in_routine(&self) -> bool {
+        self.frames.iter().any(|frame| matches!(frame.kind, CallKind::Routine(_)))
     }
 
-    /// Puts the subroutine that Q of a cycle names behind its block, which the output holds from `written` on. What
-    /// is missing the cycle itself refuses.
+    /// Puts the subroutine that Q of a cycle names behind its block, which came last. What is missing the cycle itself
+    /// refuses.
     pub(crate) fn routine(
         &mut self,
         source: &Source<'a>,
         statement: &Statement,
         place: Place,
-        written: usize,
     ) -> Result<(), Stop> {
         if self.in_routine() {
             return Err(within_routine());
         }
-        let mut reader = Reader::new(&self.out.text[written..], self.dialect);
-        let (mut block, mut number) = (Block::default(), None);
-        while reader.next(&mut block) {
-            number = number.or_else(|| block.word(b'Q')?.number()?.integer());
-        }
-        let Some(number) = number else { return Ok(()) };
+        let Some(number) = self.out.last_q else { return Ok(()) };
         let name = self.names.id(number.to_string().as_bytes());
         self.store.learn(&self.names);
         let Some(start) = source.subroutines.get(&name).filter(|start| **start < place.statement) else {
@@ -429,8 +422,7 @@ impl<'a> Run<'a, '_> {
         };
         let start = Place { statement: start + 1, ..place };
         self.out.fresh_line();
-        let kind = CallKind::Routine(name, self.out.text.len() as u64);
-        self.enter(start, kind, 1, Some(&[]), statement.section, place)
+        self.enter(start, CallKind::Routine(name), 1, Some(&[]), statement.section, place)
     }
 
     /// An O-word.
@@ -449,7 +441,7 @@ impl<'a> Run<'a, '_> {
                     None => None,
                 };
                 let running = self.frames.last().map(|frame| frame.kind);
-                if let Some(CallKind::Routine(..)) = running {
+                if let Some(CallKind::Routine(_)) = running {
                     if matches!(o.word, OWord::Return(_)) {
                         return Err(within_routine());
                     }

@@ -216,7 +216,7 @@ pub(crate) fn no_return(names: &Names, kind: CallKind, macros: Macros) -> Stop {
         CallKind::Block(number) => (format!("N{number}"), "M99"),
         CallKind::Section(id, _) => (names.name(id).to_ascii_uppercase(), "its last label"),
         CallKind::Program(id) => (names.name(id).to_ascii_uppercase(), "M17"),
-        CallKind::Name(id) | CallKind::Routine(id, _) => (format!("o<{}>", names.name(id)), "`endsub`"),
+        CallKind::Name(id) | CallKind::Routine(id) => (format!("o<{}>", names.name(id)), "`endsub`"),
     };
     say(
         codes::RETURN,

@@ -6,6 +6,7 @@ use diagnostic::{Text, both};
 
 use crate::expression::Expression;
 use crate::faults::{self, Stop};
+use crate::output::From;
 use crate::program::{Found, Source};
 use crate::run::{Place, Run};
 use crate::statement::{Direction, Statement};
@@ -43,8 +44,8 @@ pub(crate) enum CallKind {
     Name(NameId),
     /// CALL BLOCK: to its last block.
     Section(NameId, u32),
-    /// A contour of a cycle, which is read and not called; where it starts in the output.
-    Routine(NameId, u64),
+    /// A contour of a cycle, which is read and not called.
+    Routine(NameId),
 }
 
 impl<'a> Run<'a, '_> {
@@ -137,7 +138,7 @@ impl<'a> Run<'a, '_> {
         }
         if matches!(
             self.frames.last().map(|frame| frame.kind),
-            Some(CallKind::Name(_) | CallKind::Routine(..))
+            Some(CallKind::Name(_) | CallKind::Routine(_))
         ) {
             return Err(faults::no_call(&both!(
                 "M99 in a subroutine that an O-word called",
@@ -172,9 +173,8 @@ impl<'a> Run<'a, '_> {
             self.frames.push(frame);
             return false;
         }
-        if let CallKind::Routine(_, from) = frame.kind {
+        if let CallKind::Routine(_) = frame.kind {
             self.out.fresh_line();
-            self.routines.push(from..self.out.text.len() as u64);
             self.previous = None;
         }
         if let Some(saved) = frame.saved {
@@ -211,7 +211,7 @@ impl<'a> Run<'a, '_> {
             CallKind::Number(_) | CallKind::Program(_) | CallKind::Block(_) | CallKind::Section(..) => {
                 (1, Some(passes))
             }
-            CallKind::Name(_) | CallKind::Routine(..) => (*count, None),
+            CallKind::Name(_) | CallKind::Routine(_) => (*count, None),
         };
         self.announce(kind, number, of, caller);
         self.frames.push(Frame {
@@ -235,7 +235,7 @@ impl<'a> Run<'a, '_> {
             CallKind::Number(program) => program.written(&self.names),
             CallKind::Block(number) => format!("N{number}"),
             CallKind::Program(id) | CallKind::Section(id, _) => self.names.name(id).to_ascii_uppercase(),
-            CallKind::Name(id) | CallKind::Routine(id, _) => format!("O<{}>", self.names.name(id)),
+            CallKind::Name(id) | CallKind::Routine(id) => format!("O<{}>", self.names.name(id)),
         };
         let text = match of {
             Some(passes) => format!("{name} CALL {number} OF {passes}"),
@@ -244,7 +244,8 @@ impl<'a> Run<'a, '_> {
         let source = Rc::clone(&self.sources[caller.file]);
         let at = (caller.statement as usize).min(source.statements.len().saturating_sub(1));
         if let Some(statement) = source.statements.get(at) {
-            let from = self.from(statement, caller);
+            let contour = matches!(kind, CallKind::Routine(_));
+            let from = From { contour, ..self.from(statement, caller) };
             self.out.comment(text.as_bytes(), from);
         }
         self.previous = None;

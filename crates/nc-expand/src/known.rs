@@ -4,14 +4,15 @@
 //! for that: what it writes is read by [`Interpreter`], as it will be read once more when it is corrected, and what that
 //! does not know for certain nobody here knows.
 
-use nc_program::modal::{Distance, Modal, MotionMode, Naming, Units};
+use nc_program::modal::{Modal, MotionMode};
 use nc_program::{Interpreter, Owner, Setup};
 use nc_syntax::dialect::{Action, Dialect};
-use nc_syntax::{Block, EnvelopeFinder, Item, ItemKind, Place, Reader, Value};
+use nc_syntax::{Block, Item, ItemKind, Value};
 
-use crate::called;
-use crate::output::{From, Output, Written};
-use crate::shorthand::{self, Fault, Words, from};
+use crate::lowering::{Came, Fault, Refused};
+use crate::output::{From, Marks, Output};
+use crate::shorthand;
+use crate::{called, short};
 
 /// The motion code in force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,57 +24,15 @@ pub(crate) enum Motion {
     None,
 }
 
-/// What shorthand needs of the state between two blocks; lengths as the words have them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct State {
-    pub(crate) motion: Motion,
-    /// First and second axis of the plane, and its normal.
-    pub(crate) plane: [usize; 3],
-    pub(crate) absolute: bool,
-    pub(crate) inch: bool,
-    /// Where the program has itself said that the axes stand.
-    pub(crate) at: [Option<f64>; 3],
-}
-
-impl State {
-    fn of(modal: &Modal) -> Self {
-        Self {
-            motion: match modal.motion {
-                _ if modal.cycle.is_some() => Motion::Cycle,
-                MotionMode::Rapid(_) => Motion::Rapid,
-                MotionMode::Line(_) | MotionMode::Thread(_) => Motion::Line,
-                MotionMode::Arc(..) | MotionMode::Curve(..) => Motion::Arc,
-                MotionMode::None | MotionMode::Undecided { .. } => Motion::None,
-            },
-            plane: modal.plane.axes(),
-            absolute: modal.distance == Distance::Absolute,
-            inch: modal.units == Units::Inch,
-            at: places(modal),
-        }
+/// Which it is.
+pub(crate) const fn motion(modal: &Modal) -> Motion {
+    match modal.motion {
+        _ if modal.cycle.is_some() => Motion::Cycle,
+        MotionMode::Rapid(_) => Motion::Rapid,
+        MotionMode::Line(_) | MotionMode::Thread(_) => Motion::Line,
+        MotionMode::Arc(..) | MotionMode::Curve(..) => Motion::Arc,
+        MotionMode::None | MotionMode::Undecided { .. } => Motion::None,
     }
-
-    /// Where the words of a motion lead from here.
-    pub(crate) fn target(&self, words: &Words<'_, '_>) -> [Option<f64>; 3] {
-        [0, 1, 2].map(|axis| match words.length(shorthand::AXES[axis], self.inch) {
-            None => self.at[axis],
-            Some(value) if self.absolute => Some(value),
-            Some(value) => self.at[axis].map(|at| at + value),
-        })
-    }
-}
-
-/// Where X, Y and Z stand, as words of the state would say it: those that the program has itself named in the frame in force.
-pub(crate) fn places(modal: &Modal) -> [Option<f64>; 3] {
-    // Behind a block that may be skipped the tool stands in one of two places.
-    let (Some(frame), None) = (&modal.frame, &modal.aside) else { return [None; 3] };
-    let stands = modal.axes.linear.map(nc_program::modal::Axis::known);
-    let program_mm = frame.to_program(stands.map(Option::unwrap_or_default));
-    [0, 1, 2].map(|axis| {
-        let known = (0..3).all(|other| frame.inverse()[axis][other] == 0.0 || stands[other].is_some());
-        let diameters = axis == 0 && modal.x_words.are_diameters(modal.distance);
-        let word = program_mm[axis] / modal.units.mm() * if diameters { 2.0 } else { 1.0 };
-        (known && modal.named[axis] == Naming::Named).then_some(word)
-    })
 }
 
 /// Reads what is written, block by block.
@@ -81,17 +40,13 @@ pub(crate) fn places(modal: &Modal) -> [Option<f64>; 3] {
 pub(crate) struct Known<'d> {
     dialect: &'d Dialect,
     interpreter: Interpreter<'d>,
-    /// Why the interpreter refused a block first, placed in the text that is written anew.
+    /// Why the interpreter refused a block first.
     refused: Option<Fault>,
 }
 
 impl<'d> Known<'d> {
-    pub(crate) fn new(dialect: &'d Dialect, setup: &'d Setup) -> Self {
+    fn new(dialect: &'d Dialect, setup: &'d Setup) -> Self {
         Self { dialect, interpreter: Interpreter::new(dialect, setup), refused: None }
-    }
-
-    pub(crate) fn state(&self) -> State {
-        State::of(self.modal())
     }
 
     pub(crate) const fn modal(&self) -> &Modal {
@@ -104,74 +59,53 @@ impl<'d> Known<'d> {
     }
 
     /// The state that the codes of a block make before it moves, and whose its axis words are; `None` where it is refused.
-    pub(crate) fn codes(&self, block: &Block<'_>) -> Option<(State, Owner)> {
-        let plain = without_shorthand(block, self.dialect);
+    pub(crate) fn codes(&self, block: &Block<'_>) -> Option<(Modal, Owner)> {
         let mut settings = None;
-        let mut take = |block: &Block<'_>| settings = self.interpreter.settings(block).ok();
-        match &plain {
-            None => take(block),
-            Some(text) => each(text, self.dialect, take),
-        }
-        settings.map(|(modal, owner)| (State::of(&modal), owner))
+        plainly(block, self.dialect, |block| settings = self.interpreter.settings(block).ok());
+        settings
     }
 
-    /// Reads a block of the source that is written as it stands.
-    pub(crate) fn block(&mut self, block: &Block<'_>) {
-        match without_shorthand(block, self.dialect) {
-            None => self.step(block, block.offset, None),
-            Some(text) => self.text(&text, block.offset, None),
+    /// What codes make of the state; `None` where they are refused.
+    pub(crate) fn settings(&self, codes: &[u8], from: From) -> Option<Modal> {
+        let mut made = Some(self.modal().clone());
+        for came in Came::all(codes, self.dialect, From { exact: false, ..from }) {
+            made = self.interpreter.settings(&came.block).ok().map(|(modal, _)| modal);
         }
+        made
+    }
+
+    /// Reads a block that is written as it stands.
+    pub(crate) fn block(&mut self, came: &Came<'_>) {
+        let Came { block, from } = came;
+        plainly(block, self.dialect, |plain| {
+            let refused = self.interpreter.step(plain).err().filter(|_| self.refused.is_none());
+            let Some(mut diagnostic) = refused.and_then(|refused| refused.into_iter().next()) else { return };
+            let within = |at: u64| at.saturating_sub(plain.offset);
+            diagnostic.span = diagnostic.span.map(|span| from.place(within(span.start)..within(span.end)));
+            self.refused = Some(Box::new(Refused { diagnostic, file: from.file }));
+        });
     }
 
     /// Reads text that stands for bytes of the source.
     pub(crate) fn written(&mut self, text: &[u8], from: From) {
-        self.text(text, from.offset, Some(from.length));
-    }
-
-    fn text(&mut self, text: &[u8], offset: u64, length: Option<u64>) {
-        let dialect = self.dialect;
-        each(text, dialect, |block| match without_shorthand(block, dialect) {
-            None => self.step(block, offset, length),
-            Some(plain) => each(&plain, dialect, |block| self.step(block, offset, length)),
-        });
-    }
-
-    /// `length`: the block stands for so many bytes at `offset`; else it is the block there.
-    fn step(&mut self, block: &Block<'_>, offset: u64, length: Option<u64>) {
-        let Err(diagnostics) = self.interpreter.step(block) else { return };
-        if self.refused.is_some() {
-            return;
+        for came in Came::all(text, self.dialect, From { exact: false, ..from }) {
+            self.block(&came);
         }
-        self.refused = diagnostics.into_iter().next().map(|mut diagnostic| {
-            let within = |at: u64| offset + at.saturating_sub(block.offset);
-            diagnostic.span = diagnostic.span.map(|span| match length {
-                Some(length) => offset..offset + length,
-                None => within(span.start)..within(span.end),
-            });
-            Box::new(diagnostic)
-        });
-    }
-}
-
-/// The blocks of text that was written, none of them a program's name.
-fn each(text: &[u8], dialect: &Dialect, mut read: impl FnMut(&Block<'_>)) {
-    let place = Place { offset: 1, ..Place::START };
-    let mut reader = Reader::part(text, dialect, EnvelopeFinder::new(dialect).open(), place);
-    let mut block = Block::default();
-    while reader.next(&mut block) {
-        read(&block);
     }
 }
 
 /// The block with blanks in place of what is written out later, and of what is asked for before it is: corners, polar words,
-/// calls by name, cycles of lathes. `None` where it has nothing of the kind.
-fn without_shorthand(block: &Block<'_>, dialect: &Dialect) -> Option<Vec<u8>> {
+/// calls by name, cycles of lathes.
+fn plainly(block: &Block<'_>, dialect: &Dialect, mut read: impl FnMut(&Block<'_>)) {
     let mut text: Option<Vec<u8>> = None;
     for item in block.items.iter().filter(|item| is_shorthand(block, item, dialect)) {
         let bytes = text.get_or_insert_with(|| block.bytes.to_vec());
         bytes[item.span.start as usize..item.span.end as usize].fill(b' ');
     }
-    text
+    match text {
+        None => read(block),
+        Some(text) => Came::all(&text, dialect, From::of(block)).for_each(|came| read(&came.block)),
+    }
 }
 
 fn is_shorthand(block: &Block<'_>, item: &Item, dialect: &Dialect) -> bool {
@@ -191,51 +125,70 @@ fn is_shorthand(block: &Block<'_>, item: &Item, dialect: &Dialect) -> bool {
     }
 }
 
-/// A text on its way out, read as it is written.
+/// A text on its way out, read as it is written once somebody asks.
+#[derive(Debug)]
 pub(crate) struct Rewriting<'d> {
+    pub(crate) dialect: &'d Dialect,
+    pub(crate) marks: Marks,
     out: Output,
     pub(crate) known: Known<'d>,
-    #[cfg(test)]
-    pub(crate) beliefs: Vec<crate::agreement::Belief>,
+    /// What is known counts: before, nothing was asked.
+    awake: bool,
 }
 
 impl<'d> Rewriting<'d> {
-    pub(crate) fn new(dialect: &'d Dialect, setup: &'d Setup, source: &[u8]) -> Self {
-        Self {
-            out: Output::new(dialect, source),
-            known: Known::new(dialect, setup),
-            #[cfg(test)]
-            beliefs: Vec::new(),
-        }
+    pub(crate) fn new(dialect: &'d Dialect, setup: &'d Setup, marks: Marks) -> Self {
+        Self { dialect, marks, out: Output::new(marks), known: Known::new(dialect, setup), awake: false }
     }
 
-    /// Where the text ends so far.
-    #[cfg(test)]
-    pub(crate) fn length(&self) -> u64 {
-        self.out.text.len() as u64
+    /// Another text from here on, of which the same is known.
+    pub(crate) fn ahead(&self) -> Self {
+        Self { out: Output::new(self.marks), known: self.known.clone(), ..*self }
+    }
+
+    /// Reads what is written so far, and from here on whatever is.
+    pub(crate) fn wake(&mut self) {
+        if std::mem::replace(&mut self.awake, true) {
+            return;
+        }
+        self.out.each_block(self.dialect, |came| self.known.block(came));
+    }
+
+    /// True from the first block on that stands for others.
+    pub(crate) fn wakes(&mut self, block: &Block<'_>) -> bool {
+        if !self.awake && short(block, self.dialect) {
+            self.wake();
+        }
+        self.awake
     }
 
     /// A block as it is.
-    pub(crate) fn block(&mut self, block: &Block<'_>) {
-        self.out.copy(block.bytes, from(block));
-        self.known.block(block);
-    }
-
-    /// A block as it is, which stands for what another step writes.
-    pub(crate) fn unread(&mut self, block: &Block<'_>) {
-        self.out.copy(block.bytes, from(block));
+    pub(crate) fn block(&mut self, came: &Came<'_>) {
+        self.out.copy(came.block.bytes, came.from);
+        if self.awake {
+            self.known.block(came);
+        }
     }
 
     /// Bytes that stand for a stretch of the source.
     pub(crate) fn write(&mut self, bytes: &[u8], from: From) {
+        self.wake();
         self.out.write(bytes, from);
         self.known.written(bytes, from);
     }
 
     /// A line of its own that stands for a stretch of the source.
     pub(crate) fn line(&mut self, bytes: &[u8], from: From) {
+        self.wake();
         self.out.line(bytes, from);
         self.known.written(bytes, from);
+    }
+
+    /// The same for a block that says no more itself, once what is written out is taken from it.
+    pub(crate) fn line_of(&mut self, bytes: &[u8], came: &Came<'_>) {
+        self.wake();
+        self.out.line(bytes, came.from);
+        self.known.block(came);
     }
 
     /// A comment on a line of its own.
@@ -250,16 +203,10 @@ impl<'d> Rewriting<'d> {
 
     /// The text and where each stretch of it comes from. Where the program is refused for a block before the `fault`, it is
     /// for that one: what is not known behind it would be blamed on its followers.
-    pub(crate) fn end(self, fault: Option<Fault>) -> Result<Written, Fault> {
-        match (fault, self.known.refused) {
-            (None, _) => Ok(Written {
-                text: self.out.text,
-                segments: self.out.segments,
-                #[cfg(test)]
-                beliefs: self.beliefs,
-            }),
-            (Some(_), Some(refused)) => Err(refused),
-            (Some(fault), None) => Err(fault),
+    pub(crate) fn end(self, fault: Option<Fault>) -> Result<Output, Fault> {
+        match fault {
+            None => Ok(self.out),
+            Some(fault) => Err(self.known.refused.unwrap_or(fault)),
         }
     }
 }

@@ -30,8 +30,6 @@
 //! empty. A value that is unknown may be assigned and passed on; only its use in a word or a condition is
 //! refused, naming the variable it came from.
 
-#[cfg(test)]
-mod agreement;
 mod call;
 mod called;
 pub mod codes;
@@ -41,8 +39,11 @@ mod faults;
 mod flow;
 mod jump;
 mod known;
+mod lowering;
 mod o_word;
 mod okuma;
+#[cfg(test)]
+mod one_reader;
 mod output;
 mod program;
 mod returns;
@@ -64,7 +65,8 @@ use nc_program::Setup;
 use nc_syntax::dialect::{Dialect, Macros};
 use nc_syntax::{Block, ItemKind, Reader};
 
-use output::{Segment, Written};
+use lowering::{Came, Driver, Lowered};
+use output::{From, Segment};
 pub use variables::Preset;
 
 /// Where work ends that would not.
@@ -106,21 +108,18 @@ pub struct Refusal {
 }
 
 /// A plain program.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Expanded<'a> {
     text: Cow<'a, [u8]>,
     /// Called files: name and bytes.
     files: Vec<(String, Vec<u8>)>,
-    /// From the source to the program without flow; `None` where it has none.
-    flow: Option<Vec<Segment>>,
-    /// From there to the program without corners, angles of a lathe's drawing, polar words and called cycles, step by step.
-    shorthand: Vec<Vec<Segment>>,
+    /// Where each stretch of it comes from; none where it is the source.
+    segments: Vec<Segment>,
+    /// The program had flow.
+    flows: bool,
+    /// It had shorthand.
+    lowers: bool,
     warnings: Vec<Diagnostic>,
-    /// What each step took for granted: of the flow first, then of each shorthand.
-    #[cfg(test)]
-    beliefs: Vec<Vec<agreement::Belief>>,
-    /// Bytes of the program without flow that are contours of cycles.
-    routines: Vec<Range<u64>>,
 }
 
 /// A place in a source file.
@@ -160,7 +159,7 @@ impl Expanded<'_> {
     /// What was done, for the comment in the output.
     #[must_use]
     pub const fn what(&self) -> &'static str {
-        match (self.flow.is_some(), !self.shorthand.is_empty()) {
+        match (self.flows, self.lowers) {
             (false, false) => "",
             (true, false) => "PROGRAM FLOW EXPANDED",
             (false, true) => "SHORTHAND WRITTEN OUT",
@@ -172,37 +171,17 @@ impl Expanded<'_> {
     /// they stand for.
     #[must_use]
     pub fn origin(&self, span: &Range<u64>) -> Origin {
-        let mut origin = Origin { file: 0, span: span.clone() };
-        for segments in self.shorthand.iter().rev().chain(&self.flow) {
-            origin = output::origin(segments, &origin.span);
+        if self.changed() {
+            output::origin(&self.segments, span)
+        } else {
+            Origin { file: 0, span: span.clone() }
         }
-        origin
     }
 
     /// The line of the source that a line of the plain program comes from, with its file.
     #[must_use]
     pub fn source_line(&self, line: u64) -> (usize, u64) {
-        let mut place = (0, line);
-        for segments in self.shorthand.iter().rev().chain(&self.flow) {
-            place = output::source_line(segments, place.1);
-        }
-        place
-    }
-
-    /// Takes over what a step has written.
-    fn take(&mut self, written: Written) {
-        self.text = Cow::Owned(written.text);
-        self.shorthand.push(written.segments);
-        #[cfg(test)]
-        self.beliefs.push(written.beliefs);
-    }
-
-    /// A program that cannot be written out, by what is wrong with its plain text.
-    fn refusal(&self, fault: Diagnostic) -> Refusal {
-        let settled = self.settle(vec![fault]);
-        let (file, diagnostics) = settled.into_iter().next().unwrap_or_default();
-        let file = self.file(file).map(|(name, text)| (name.to_owned(), text.to_vec()));
-        Refusal { diagnostics, file }
+        output::source_line(&self.segments, line)
     }
 
     /// Puts the places of diagnostics about the plain program into the source files: by file, in order.
@@ -231,51 +210,41 @@ pub fn expand<'a>(
     dialect: &Dialect,
     environment: &Environment<'_>,
 ) -> Result<Expanded<'a>, Refusal> {
-    let work = Work::of(text, dialect);
-    let plain = Expanded {
-        text: Cow::Borrowed(text),
-        files: Vec::new(),
-        flow: None,
-        shorthand: Vec::new(),
-        warnings: Vec::new(),
-        #[cfg(test)]
-        beliefs: vec![Vec::new()],
-        routines: Vec::new(),
-    };
-    let setup = environment.setup;
-    let mut expanded = if work.flow { run::run(text, dialect, environment)? } else { plain };
-    if work.shorthand || (work.flow && Work::of(&expanded.text, dialect).shorthand) {
-        if dialect.turning.is_some() {
-            let drawn = turning::draw(&expanded.text, dialect, setup);
-            if let Some(drawn) = drawn.map_err(|fault| expanded.refusal(*fault))? {
-                expanded.take(drawn);
-            }
-            let written = turning::write_out(&expanded.text, dialect, setup, &expanded.routines);
-            expanded.take(written.map_err(|fault| expanded.refusal(*fault))?);
-            return Ok(expanded);
+    let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
+    let (mut runs, mut has_shorthand) = (false, false);
+    while reader.next(&mut block) {
+        // What stands behind a `%` that closes the program is not executed, whatever it would be.
+        if runs && block.items.iter().any(|item| item.kind == ItemKind::Percent) {
+            break;
         }
-        let steps: &[WriteOut] = if dialect.flow.called {
-            &[called::write_out, shorthand::write_out]
-        } else if dialect.flow.return_by_m {
-            &[returns::write_out]
-        } else {
-            &[shorthand::write_out]
-        };
-        for write_out in steps {
-            let written = write_out(&expanded.text, dialect, setup);
-            expanded.take(written.map_err(|fault| expanded.refusal(*fault))?);
+        runs |= block.acts();
+        if flows(&block, dialect) {
+            return run::run(text, dialect, environment);
         }
+        has_shorthand |= short(&block, dialect);
     }
-    Ok(expanded)
+    if !has_shorthand {
+        return Ok(Expanded { text: Cow::Borrowed(text), ..Expanded::default() });
+    }
+    let mut driver = Driver::new(dialect, environment.setup, text);
+    reader = Reader::new(text, dialect);
+    while reader.next(&mut block) {
+        driver.block(&Came { from: From::of(&block), block: block.clone() });
+    }
+    let lowered = driver.end(text.len() as u64);
+    let Lowered { out, lowers, .. } = lowered.map_err(|fault| fault.in_files(&[]))?;
+    Ok(Expanded { text: Cow::Owned(out.text), segments: out.segments, lowers, ..Expanded::default() })
 }
-
-/// Writes some kind of shorthand out: the plain text, and where each stretch of it comes from.
-type WriteOut = fn(&[u8], &Dialect, &Setup) -> Result<Written, Box<Diagnostic>>;
 
 /// True where a block computes, jumps, calls, or has shorthand to be written out: a program that has one is not plain.
 #[must_use]
 pub fn computes(block: &Block<'_>, dialect: &Dialect) -> bool {
-    (dialect.flow.macros != Macros::None && statement::needs_work(block, dialect)) || short(block, dialect)
+    flows(block, dialect) || short(block, dialect)
+}
+
+/// True where a block computes, jumps or calls.
+fn flows(block: &Block<'_>, dialect: &Dialect) -> bool {
+    dialect.flow.macros != Macros::None && statement::needs_work(block, dialect)
 }
 
 /// True where a block has shorthand: of drawings, or a cycle of a lathe.
@@ -284,45 +253,4 @@ fn short(block: &Block<'_>, dialect: &Dialect) -> bool {
         || turning::needed(block, dialect)
         || called::needed(block, dialect)
         || returns::needed(block, dialect)
-}
-
-/// What a program asks for.
-#[derive(Clone, Copy, Default)]
-struct Work {
-    /// Some block computes, jumps or calls.
-    flow: bool,
-    /// Some block has shorthand.
-    shorthand: bool,
-}
-
-impl Work {
-    fn of(text: &[u8], dialect: &Dialect) -> Self {
-        let mut work = Self::default();
-        let may_flow = dialect.flow.macros != Macros::None;
-        let may_be_short = dialect.flow.corner_words
-            || dialect.flow.polar_words
-            || dialect.flow.called
-            || dialect.flow.return_by_m
-            || dialect.turning.is_some();
-        if !may_flow && !may_be_short {
-            return work;
-        }
-        let mut reader = Reader::new(text, dialect);
-        let mut block = Block::default();
-        let mut runs = false;
-        while reader.next(&mut block) {
-            // What stands behind a `%` that closes the program is not executed, whatever it would be.
-            let percent = block.items.iter().any(|item| item.kind == ItemKind::Percent);
-            if percent && runs {
-                break;
-            }
-            runs |= block.acts();
-            work.flow |= may_flow && statement::needs_work(&block, dialect);
-            work.shorthand |= may_be_short && short(&block, dialect);
-            if (work.flow || !may_flow) && (work.shorthand || !may_be_short) {
-                break;
-            }
-        }
-        work
-    }
 }

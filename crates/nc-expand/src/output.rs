@@ -3,36 +3,20 @@
 use std::ops::Range;
 
 use nc_syntax::dialect::{Paren, Semicolon};
-use nc_syntax::{Dialect, line_ending, line_ends};
+use nc_syntax::{Block, Dialect, Reader, line_ending, line_ends};
 use units::decimal::{self, Spelling};
 
 use crate::Origin;
+use crate::lowering::Came;
 
 /// A stretch of the flat text.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment {
     /// Where it starts.
     pub(crate) flat: u64,
-    /// Where it comes from.
-    pub(crate) source: u64,
-    /// Bytes of the source.
-    pub(crate) length: u64,
-    pub(crate) line: u32,
     /// Line of the flat text, from 1.
     pub(crate) flat_line: u32,
-    pub(crate) file: u16,
-    /// Byte for byte the same.
-    pub(crate) exact: bool,
-}
-
-/// A text that one step has written.
-#[derive(Debug)]
-pub(crate) struct Written {
-    pub(crate) text: Vec<u8>,
-    /// Where each stretch of it comes from.
-    pub(crate) segments: Vec<Segment>,
-    #[cfg(test)]
-    pub(crate) beliefs: Vec<crate::agreement::Belief>,
+    pub(crate) from: From,
 }
 
 /// Where a stretch comes from.
@@ -42,23 +26,47 @@ pub(crate) struct From {
     pub(crate) offset: u64,
     pub(crate) length: u64,
     pub(crate) line: u32,
+    /// Byte for byte the same: else it stands for all of the stretch.
+    pub(crate) exact: bool,
+    /// It is a block of a cycle's contour.
+    pub(crate) contour: bool,
 }
 
-/// Writes the flat text.
-#[derive(Debug)]
-pub(crate) struct Output {
-    pub(crate) text: Vec<u8>,
-    pub(crate) segments: Vec<Segment>,
-    line_ending: &'static [u8],
+impl From {
+    /// A block of the program itself.
+    pub(crate) fn of(block: &Block<'_>) -> Self {
+        Self {
+            file: 0,
+            offset: block.offset,
+            length: block.bytes.len() as u64,
+            line: u32::try_from(block.line).unwrap_or(u32::MAX),
+            exact: true,
+            contour: false,
+        }
+    }
+
+    /// Where bytes that stand at `within` of what comes from here are of the source.
+    pub(crate) fn place(&self, within: Range<u64>) -> Range<u64> {
+        let end = self.offset + self.length;
+        if !self.exact {
+            return self.offset..end;
+        }
+        let shift = |at: u64| (self.offset + at).min(end);
+        shift(within.start)..shift(within.end.max(within.start))
+    }
+}
+
+/// How lines are ended and comments written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Marks {
+    pub(crate) line_ending: &'static [u8],
     open: &'static [u8],
     close: &'static [u8],
     longest: usize,
-    /// Line ends written.
-    lines: u32,
 }
 
-impl Output {
-    pub(crate) fn new(dialect: &Dialect, source: &[u8]) -> Self {
+impl Marks {
+    pub(crate) fn of(dialect: &Dialect, source: &[u8]) -> Self {
         let (open, close): (&[u8], &[u8]) = if matches!(dialect.paren, Paren::Comment { .. }) {
             (b"(", b")")
         } else if dialect.semicolon == Semicolon::Comment {
@@ -66,61 +74,90 @@ impl Output {
         } else {
             (b"", b"")
         };
-        Self {
-            text: Vec::with_capacity(source.len() + 256),
-            segments: Vec::new(),
-            line_ending: line_ending(source),
-            open,
-            close,
-            longest: dialect.output.max_block_bytes as usize,
-            lines: 0,
-        }
+        let longest = dialect.output.max_block_bytes as usize;
+        Self { line_ending: line_ending(source), open, close, longest }
     }
 
-    fn segment(&mut self, from: From, exact: bool) {
+    /// A comment on a line of its own; `None` where the dialect has no comments.
+    ///
+    /// Marks that would end it, or start something in some control, are replaced.
+    pub(crate) fn comment(&self, bytes: &[u8]) -> Option<Vec<u8>> {
+        let start = bytes.iter().position(|byte| *byte > b' ').unwrap_or(bytes.len());
+        let bytes = bytes[start..].trim_ascii_end();
+        if self.open.is_empty() || bytes.is_empty() {
+            return None;
+        }
+        let around = self.open.len() + self.close.len();
+        let room = if self.longest == 0 { usize::MAX } else { self.longest - around };
+        let shown = bytes.iter().take(room).map(|byte| match byte {
+            b'(' | b'{' => b'[',
+            b')' | b'}' => b']',
+            b'%' | b':' | b';' => b'-',
+            byte if *byte < b' ' || *byte == 0x7F => b' ',
+            byte => *byte,
+        });
+        Some([self.open, &shown.collect::<Vec<u8>>(), self.close, self.line_ending].concat())
+    }
+}
+
+/// True where text does not stand at the start of a line.
+pub(crate) fn within_line(text: &[u8]) -> bool {
+    text.last().is_some_and(|byte| !matches!(byte, b'\n' | b'\r'))
+}
+
+/// Writes the flat text.
+#[derive(Debug)]
+pub(crate) struct Output {
+    pub(crate) text: Vec<u8>,
+    pub(crate) segments: Vec<Segment>,
+    marks: Marks,
+    /// Line ends written.
+    lines: u32,
+}
+
+impl Output {
+    pub(crate) const fn new(marks: Marks) -> Self {
+        Self { text: Vec::new(), segments: Vec::new(), marks, lines: 0 }
+    }
+
+    fn segment(&mut self, from: From) {
         let flat = self.text.len() as u64;
-        if let Some(last) = self.segments.last_mut() {
-            let follows = last.source + (flat - last.flat) == from.offset;
-            if exact
-                && last.exact
-                && last.file == from.file
-                && follows
-                && last.source + last.length == from.offset
-            {
-                last.length += from.length;
-                return;
-            }
+        if let Some(Segment { flat: start, from: last, .. }) = self.segments.last_mut()
+            && (from.exact && last.exact && last.file == from.file)
+            && last.offset + (flat - *start) == from.offset
+            && last.offset + last.length == from.offset
+        {
+            last.length += from.length;
+            return;
         }
-        let From { file, offset, length, line } = from;
-        let flat_line = self.lines + 1;
-        self.segments.push(Segment { flat, source: offset, length, line, flat_line, file, exact });
+        self.segments.push(Segment { flat, flat_line: self.lines + 1, from });
     }
 
-    /// Bytes as they are.
+    /// Bytes as they come.
     pub(crate) fn copy(&mut self, bytes: &[u8], from: From) {
-        self.segment(from, true);
+        self.segment(from);
         self.push(bytes);
     }
 
     /// Bytes that stand for a stretch of the source.
     pub(crate) fn write(&mut self, bytes: &[u8], from: From) {
-        self.segment(from, false);
+        self.segment(From { exact: false, ..from });
         self.push(bytes);
     }
 
     /// Starts a new line unless one was just started.
     pub(crate) fn fresh_line(&mut self) {
-        if self.text.last().is_some_and(|byte| !matches!(byte, b'\n' | b'\r')) {
-            self.push(self.line_ending);
+        if within_line(&self.text) {
+            self.push(self.marks.line_ending);
         }
     }
 
     /// A line of its own that stands for a stretch of the source.
     pub(crate) fn line(&mut self, bytes: &[u8], from: From) {
         self.fresh_line();
-        self.segment(from, false);
+        self.segment(From { exact: false, ..from });
         self.push(bytes);
-        self.push(self.line_ending);
+        self.push(self.marks.line_ending);
     }
 
     fn push(&mut self, bytes: &[u8]) {
@@ -129,31 +166,48 @@ impl Output {
     }
 
     /// A comment on a line of its own. Nothing where the dialect has no comments.
-    ///
-    /// Marks that would end it, or start something in some control, are replaced.
     pub(crate) fn comment(&mut self, bytes: &[u8], from: From) {
-        if self.open.is_empty() {
-            return;
+        if let Some(comment) = self.marks.comment(bytes) {
+            self.fresh_line();
+            self.write(&comment, from);
         }
-        let start = bytes.iter().position(|byte| *byte > b' ').unwrap_or(bytes.len());
-        let bytes = bytes[start..].trim_ascii_end();
-        if bytes.is_empty() {
-            return;
+    }
+}
+
+impl Output {
+    /// Its blocks, each with whom it stands for.
+    pub(crate) fn each_block(&self, dialect: &Dialect, mut take: impl FnMut(&Came<'_>)) {
+        let (mut reader, mut block) = (Reader::new(&self.text, dialect), Block::default());
+        while reader.next(&mut block) {
+            let end = block.offset + block.bytes.len() as u64;
+            let Some(segment) = before(&self.segments, |segment| segment.flat <= block.offset) else {
+                continue;
+            };
+            let span = segment.place(&(block.offset..end));
+            let from = From {
+                offset: span.start,
+                length: span.end - span.start,
+                line: segment.line_of(block.line),
+                ..segment.from
+            };
+            let came = Came { block, from };
+            take(&came);
+            block = came.block;
         }
-        self.fresh_line();
-        self.segment(from, false);
-        self.text.extend_from_slice(self.open);
-        let room =
-            if self.longest == 0 { usize::MAX } else { self.longest - self.open.len() - self.close.len() };
-        self.text.extend(bytes.iter().take(room).map(|byte| match byte {
-            b'(' | b'{' => b'[',
-            b')' | b'}' => b']',
-            b'%' | b':' | b';' => b'-',
-            byte if *byte < b' ' || *byte == 0x7F => b' ',
-            byte => *byte,
-        }));
-        self.text.extend_from_slice(self.close);
-        self.push(self.line_ending);
+    }
+}
+
+impl Segment {
+    /// Where bytes of it come from.
+    fn place(&self, span: &Range<u64>) -> Range<u64> {
+        self.from.place(span.start - self.flat..span.end.saturating_sub(self.flat))
+    }
+
+    /// The line that one of its lines comes from.
+    fn line_of(&self, line: u64) -> u32 {
+        let below = line.saturating_sub(u64::from(self.flat_line));
+        let below = if self.from.exact { u32::try_from(below).unwrap_or(u32::MAX) } else { 0 };
+        self.from.line.saturating_add(below)
     }
 }
 
@@ -163,29 +217,17 @@ fn before(segments: &[Segment], key: impl Fn(&Segment) -> bool) -> Option<&Segme
 
 /// Where bytes of the flat text come from.
 pub(crate) fn origin(segments: &[Segment], span: &Range<u64>) -> Origin {
-    let Some(segment) = before(segments, |segment| segment.flat <= span.start) else {
-        return Origin { file: 0, span: 0..0 };
-    };
-    let end = segment.source + segment.length;
-    let span = if segment.exact {
-        let shift = |at: u64| (segment.source + (at - segment.flat)).min(end);
-        shift(span.start)..shift(span.end.max(span.start))
-    } else {
-        segment.source..end
-    };
-    Origin { file: usize::from(segment.file), span }
+    let segment = before(segments, |segment| segment.flat <= span.start);
+    segment.map_or(Origin { file: 0, span: 0..0 }, |segment| Origin {
+        file: usize::from(segment.from.file),
+        span: segment.place(span),
+    })
 }
 
 /// File and line that a line of the flat text comes from.
 pub(crate) fn source_line(segments: &[Segment], line: u64) -> (usize, u64) {
-    match before(segments, |segment| u64::from(segment.flat_line) <= line) {
-        Some(segment) if segment.exact => {
-            let below = line.saturating_sub(u64::from(segment.flat_line));
-            (usize::from(segment.file), u64::from(segment.line) + below)
-        }
-        Some(segment) => (usize::from(segment.file), u64::from(segment.line)),
-        None => (0, line),
-    }
+    let segment = before(segments, |segment| u64::from(segment.flat_line) <= line);
+    segment.map_or((0, line), |segment| (usize::from(segment.from.file), u64::from(segment.line_of(line))))
 }
 
 /// How the number of a word is written.

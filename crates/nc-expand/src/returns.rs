@@ -9,41 +9,21 @@
 //! back to what is drilled less a clearance), rapid to the level. The numbers written have 6 decimals.
 
 use diagnostic::{Text, both};
-use nc_program::Setup;
 use nc_syntax::dialect::{Action, CycleCode};
-use nc_syntax::{Block, Dialect, ItemKind, Letters, Reader, Span, Value};
+use nc_syntax::{Block, Dialect, ItemKind, Letters, Span, Value};
+use toolpath::{MOST_PECKS, Plane, Retreat, Stroke, peck_depths, strokes, whole_pecks};
 
 use crate::codes;
 use crate::known::Rewriting;
-use crate::output::Written;
-use crate::shorthand::{AXES, Fault, Words, from, number, shown};
+use crate::lowering::{Came, Fault, Lower};
+use crate::shorthand::{AXES, Words, actions, add, line_of, number, shown};
 
-/// Pecks of one hole; more are a wrong depth.
-const MOST_PECKS: f64 = 2_000.0;
-/// A peck below this is none: the last bits of a sum, in units of the program.
-const NOTHING: f64 = 1e-9;
 /// Words that a block of a cycle may have.
 const TAKEN: Letters = Letters::of(b"FGMNPQRXYZ");
 
 /// True where the block has a cycle that this dialect writes out.
 pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
-    dialect.flow.return_by_m
-        && (Words { block, dialect }).actions().any(|(action, _)| matches!(action, Action::Cycle(_)))
-}
-
-/// The program with its cycles written out, and where each stretch of it comes from.
-pub(crate) fn write_out(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Written, Fault> {
-    let out = Rewriting::new(dialect, setup, text);
-    let mut writer = Writer { dialect, out, level: None, cycle: None, open: false };
-    let mut reader = Reader::new(text, dialect);
-    let mut block = Block::default();
-    let mut fault = None;
-    while fault.is_none() && reader.next(&mut block) {
-        fault = writer.block(&block).err();
-        #[cfg(test)]
-        writer.out.believe(writer.out.known.state().belief());
-    }
-    writer.out.end(fault)
+    dialect.flow.return_by_m && actions(block, dialect).any(|(action, _)| matches!(action, Action::Cycle(_)))
 }
 
 /// A cycle in force.
@@ -57,7 +37,8 @@ struct Cycle {
     back: f64,
 }
 
-struct Writer<'d> {
+/// Writes cycles out, block by block.
+pub(crate) struct Writer<'d> {
     dialect: &'d Dialect,
     out: Rewriting<'d>,
     /// G71.
@@ -67,23 +48,22 @@ struct Writer<'d> {
     open: bool,
 }
 
-impl Writer<'_> {
-    fn block(&mut self, block: &Block<'_>) -> Result<(), Fault> {
-        let words = Words { block, dialect: self.dialect };
+impl<'d> Lower<'d> for Writer<'d> {
+    fn came(&mut self, came: &Came<'_>) -> Result<(), Fault> {
+        let words = Words::of(came, self.dialect);
         let begins = words.actions().any(|(action, _)| matches!(action, Action::Cycle(_)));
-        let moves = self.names(&words, b"XYZ");
-        let ends = words.actions().any(|(action, _)| {
+        let moves = b"XYZ".iter().any(|letter| words.number(*letter).is_some());
+        let cancels = words.actions().any(|(action, _)| *action == Action::CycleCancel);
+        let codes = words.actions().any(|(action, _)| {
             matches!(
                 action,
-                Action::CycleCancel
-                    | Action::Rapid
-                    | Action::Line
-                    | Action::ArcClockwise
-                    | Action::ArcCounterClockwise
+                Action::Rapid | Action::Line | Action::ArcClockwise | Action::ArcCounterClockwise
             )
         });
+        let ends = cancels || codes;
         if begins {
-            return self.begin(&words);
+            self.out.wake();
+            return self.begin(came);
         }
         if ends && self.cycle.is_some() && words.skipped() {
             return Err(self.refuse(
@@ -105,13 +85,6 @@ impl Writer<'_> {
         if self.cycle.is_some() && !ends && (moves || codes_between) {
             return self.again(&words);
         }
-        let cancels = words.actions().any(|(action, _)| *action == Action::CycleCancel);
-        let codes = words.actions().any(|(action, _)| {
-            matches!(
-                action,
-                Action::Rapid | Action::Line | Action::ArcClockwise | Action::ArcCounterClockwise
-            )
-        });
         self.open = (self.open || (cancels && self.cycle.is_some())) && !codes;
         if ends {
             self.cycle = None;
@@ -126,29 +99,38 @@ impl Writer<'_> {
             ));
         }
         if let Some((_, span)) = words.actions().find(|(action, _)| **action == Action::ReturnLevel) {
+            self.out.wake();
             self.level = Some(self.level_of(&words, span)?);
         } else if words.actions().any(|(action, _)| moves_levels(action)) {
             self.level = None;
         }
-        self.out.block(block);
+        self.out.block(came);
         Ok(())
     }
 
-    fn names(&self, words: &Words<'_, '_>, letters: &[u8]) -> bool {
-        letters.iter().any(|letter| words.number(*letter).is_some())
+    fn fresh_line(&mut self) {
+        self.out.fresh_line();
+    }
+
+    fn end(self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>) {
+        (self.out, Ok(()))
+    }
+}
+
+impl<'d> Writer<'d> {
+    pub(crate) const fn new(out: Rewriting<'d>) -> Self {
+        Self { dialect: out.dialect, out, level: None, cycle: None, open: false }
     }
 
     fn length(&self, words: &Words<'_, '_>, letter: u8) -> Option<f64> {
-        words
-            .number(letter)
-            .map(|(number, _)| self.dialect.numbers.length(number, self.out.known.state().inch).to_f64())
+        words.length(letter, self.out.known.modal().units)
     }
 
     /// G71 Z.
     fn level_of(&self, words: &Words<'_, '_>, span: Span) -> Result<f64, Fault> {
         let alone = words.block.words().all(|word| matches!(word.letter, b'G' | b'N' | b'Z'))
             && words.actions().count() == 1
-            && self.out.known.state().absolute
+            && self.out.known.modal().says_places()
             && !words.skipped();
         match self.length(words, b'Z').filter(|_| alone) {
             Some(level) => Ok(level),
@@ -166,8 +148,8 @@ impl Writer<'_> {
     }
 
     /// A block with the code of a cycle.
-    fn begin(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
-        let block = words.block;
+    fn begin(&mut self, came: &Came<'_>) -> Result<(), Fault> {
+        let (block, words) = (&came.block, &Words::of(came, self.dialect));
         let refuse = |span: Span, message: Text, label: Text, help: Text| {
             Err(self.refuse(words, span, message, label, help))
         };
@@ -188,10 +170,10 @@ impl Writer<'_> {
         }
         let Some((kind, span)) = kind else { return Ok(()) };
         let Some((here, _)) = self.out.known.codes(block) else {
-            self.out.block(block);
+            self.out.block(came);
             return Ok(());
         };
-        if !here.absolute || here.plane != [0, 1, 2] || words.skipped() {
+        if !here.says_places() || here.plane != Plane::Xy || words.skipped() {
             return refuse(
                 span,
                 both!("a cycle that cannot be written out", "цикл, который нельзя расписать"),
@@ -254,13 +236,12 @@ impl Writer<'_> {
         self.only_known(words)?;
         self.open = false;
         self.cycle = Some(Cycle { bottom, near, peck, back });
-        self.out.comment(shown(block), from(block));
+        self.out.comment(shown(block), words.from);
         let mut head = b"G0".to_vec();
         for (_, span) in
             words.actions().filter(|(action, _)| matches!(action, Action::Absolute | Action::Plane(_)))
         {
-            head.push(b' ');
-            head.extend_from_slice(block.text(span));
+            add(&mut head, block.text(span));
         }
         self.hole(words, head)
     }
@@ -285,49 +266,42 @@ impl Writer<'_> {
                 ),
             ));
         }
-        self.out.comment(shown(words.block), from(words.block));
+        self.out.comment(shown(words.block), words.from);
         self.hole(words, b"G0".to_vec())
     }
 
     /// The moves of a hole; `head` begins the first of them.
     fn hole(&mut self, words: &Words<'_, '_>, head: Vec<u8>) -> Result<(), Fault> {
         let Some(Cycle { bottom, near, peck, back }) = self.cycle else { return Ok(()) };
-        let source = from(words.block);
+        let source = words.from;
         let mut line = head;
         for letter in AXES.into_iter().take(2) {
             if let Some(value) = self.length(words, letter) {
-                line.push(b' ');
                 number(&mut line, letter, value);
             }
         }
         if line.len() > 2 {
             self.out.line(&line, source);
         }
-        let feed = words.number(b'F').map(|(_, span)| words.block.text(span).to_vec());
-        let unit_mm = if self.out.known.state().inch { 25.4 } else { 1.0 };
-        let clearance = self.dialect.output.peck_clearance_mm / unit_mm;
-        let mut line = |code: &[u8], level: f64, feed: Option<&Vec<u8>>| {
-            let mut text = code.to_vec();
-            number(&mut text, b'Z', level);
-            if let Some(feed) = feed {
-                text.push(b' ');
-                text.extend_from_slice(feed);
-            }
+        let feed = words.texts(b"F");
+        let clearance = self.dialect.output.peck_clearance_mm / self.out.known.modal().units.mm();
+        let deep = near - bottom;
+        let peck = peck.unwrap_or(deep);
+        let depths = peck_depths(deep, peck, whole_pecks(deep / peck));
+        let mut line = |code: &[u8], level: f64, feed: &[u8]| {
+            let mut text = line_of(code, [(b'Z', level)]);
+            add(&mut text, feed);
             self.out.line(&text, source);
         };
-        line(b"G0 ", near, None);
-        let mut reached = near;
-        loop {
-            let next = peck.map_or(bottom, |peck| (reached - peck).max(bottom));
-            line(b"G1 ", next, feed.as_ref());
-            reached = next;
-            if reached - bottom <= NOTHING {
-                break;
+        line(b"G0", near, b"");
+        for stroke in strokes(depths, Retreat::Out { clearance }) {
+            match stroke {
+                Stroke::In(depth) => line(b"G1", near - depth, &feed),
+                Stroke::Out => line(b"G0", near, b""),
+                Stroke::Again(depth) => line(b"G0", near - depth, b""),
             }
-            line(b"G0 ", near, None);
-            line(b"G0 ", (reached + clearance).min(near), None);
         }
-        line(b"G0 ", back, None);
+        line(b"G0", back, b"");
         Ok(())
     }
 

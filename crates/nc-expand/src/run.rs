@@ -12,7 +12,8 @@ use crate::expression::Expression;
 use crate::faults::{self, Stop};
 use crate::flow;
 use crate::jump::{CallKind, Frame};
-use crate::output::{From, Output};
+use crate::lowering::{Driver, Lowered};
+use crate::output::From;
 use crate::program::Source;
 use crate::statement::{Complex, Control, Direction, Kind, Statement};
 use crate::value::{Names, Value, Variable};
@@ -34,7 +35,7 @@ pub(crate) struct Run<'a, 'e> {
     pub(crate) sources: Vec<Rc<Source<'a>>>,
     /// A bit for each statement that was executed.
     visited: Vec<Vec<u64>>,
-    pub(crate) out: Output,
+    pub(crate) out: Driver<'e>,
     pub(crate) frames: Vec<Frame>,
     /// Running `repeat` loops of the running program: head and turns left.
     pub(crate) repeats: Vec<(u32, u64)>,
@@ -58,10 +59,6 @@ pub(crate) struct Run<'a, 'e> {
     /// The first call of each program that the control has, where no profile says what it moves.
     pub(crate) left_alone: BTreeMap<String, std::ops::Range<u64>>,
     first_kept: Option<(std::ops::Range<u64>, Variable)>,
-    /// Bytes of the output that are contours of cycles.
-    pub(crate) routines: Vec<std::ops::Range<u64>>,
-    #[cfg(test)]
-    beliefs: Vec<crate::agreement::Belief>,
 }
 
 /// Whether the program goes on.
@@ -72,10 +69,10 @@ enum Next {
 }
 
 /// Executes the program.
-pub(crate) fn run<'a>(
+pub(crate) fn run<'a, 'e>(
     text: &'a [u8],
-    dialect: &Dialect,
-    environment: &Environment<'_>,
+    dialect: &'e Dialect,
+    environment: &'e Environment<'e>,
 ) -> Result<Expanded<'a>, Refusal> {
     let mut names = Names::default();
     names.bare = dialect.flow.macros.bare_names();
@@ -92,7 +89,7 @@ pub(crate) fn run<'a>(
         store,
         visited: vec![vec![0; main.statements.len() / 64 + 1]],
         sources: vec![Rc::new(main)],
-        out: Output::new(dialect, text),
+        out: Driver::new(dialect, environment.setup, text),
         frames: Vec::new(),
         repeats: Vec::new(),
         counts: Vec::new(),
@@ -109,9 +106,6 @@ pub(crate) fn run<'a>(
         first_output: None,
         left_alone: BTreeMap::new(),
         first_kept: None,
-        routines: Vec::new(),
-        #[cfg(test)]
-        beliefs: Vec::new(),
     };
     run.units(inch);
     match run.all() {
@@ -119,7 +113,7 @@ pub(crate) fn run<'a>(
             Some(span) if !run.acted => {
                 Err(Refusal { diagnostics: vec![faults::nothing_executed(span)], file: None })
             }
-            _ => Ok(run.finish()),
+            _ => run.finish(),
         },
         Err(stop) => Err(run.refusal(&stop)),
     }
@@ -138,8 +132,6 @@ impl<'a> Run<'a, '_> {
                     return Ok(());
                 };
                 let next = self.step(&source, statement)?;
-                #[cfg(test)]
-                self.beliefs.push(crate::agreement::Belief::of_flow(self.out.text.len() as u64, self.inch));
                 if next == Next::Ended {
                     return Ok(());
                 }
@@ -175,12 +167,11 @@ impl<'a> Run<'a, '_> {
                 )));
             }
             Kind::Copy => {
-                let written = self.out.text.len();
                 self.copy(source, statement, place, again);
                 self.note(statement);
                 self.acted |= statement.flags.words && !statement.flags.ends;
                 if statement.flags.routine {
-                    self.routine(source, statement, place, written)?;
+                    self.routine(source, statement, place)?;
                 }
                 if again {
                     self.spend(1)?;
@@ -202,11 +193,10 @@ impl<'a> Run<'a, '_> {
                 }
                 self.started = true;
                 self.acted |= !complex.defines();
-                let written = self.out.text.len();
                 self.complex(source, statement, complex, place, again)?;
                 self.bounded()?;
                 if statement.flags.routine {
-                    self.routine(source, statement, place, written)?;
+                    self.routine(source, statement, place)?;
                 }
                 if statement.flags.ends && !statement.flags.skip {
                     return Ok(Next::Ended);
@@ -266,7 +256,7 @@ impl<'a> Run<'a, '_> {
     }
 
     fn bounded(&self) -> Result<(), Stop> {
-        if self.out.text.len() as u64 > self.most_bytes {
+        if self.out.bytes > self.most_bytes {
             return Err(faults::too_long(self.most_bytes));
         }
         Ok(())
@@ -278,6 +268,8 @@ impl<'a> Run<'a, '_> {
             offset: statement.offset,
             length: u64::from(statement.length),
             line: statement.line,
+            exact: true,
+            contour: self.in_routine(),
         }
     }
 
@@ -319,7 +311,8 @@ impl<'a> Run<'a, '_> {
         let bytes = source.bytes(statement);
         let from = self.from(statement, place);
         match statement.flags.number.filter(|_| again || !self.frames.is_empty()) {
-            None => self.out.copy(bytes, from),
+            None if statement.flags.idle || statement.flags.starts => self.out.idle(bytes, from),
+            None => self.out.text(bytes, from),
             Some(number) => {
                 let rest = [&bytes[..number.start as usize], &bytes[number.end as usize..]].concat();
                 self.out.write(&rest, from);
@@ -576,7 +569,7 @@ impl<'a> Run<'a, '_> {
     }
 
     /// The trailer of the file, and the result.
-    fn finish(mut self) -> Expanded<'a> {
+    fn finish(mut self) -> Result<Expanded<'a>, Refusal> {
         let main = Rc::clone(&self.sources[0]);
         let closing = main.statements.iter().rposition(|statement| matches!(statement.kind, Kind::Percent));
         if let Some(closing) = closing {
@@ -598,25 +591,23 @@ impl<'a> Run<'a, '_> {
             warnings.push(faults::lost_output(span));
         }
         warnings.extend(self.left_alone.iter().map(|(call, span)| faults::left_alone(span.clone(), call)));
-        let files = self.sources[1..].iter().map(|s| (s.name.clone(), s.text.to_vec())).collect();
-        let Output { text, segments, .. } = self.out;
-        let routines = self.routines;
+        let files: Vec<_> = self.sources[1..].iter().map(|s| (s.name.clone(), s.text.to_vec())).collect();
+        let Lowered { out, lowers, same } =
+            self.out.end(main.text.len() as u64).map_err(|fault| fault.in_files(&files))?;
         // Where all of it is left alone it is no other program.
-        let same = matches!(main.text, Cow::Borrowed(source) if source == text);
-        let text = match main.text {
-            Cow::Borrowed(source) if same => Cow::Borrowed(source),
-            _ => Cow::Owned(text),
-        };
-        Expanded {
-            text,
-            files,
-            flow: (!same).then_some(segments),
-            shorthand: Vec::new(),
-            warnings,
-            #[cfg(test)]
-            beliefs: vec![self.beliefs],
-            routines,
-        }
+        Ok(match main.text {
+            Cow::Borrowed(source) if same && !lowers => {
+                Expanded { text: Cow::Borrowed(source), files, warnings, ..Expanded::default() }
+            }
+            _ => Expanded {
+                text: Cow::Owned(out.text),
+                files,
+                segments: out.segments,
+                flows: !same,
+                lowers,
+                warnings,
+            },
+        })
     }
 
     fn refusal(&self, stop: &Stop) -> Refusal {

@@ -14,14 +14,16 @@
 //! The numbers written have 6 decimals; what that neglects is half a nanometre.
 
 use diagnostic::{Code, Diagnostic, Text, both};
-use nc_program::{Owner, Setup};
+use nc_program::Owner;
+use nc_program::modal::{Modal, Units};
 use nc_syntax::dialect::{Action, Called, CornerForm, GCode};
-use nc_syntax::{Block, Dialect, Item, ItemKind, Number, Reader, Span, Value};
+use nc_syntax::{Block, Dialect, Item, ItemKind, Number, Span, Value};
 use units::math;
 
 use crate::codes;
-use crate::known::{Known, Motion, Rewriting, State};
-use crate::output::{From, Style, Written, word};
+use crate::known::{Known, Motion, Rewriting, motion};
+use crate::lowering::{Came, Fault, Held, Refused};
+use crate::output::{From, Style, word};
 
 /// X, Y, Z.
 pub(crate) const AXES: [u8; 3] = *b"XYZ";
@@ -30,8 +32,6 @@ pub(crate) const AXES: [u8; 3] = *b"XYZ";
 const STRAIGHT_RAD: f64 = 0.0175;
 /// By so much a tangent point may lie behind the start of its line, in units of the program: rounded ends.
 const BEHIND: f64 = 1e-6;
-
-pub(crate) type Fault = Box<Diagnostic>;
 
 /// True where the block has shorthand that this dialect writes out.
 pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
@@ -68,9 +68,23 @@ pub(crate) fn action(number: Number, dialect: &Dialect) -> Option<&Action> {
     number.tenths().and_then(|tenths| dialect.code(GCode(tenths))).map(|entry| &entry.action)
 }
 
+/// What the G codes of a block say.
+pub(crate) fn actions<'b>(
+    block: &'b Block<'_>,
+    dialect: &'b Dialect,
+) -> impl Iterator<Item = (&'b Action, Span)> {
+    block.items.iter().filter_map(|item| match item.kind {
+        ItemKind::Word { letter: b'G', value: Value::Number(number) } => {
+            Some((action(number, dialect)?, item.span))
+        }
+        _ => None,
+    })
+}
+
 /// A line that ends in a corner, waiting for the next one.
-struct Corner<'a, 'd> {
-    block: Block<'a>,
+#[derive(Debug)]
+struct Corner<'d> {
+    block: Held,
     from: [f64; 2],
     to: [f64; 2],
     form: CornerForm,
@@ -87,6 +101,14 @@ struct Corner<'a, 'd> {
 pub(crate) struct Words<'b, 'a> {
     pub(crate) block: &'b Block<'a>,
     pub(crate) dialect: &'b Dialect,
+    /// Whom the block stands for.
+    pub(crate) from: From,
+}
+
+impl<'b, 'a> Words<'b, 'a> {
+    pub(crate) const fn of(came: &'b Came<'a>, dialect: &'b Dialect) -> Self {
+        Self { block: &came.block, dialect, from: came.from }
+    }
 }
 
 impl Words<'_, '_> {
@@ -98,16 +120,31 @@ impl Words<'_, '_> {
             _ => None,
         })
     }
-    pub(crate) fn length(&self, letter: u8, inch: bool) -> Option<f64> {
-        self.number(letter).map(|(number, _)| self.dialect.numbers.length(number, inch).to_f64())
+    pub(crate) fn length(&self, letter: u8, units: Units) -> Option<f64> {
+        self.number(letter).map(|(number, _)| self.lengthy(number, units))
+    }
+    pub(crate) fn lengthy(&self, number: Number, units: Units) -> f64 {
+        self.dialect.numbers.length(number, units == Units::Inch).to_f64()
+    }
+    /// The words of some letters, as they stand.
+    pub(crate) fn texts(&self, letters: &[u8]) -> Vec<u8> {
+        let mut text = Vec::new();
+        for (_, span) in letters.iter().filter_map(|letter| self.number(*letter)) {
+            add(&mut text, self.block.text(span));
+        }
+        text
+    }
+    /// Where the words of a motion lead from where the axes stand.
+    pub(crate) fn end(&self, modal: &Modal) -> [Option<f64>; 3] {
+        let stands = modal.places();
+        [0, 1, 2].map(|axis| match self.length(AXES[axis], modal.units) {
+            None => stands[axis],
+            Some(value) if modal.says_places() => Some(value),
+            Some(value) => stands[axis].map(|at| at + value),
+        })
     }
     pub(crate) fn actions(&self) -> impl Iterator<Item = (&Action, Span)> {
-        self.block.items.iter().filter_map(|item| match item.kind {
-            ItemKind::Word { letter: b'G', value: Value::Number(number) } => {
-                Some((action(number, self.dialect)?, item.span))
-            }
-            _ => None,
-        })
+        actions(self.block, self.dialect)
     }
     /// `,R5.`, `RND=5`
     pub(crate) fn corner(&self) -> Option<&Item> {
@@ -121,7 +158,7 @@ impl Words<'_, '_> {
         }
     }
     /// Its form and size, in units of the program, where they are plain.
-    fn corner_size(&self, item: &Item, inch: bool) -> Option<(CornerForm, f64)> {
+    fn corner_size(&self, item: &Item, units: Units) -> Option<(CornerForm, f64)> {
         match item.kind {
             ItemKind::CommaWord { letter, value: Value::Number(size) } => {
                 let form = match letter {
@@ -129,7 +166,7 @@ impl Words<'_, '_> {
                     b'C' => CornerForm::Chamfer,
                     _ => return None,
                 };
-                Some((form, self.dialect.numbers.length(size, inch).to_f64()))
+                Some((form, self.lengthy(size, units)))
             }
             ItemKind::BracketCommand => {
                 let text = self.block.text(item.span);
@@ -154,15 +191,10 @@ impl Words<'_, '_> {
         whole(self.block)
     }
     pub(crate) fn fault(&self, code: Code, span: Span, message: Text, label: Text, help: Text) -> Fault {
-        Box::new(Diagnostic::error(code, message).at(self.block.file_span(span), label).help(help))
+        let place = self.from.place(u64::from(span.start)..u64::from(span.end));
+        let diagnostic = Diagnostic::error(code, message).at(place, label).help(help);
+        Box::new(Refused { diagnostic, file: self.from.file })
     }
-}
-
-/// The program with its shorthand written out, and where each stretch of it comes from.
-pub(crate) fn write_out(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Written, Fault> {
-    let mut writer = Writer { dialect, out: Rewriting::new(dialect, setup, text), polar: None };
-    let fault = writer.all(text).err();
-    writer.out.end(fault)
 }
 
 const NO_NEXT: Text = Text::pair("a corner without a next line", "сопряжение без следующей прямой");
@@ -175,62 +207,121 @@ const NOT_KNOWN: Text = Text::pair(
 const POST_IT: Text =
     Text::pair("post roundings as arcs and chamfers as lines", "выводите скругления дугами, а фаски прямыми");
 
-struct Writer<'d> {
-    dialect: &'d Dialect,
+/// Writes drawings' words out, block by block.
+#[derive(Debug)]
+pub(crate) struct Corners<'d> {
     out: Rewriting<'d>,
     /// G16: radius and angle in degrees, once named.
     polar: Option<[Option<f64>; 2]>,
+    /// A line with a corner, and what stands between it and the next line.
+    waiting: Option<Corner<'d>>,
+    between: Vec<Held>,
 }
 
-impl<'d> Writer<'d> {
-    fn all(&mut self, text: &[u8]) -> Result<(), Fault> {
-        let dialect = self.dialect;
-        let mut reader = Reader::new(text, dialect);
-        let mut block = Block::default();
-        let mut corner: Option<Corner<'_, 'd>> = None;
-        let mut between: Vec<Block<'_>> = Vec::new();
-        while reader.next(&mut block) {
-            match corner.take() {
-                Some(waiting) if (Words { block: &block, dialect }).idle() => {
-                    between.push(block.clone());
-                    corner = Some(waiting);
-                }
-                Some(waiting) => corner = self.next_line(&waiting, &mut between, &block)?,
-                None => corner = self.block(&block)?,
+impl<'d> Corners<'d> {
+    pub(crate) const fn new(out: Rewriting<'d>) -> Self {
+        Self { out, polar: None, waiting: None, between: Vec::new() }
+    }
+
+    pub(crate) const fn dialect(&self) -> &'d Dialect {
+        self.out.dialect
+    }
+
+    /// What is known behind what came, a corner that waits apart.
+    pub(crate) fn known(&self) -> &Known<'d> {
+        self.waiting.as_ref().map_or(&self.out.known, |corner| &corner.behind)
+    }
+
+    /// First and second axis of the plane, and its normal.
+    fn plane(&self) -> [usize; 3] {
+        self.out.known.modal().plane.axes()
+    }
+
+    pub(crate) fn wake(&mut self) {
+        self.out.wake();
+    }
+
+    pub(crate) fn came(&mut self, came: &Came<'_>) -> Result<(), Fault> {
+        let words = Words::of(came, self.dialect());
+        match self.waiting.take() {
+            Some(corner) if words.idle() => {
+                self.between.push(Held::of(came));
+                self.waiting = Some(corner);
             }
-            #[cfg(test)]
-            self.out.believe(self.out.known.state().belief());
+            Some(corner) => self.waiting = self.next_line(&corner, came)?,
+            None if self.polar.is_none() && !needed(&came.block, self.dialect()) => self.out.block(came),
+            None => {
+                self.out.wake();
+                self.waiting = self.block(came)?;
+            }
         }
-        let Some(corner) = corner else { return Ok(()) };
-        let words = Words { block: &corner.block, dialect };
-        Err(words.refuse(corner.place, NO_NEXT, both!("nothing follows", "дальше ничего нет"), POST_IT))
+        Ok(())
+    }
+
+    pub(crate) fn fresh_line(&mut self) {
+        let waits = self.waiting.as_mut().map(|corner| &mut corner.block);
+        match self.between.last_mut().or(waits) {
+            Some(held) => held.end_line(self.out.marks.line_ending),
+            None => self.out.fresh_line(),
+        }
+    }
+
+    /// Text that stands for a block that came, as the next one.
+    pub(crate) fn write(&mut self, text: &[u8], from: From) -> Result<(), Fault> {
+        for came in Came::all(text, self.dialect(), From { exact: false, ..from }) {
+            self.came(&came)?;
+        }
+        Ok(())
+    }
+
+    /// The same on a line of its own.
+    pub(crate) fn line(&mut self, text: &[u8], from: From) -> Result<(), Fault> {
+        self.fresh_line();
+        self.write(&[text, self.out.marks.line_ending].concat(), from)
+    }
+
+    /// A comment on a line of its own.
+    pub(crate) fn comment(&mut self, text: &[u8], from: From) -> Result<(), Fault> {
+        let Some(comment) = self.out.marks.comment(text) else { return Ok(()) };
+        self.fresh_line();
+        self.write(&comment, from)
+    }
+
+    pub(crate) fn end(self) -> (Rewriting<'d>, Result<(), Fault>) {
+        let ended = self.waiting.map_or(Ok(()), |corner| {
+            let came = corner.block.came();
+            let words = Words::of(&came, self.out.dialect);
+            let label = both!("nothing follows", "дальше ничего нет");
+            Err(words.refuse(corner.place, NO_NEXT, label, POST_IT))
+        });
+        (self.out, ended)
     }
 
     /// A block that follows no corner.
-    fn block<'a>(&mut self, block: &Block<'a>) -> Result<Option<Corner<'a, 'd>>, Fault> {
-        let words = Words { block, dialect: self.dialect };
+    fn block(&mut self, came: &Came<'_>) -> Result<Option<Corner<'d>>, Fault> {
+        let words = Words::of(came, self.dialect());
         if words.corner().is_some() {
             let known = self.out.known.clone();
-            let [first, second, _] = known.state().plane;
-            let start = [first, second].map(|axis| known.state().at[axis]);
-            return self.corner(block, start, known).map(Some);
+            let [first, second, _] = known.modal().plane.axes();
+            let start = [first, second].map(|axis| known.modal().places()[axis]);
+            return self.corner(came, start, known).map(Some);
         }
         let rotates = words.actions().find(|(action, _)| **action == Action::RotationOn);
-        if let Some((_, span)) = rotates.filter(|_| turns_about_the_tool(block, self.dialect)) {
+        if let Some((_, span)) = rotates.filter(|_| turns_about_the_tool(&came.block, self.dialect())) {
             return self.rotation(&words, span).map(|()| None);
         }
         let turns_on = words.actions().find(|(action, _)| **action == Action::PolarOn);
         if self.polar.is_some() || turns_on.is_some() {
-            self.polar(&words, turns_on.map(|(_, span)| span))?;
+            self.polar(came, turns_on.map(|(_, span)| span))?;
             return Ok(None);
         }
-        self.out.block(block);
+        self.out.block(came);
         Ok(None)
     }
 
     /// A rotation about where the tool stands: the control would take the corrected place for it.
     fn rotation(&mut self, words: &Words<'_, '_>, span: Span) -> Result<(), Fault> {
-        let State { plane: [first, second, _], at, .. } = self.out.known.state();
+        let ([first, second, _], at) = (self.plane(), self.out.known.modal().places());
         let [Some(u), Some(v)] = [at[first], at[second]] else {
             return Err(words.refuse(
                 span,
@@ -247,29 +338,29 @@ impl<'d> Writer<'d> {
         self.point(&mut centre, [u, v]);
         let end = span.end as usize;
         let text = [&block.bytes[..end], &centre, &block.bytes[end..]].concat();
-        self.out.comment(shown(block), from(block));
-        self.out.write(&text, from(block));
+        self.out.comment(shown(block), words.from);
+        self.out.write(&text, words.from);
         Ok(())
     }
 
     /// A line with a corner from a place that is known, to be written once the next one is known.
     ///
     /// `known`: what is known before it, the corner of another line apart.
-    fn corner<'a>(
+    fn corner(
         &self,
-        block: &Block<'a>,
+        came: &Came<'_>,
         start: [Option<f64>; 2],
         known: Known<'d>,
-    ) -> Result<Corner<'a, 'd>, Fault> {
-        let words = Words { block, dialect: self.dialect };
+    ) -> Result<Corner<'d>, Fault> {
+        let (block, words) = (&came.block, Words::of(came, self.dialect()));
         let Some(item) = words.corner() else {
             return Err(words.refuse(Span { start: 0, end: 0 }, NO_NEXT, Text::EMPTY, POST_IT));
         };
         let span = item.span;
         let refuse = |label: Text| words.refuse(span, NO_CORNER, label, POST_IT);
         let mut behind = known;
-        let here = behind.codes(block).map(|(state, _)| state);
-        let Some((form, size)) = words.corner_size(item, behind.state().inch) else {
+        let here = behind.codes(block).map(|(modal, _)| modal);
+        let Some((form, size)) = words.corner_size(item, behind.modal().units) else {
             return Err(refuse(both!(
                 "only a rounding or a chamfer with a number can, one in a block",
                 "развернуть можно только скругление или фаску с числом, одно в кадре"
@@ -290,27 +381,28 @@ impl<'d> Writer<'d> {
         if size <= 0.0 {
             return Err(refuse(both!("its size must be above zero", "размер должен быть больше нуля")));
         }
-        behind.block(block);
+        behind.block(came);
         let (Some(here), None) = (here, behind.refused()) else {
             return Err(behind.refused().unwrap_or_else(|| refuse(NOT_KNOWN)));
         };
-        let target = here.target(&words);
+        let (target, plane) = (words.end(&here), here.plane.axes());
         let place = |[u, v]: [Option<f64>; 2]| Some([u?, v?]);
-        let ends = place(start).zip(place([target[here.plane[0]], target[here.plane[1]]]));
+        let ends = place(start).zip(place([target[plane[0]], target[plane[1]]]));
         let Some((from, to)) = ends else { return Err(refuse(NOT_KNOWN)) };
-        Ok(Corner { block: block.clone(), from, to, form, size, place: span, behind_corner: false, behind })
+        Ok(Corner { block: Held::of(came), from, to, form, size, place: span, behind_corner: false, behind })
     }
 
     /// Refuses what is no line of the plane in G90; `span` says where.
-    fn plain_line(&self, words: &Words<'_, '_>, here: &State, span: Span) -> Result<(), Fault> {
-        let normal = AXES[here.plane[2]];
+    fn plain_line(&self, words: &Words<'_, '_>, here: &Modal, span: Span) -> Result<(), Fault> {
+        let plane = here.plane.axes();
+        let normal = AXES[plane[2]];
         let command = |item: &Item| item.kind == ItemKind::BracketCommand && !words.is_corner(item);
         let others = words.block.items.iter().any(command)
             || words.actions().any(|(action, _)| !matches!(action, Action::Line | Action::Absolute));
-        let moves = here.plane[..2].iter().any(|axis| words.number(AXES[*axis]).is_some());
-        let label = if here.motion != Motion::Line {
+        let moves = plane[..2].iter().any(|axis| words.number(AXES[*axis]).is_some());
+        let label = if motion(here) != Motion::Line {
             both!("G1 was expected on both sides of a corner", "по обе стороны сопряжения ожидалось G1")
-        } else if !here.absolute {
+        } else if !here.says_places() {
             both!("under G91; write G90", "при G91; напишите G90")
         } else if self.polar.is_some() {
             both!("under G16; write the points in X and Y", "при G16; напишите точки в X и Y")
@@ -332,27 +424,23 @@ impl<'d> Writer<'d> {
     }
 
     /// Writes the line with the corner, what lies between, the corner, and this line.
-    fn next_line<'a>(
-        &mut self,
-        corner: &Corner<'_, 'd>,
-        between: &mut Vec<Block<'_>>,
-        block: &Block<'a>,
-    ) -> Result<Option<Corner<'a, 'd>>, Fault> {
-        let words = Words { block, dialect: self.dialect };
-        let at = Words { block: &corner.block, dialect: self.dialect };
+    fn next_line(&mut self, corner: &Corner<'d>, came: &Came<'_>) -> Result<Option<Corner<'d>>, Fault> {
+        let (block, words) = (&came.block, Words::of(came, self.dialect()));
+        let held = corner.block.came();
+        let at = Words::of(&held, self.dialect());
         let further = words.corner().is_some();
         let whole = block.items.first().map_or(Span { start: 0, end: 0 }, |item| item.span);
         let whole = words.corner().map_or(whole, |item| item.span);
         let Some((here, _)) = corner.behind.codes(block) else {
             let mut behind = corner.behind.clone();
-            behind.block(block);
+            behind.block(came);
             return Err(behind
                 .refused()
                 .unwrap_or_else(|| words.refuse(whole, NO_CORNER, NOT_KNOWN, POST_IT)));
         };
         self.plain_line(&words, &here, whole)?;
-        let [first, second, _] = here.plane;
-        let target = here.target(&words);
+        let [first, second, _] = here.plane.axes();
+        let target = words.end(&here);
         let next = [(first, 0), (second, 1)].map(|(axis, k)| target[axis].unwrap_or(corner.to[k]));
         let shape = Shape::of(corner.from, corner.to, next, corner.form, corner.size);
         let Some(shape) = shape else {
@@ -364,9 +452,9 @@ impl<'d> Writer<'d> {
         };
         let mut line = if corner.behind_corner { b"G1 ".to_vec() } else { Vec::new() };
         self.point(&mut line, shape.from);
-        self.rewritten(&corner.block, &line);
-        for block in between.drain(..) {
-            self.out.block(&block);
+        self.rewritten(&held, &line);
+        for between in std::mem::take(&mut self.between) {
+            self.out.block(&between.came());
         }
         let round = corner.form == CornerForm::Round;
         let mut line: Vec<u8> = match (round, shape.left) {
@@ -377,25 +465,25 @@ impl<'d> Writer<'d> {
         self.point(&mut line, shape.to);
         if round {
             for (axis, k) in [(first, 0), (second, 1)] {
-                line.push(b' ');
                 number(&mut line, b"IJK"[axis], shape.centre[k] - rounded(shape.from[k]));
             }
         }
-        self.out.line(&line, from(&corner.block));
+        self.out.line(&line, at.from);
         if further {
             // The next line starts where this corner ends.
             let start = shape.to.map(|value| Some(rounded(value)));
-            let waiting = self.corner(block, start, corner.behind.clone())?;
+            let waiting = self.corner(came, start, corner.behind.clone())?;
             return Ok(Some(Corner { behind_corner: true, ..waiting }));
         }
         let mut line = b"G1 ".to_vec();
         self.point(&mut line, next);
-        self.rewritten(block, &line);
+        self.rewritten(came, &line);
         Ok(None)
     }
 
     /// A block under G16, or the one that switches it on.
-    fn polar(&mut self, words: &Words<'_, '_>, on: Option<Span>) -> Result<(), Fault> {
+    fn polar(&mut self, came: &Came<'_>, on: Option<Span>) -> Result<(), Fault> {
+        let words = &Words::of(came, self.dialect());
         let refuse = |span: Span, label: Text| {
             words.refuse(
                 span,
@@ -404,7 +492,7 @@ impl<'d> Writer<'d> {
                 both!("write the points in X and Y, G15 in force", "напишите точки в X и Y, при G15"),
             )
         };
-        let plane = self.out.known.state().plane;
+        let plane = self.plane();
         let axis_word =
             |axes: &[usize]| axes.iter().find_map(|axis| words.number(AXES[*axis])).map(|(_, span)| span);
         let off = words.actions().any(|(action, _)| *action == Action::PolarOff);
@@ -446,22 +534,22 @@ impl<'d> Writer<'d> {
             self.polar = (!off).then_some(held);
         }
         let (Some(span), Some(held)) = (plane_word, self.polar) else {
-            self.unswitched(words, on);
+            self.unswitched(came, on);
             return Ok(());
         };
         let Some((here, owner)) = self.out.known.codes(words.block) else {
-            self.out.block(words.block);
+            self.out.block(came);
             return Ok(());
         };
         match owner {
             Owner::Motion | Owner::DwellP => {}
             Owner::Dwell | Owner::DwellBySetting | Owner::Arguments => {
-                self.out.block(words.block);
+                self.out.block(came);
                 return Ok(());
             }
             _ => return Err(refuse(span, DIFFERS)),
         }
-        if words.skipped() || !here.absolute {
+        if words.skipped() || !here.says_places() {
             return Err(refuse(
                 span,
                 both!(
@@ -471,15 +559,15 @@ impl<'d> Writer<'d> {
             ));
         }
         let radius_of_arc = words.number(b'R').is_some();
-        if here.motion == Motion::None {
+        if motion(&here) == Motion::None {
             return Err(refuse(span, both!("no motion code is in force", "функция движения не действует")));
         }
         let centred = b"IJK".iter().any(|letter| words.number(*letter).is_some());
-        if here.motion == Motion::Arc && (centred || !radius_of_arc) {
+        if motion(&here) == Motion::Arc && (centred || !radius_of_arc) {
             return Err(refuse(span, both!("an arc under G16 takes R", "дуга при G16 принимает R")));
         }
-        let radius = words.length(AXES[plane[0]], here.inch).or(held[0]);
-        let angle = words.length(AXES[plane[1]], false).or(held[1]);
+        let radius = words.length(AXES[plane[0]], here.units).or(held[0]);
+        let angle = words.length(AXES[plane[1]], Units::Millimetre).or(held[1]);
         let (Some(radius), Some(angle)) = (radius, angle) else {
             return Err(refuse(
                 span,
@@ -496,20 +584,20 @@ impl<'d> Writer<'d> {
         let (sin, cos) = math::sin_cos_deg(angle);
         let mut line = Vec::new();
         self.point(&mut line, [radius * cos, radius * sin]);
-        self.rewritten(words.block, &line);
+        self.rewritten(came, &line);
         Ok(())
     }
 
     /// The block without its G16, which the output is not under.
-    fn unswitched(&mut self, words: &Words<'_, '_>, on: Option<Span>) {
+    fn unswitched(&mut self, came: &Came<'_>, on: Option<Span>) {
         match on {
-            None => self.out.block(words.block),
+            None => self.out.block(came),
             Some(span) => {
-                let block = words.block;
-                self.out.comment(shown(block), from(block));
+                let block = &came.block;
+                self.out.comment(shown(block), came.from);
                 let bytes = [&block.bytes[..span.start as usize], &block.bytes[span.end as usize..]].concat();
                 if bytes.iter().any(|byte| byte.is_ascii_alphanumeric()) {
-                    self.out.write(&bytes, from(block));
+                    self.out.write(&bytes, came.from);
                 }
             }
         }
@@ -517,30 +605,26 @@ impl<'d> Writer<'d> {
 
     /// First and second axis' words.
     fn point(&self, line: &mut Vec<u8>, point: [f64; 2]) {
-        let [first, second, _] = self.out.known.state().plane;
+        let [first, second, _] = self.plane();
         let mut both = [(first, point[0]), (second, point[1])];
         both.sort_by_key(|(axis, _)| *axis);
-        for (at, (axis, value)) in both.into_iter().enumerate() {
-            if at > 0 {
-                line.push(b' ');
-            }
-            number(line, AXES[axis], value);
-        }
+        numbers(line, both.map(|(axis, value)| (AXES[axis], value)));
     }
 
     /// The block as a comment, then the block with `words` in place of its words of the plane, its corner and,
     /// where `words` has one, its motion code.
-    fn rewritten(&mut self, block: &Block<'_>, words: &[u8]) {
-        self.out.comment(shown(block), from(block));
-        let [first, second, _] = self.out.known.state().plane;
+    fn rewritten(&mut self, came: &Came<'_>, words: &[u8]) {
+        let block = &came.block;
+        self.out.comment(shown(block), came.from);
+        let [first, second, _] = self.plane();
         let replaces_motion = words.starts_with(b"G");
-        let of_block = Words { block, dialect: self.dialect };
+        let of_block = Words::of(came, self.dialect());
         let taken = |item: &Item| match item.kind {
             ItemKind::CommaWord { .. } => true,
             ItemKind::BracketCommand => of_block.is_corner(item),
             ItemKind::Word { letter, .. } if letter == AXES[first] || letter == AXES[second] => true,
             ItemKind::Word { letter: b'G', value: Value::Number(number) } => {
-                replaces_motion && action(number, self.dialect) == Some(&Action::Line)
+                replaces_motion && action(number, self.dialect()) == Some(&Action::Line)
             }
             _ => false,
         };
@@ -562,7 +646,7 @@ impl<'d> Writer<'d> {
             }
         }
         text.extend_from_slice(&block.bytes[done..]);
-        self.out.write(&text, from(block));
+        self.out.write(&text, came.from);
     }
 }
 
@@ -617,18 +701,32 @@ pub(crate) fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }
 
-pub(crate) fn number(line: &mut Vec<u8>, letter: u8, value: f64) {
-    // Fifteen digits hold whatever a program's own numbers make.
-    let _ = word(line, letter, value, Style::Decimals(6));
+/// Adds text to a line, with a blank before it where something stands.
+pub(crate) fn add(line: &mut Vec<u8>, text: &[u8]) {
+    if !text.is_empty() && line.last().is_some_and(|byte| *byte != b' ') {
+        line.push(b' ');
+    }
+    line.extend_from_slice(text);
 }
 
-pub(crate) fn from(block: &Block<'_>) -> From {
-    From {
-        file: 0,
-        offset: block.offset,
-        length: block.bytes.len() as u64,
-        line: u32::try_from(block.line).unwrap_or(u32::MAX),
-    }
+/// Adds a word to a line.
+pub(crate) fn number(line: &mut Vec<u8>, letter: u8, value: f64) {
+    let mut text = Vec::new();
+    // Fifteen digits hold whatever a program's own numbers make.
+    let _ = word(&mut text, letter, value, Style::Decimals(6));
+    add(line, &text);
+}
+
+/// Adds words to a line.
+pub(crate) fn numbers(line: &mut Vec<u8>, words: impl IntoIterator<Item = (u8, f64)>) {
+    words.into_iter().for_each(|(letter, value)| number(line, letter, value));
+}
+
+/// A code and its words.
+pub(crate) fn line_of(code: &[u8], words: impl IntoIterator<Item = (u8, f64)>) -> Vec<u8> {
+    let mut line = code.to_vec();
+    numbers(&mut line, words);
+    line
 }
 
 /// The block without its end.

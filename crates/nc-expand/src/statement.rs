@@ -38,6 +38,8 @@ pub(crate) struct Flags {
     pub(crate) number: Option<Span>,
     /// It has words besides N and O.
     pub(crate) words: bool,
+    /// Nothing but names and comments.
+    pub(crate) idle: bool,
     /// A cycle whose contour is a subroutine.
     pub(crate) routine: bool,
     /// A program starts here.
@@ -228,7 +230,8 @@ impl Compiler<'_, '_> {
     }
 
     fn flags(&self, items: &[Item], bytes: &[u8]) -> Flags {
-        let mut flags = Flags::default();
+        let idle = items.iter().all(|item| matches!(item.kind, ItemKind::Comment | ItemKind::Name));
+        let mut flags = Flags { idle, ..Flags::default() };
         for item in items {
             flags.words |= !matches!(
                 item.kind,

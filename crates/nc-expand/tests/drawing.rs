@@ -166,3 +166,14 @@ fn a_pass_without_a_place_keeps_no_place() {
     let why = written("G55 G90\nG1 Z-10. ,R2.\nX70.\n", Some(true)).expect_err("another frame");
     assert!(why.contains("not known"), "{why}");
 }
+
+#[test]
+fn a_contour_made_again_has_its_corners_from_where_it_is_made() {
+    // The first time it comes down to Z-10. from the start, the second time up to it from Z-20.
+    let contour = "N10 G0 X20.\nG1 Z-10. ,R1. F0.2\nX40.\nN11 Z-20.\n";
+    let (down, up) =
+        (["G1 X20. Z-9. F0.2", "G2 X22. Z-10. I1. K0."], ["G1 X20. Z-11. F0.2", "G3 X22. Z-10. I1. K0."]);
+    let found = lines(&format!("{contour}G70 P10 Q11\nM30\n"));
+    assert_eq!(found[1..3], down, "{found:?}");
+    assert_eq!(found[6..8], up, "{found:?}");
+}

@@ -134,6 +134,7 @@ impl<'d> Interpreter<'d> {
             speed_limited: false,
             feed_mode: FeedMode::PerMinute,
             last_feed: LastFeed::Unknown,
+            feed: None,
             arc_centres: ArcCentres::Incremental,
             compensation: Compensation::Off,
             offset: Offset::default(),
@@ -308,10 +309,11 @@ fn run<'d>(
     }
     let words = &*words;
     let demand = settings::apply(env, words, before, state)?;
+    let own_feed = words.number(b'F').filter(|_| demand.owner != Owner::Dwell);
     if env.dialect.turning.is_some() {
         turning::check(env, words, &demand, state)?;
+        state.feed = own_feed.map(|(number, _)| number).or(state.feed);
     }
-    let own_feed = words.number(b'F').filter(|_| demand.owner != Owner::Dwell);
     state.last_feed =
         before.last_feed.after(before.feed_mode, state, own_feed.map(|(number, _)| number.decimal));
     tip::check(words, &demand, before, state)?;

@@ -1,6 +1,7 @@
 //! The state of a program between two blocks: one enum per modal group.
 
 use crate::offset::Offset;
+use nc_syntax::Number;
 use nc_syntax::dialect::{CurveCode, CycleCode, GCode, Side};
 use toolpath::{Frame, Kinematics, Partial, Plane};
 use units::decimal::Decimal;
@@ -475,6 +476,8 @@ pub struct Modal {
     pub feed_mode: FeedMode,
     /// What the last F said.
     pub last_feed: LastFeed,
+    /// A lathe's last F as it was written: its cycles count by it.
+    pub feed: Option<Number>,
     /// G90.1 G91.1.
     pub arc_centres: ArcCentres,
     /// G40 G41 G42.
@@ -528,6 +531,28 @@ pub struct Modal {
 }
 
 impl Modal {
+    /// Words of a motion say places, not ways.
+    #[must_use]
+    pub fn says_places(&self) -> bool {
+        self.distance == Distance::Absolute
+    }
+
+    /// Where X, Y and Z stand, as words of this state would say it: those that the program has itself named in the frame in
+    /// force.
+    #[must_use]
+    pub fn places(&self) -> [Option<f64>; 3] {
+        // Behind a block that may be skipped the tool stands in one of two places.
+        let (Some(frame), None) = (&self.frame, &self.aside) else { return [None; 3] };
+        let stands = self.axes.linear.map(Axis::known);
+        let program_mm = frame.to_program(stands.map(Option::unwrap_or_default));
+        [0, 1, 2].map(|axis| {
+            let known = (0..3).all(|other| frame.inverse()[axis][other] == 0.0 || stands[other].is_some());
+            let diameters = axis == 0 && self.x_words.are_diameters(self.distance);
+            let word = program_mm[axis] / self.units.mm() * if diameters { 2.0 } else { 1.0 };
+            (known && self.named[axis] == Naming::Named).then_some(word)
+        })
+    }
+
     /// The code that axis words alone would execute now.
     #[must_use]
     pub const fn motion_code(&self) -> Option<GCode> {

@@ -145,7 +145,12 @@ impl Hole {
         let normal = hole.plane.axes()[2];
         let (r_mm, above_mm) = (hole.at_r.linear_mm[normal], hole.above_mm());
         let down = if hole.bottom_mm < r_mm { -1.0 } else { 1.0 };
-        let peck_mm = hole.pecks().and(hole.cycle.peck_mm).unwrap_or(0.0);
+        let deep_mm = (hole.bottom_mm - r_mm).abs();
+        let pecks = if hole.pecks().is_some() { pecks } else { 1 };
+        let retreat = match hole.cycle.kind {
+            CycleKind::PeckFull => Retreat::Out { clearance: retreats.clearance_mm },
+            _ => Retreat::Back { by: retreats.chip_mm },
+        };
         let mut risen = hole.start;
         risen.linear_mm[normal] = above_mm;
         let come = [
@@ -153,23 +158,75 @@ impl Hole {
             HoleMove::Position { to: hole.at(above_mm) },
             HoleMove::Position { to: hole.at_r },
         ];
-        let pecked = (1..if peck_mm > 0.0 { pecks } else { 1 }).flat_map(move |peck| {
-            let done_mm = f64::from(peck) * peck_mm;
-            let out = hole.cycle.kind == CycleKind::PeckFull;
-            let back_mm = if out { retreats.clearance_mm } else { retreats.chip_mm };
-            let back = HoleMove::Position { to: hole.at(r_mm + down * (done_mm - back_mm.min(done_mm))) };
-            let fed = HoleMove::FeedIn { to: hole.at(r_mm + down * done_mm) };
-            [Some(fed), out.then_some(HoleMove::Position { to: hole.at_r }), Some(back)].into_iter().flatten()
+        let peck_mm = hole.cycle.peck_mm.unwrap_or(deep_mm);
+        let pecked = strokes(peck_depths(deep_mm, peck_mm, pecks), retreat).map(move |stroke| match stroke {
+            Stroke::In(mm) if mm == deep_mm => HoleMove::FeedIn { to: hole.at(hole.bottom_mm) },
+            Stroke::In(mm) => HoleMove::FeedIn { to: hole.at(r_mm + down * mm) },
+            Stroke::Out => HoleMove::Position { to: hole.at_r },
+            Stroke::Again(mm) => HoleMove::Position { to: hole.at(r_mm + down * mm) },
         });
         let bored = hole.cycle.kind == CycleKind::Bore;
         let end = [
-            Some(HoleMove::FeedIn { to: hole.at(hole.bottom_mm) }),
             hole.cycle.dwell.is_some().then_some(HoleMove::Dwell),
             bored.then_some(HoleMove::FeedOut { to: hole.at_r }),
             Some(HoleMove::Leave { to: hole.end() }),
         ];
         come.into_iter().chain(pecked).chain(end.into_iter().flatten())
     }
+}
+
+/// One stroke of a drill along its axis, by the depth below R in whatever unit.
+///
+/// ```
+/// use toolpath::{Retreat, Stroke, peck_depths, strokes};
+///
+/// // 10 mm deep by 4 mm, out each time and down again to half a millimetre above what is drilled.
+/// let depths = peck_depths(10.0, 4.0, 3);
+/// let found: Vec<Stroke> = strokes(depths, Retreat::Out { clearance: 0.5 }).collect();
+/// assert_eq!(found[..4], [Stroke::In(4.0), Stroke::Out, Stroke::Again(3.5), Stroke::In(8.0)]);
+/// assert_eq!(found.last(), Some(&Stroke::In(10.0)));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stroke {
+    /// Drills down to a depth.
+    In(f64),
+    /// Out to R.
+    Out,
+    /// To above what is drilled: down again, or back from the chip.
+    Again(f64),
+}
+
+/// How a drill comes back between pecks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Retreat {
+    /// Out to R, and down again to so far above what is drilled.
+    Out {
+        /// How far.
+        clearance: f64,
+    },
+    /// By so much: the chip breaks.
+    Back {
+        /// By how much.
+        by: f64,
+    },
+}
+
+/// The strokes of a hole whose pecks reach these depths, one behind the other.
+pub fn strokes(depths: impl Iterator<Item = f64>, retreat: Retreat) -> impl Iterator<Item = Stroke> {
+    let mut drilled = None;
+    depths.flat_map(move |depth| {
+        let back = drilled.replace(depth).map(|done: f64| match retreat {
+            Retreat::Out { clearance } => (Some(Stroke::Out), Stroke::Again(done - clearance.min(done))),
+            Retreat::Back { by } => (None, Stroke::Again(done - by.min(done))),
+        });
+        let (out, again) = back.unzip();
+        out.flatten().into_iter().chain(again).chain([Stroke::In(depth)])
+    })
+}
+
+/// The depths of so many even pecks, the last one at the bottom.
+pub fn peck_depths(deep: f64, peck: f64, pecks: u32) -> impl Iterator<Item = f64> {
+    (1..pecks).map(move |count| f64::from(count) * peck).chain([deep])
 }
 
 /// In how many pecks a hole is drilled that is so many of them deep: the last one may be shorter, by a billionth also longer.

@@ -17,7 +17,10 @@ mod tilted;
 pub use chords::Chord;
 pub use feed_rate::FeedRate;
 pub use frame::{Frame, Similarity};
-pub use hole::{Cycle, CycleKind, Hole, HoleMove, MOST_PECKS, PeckRetreats, whole_pecks};
+pub use hole::{
+    Cycle, CycleKind, Hole, HoleMove, MOST_PECKS, PeckRetreats, Retreat, Stroke, peck_depths, strokes,
+    whole_pecks,
+};
 pub use motion::{Arc, Division, Feed, Kinematics, Motion, Mover, Shape};
 pub use nurbs::{Bezier, MOST_DEGREE, Nurbs, NurbsFault};
 pub use plane::Plane;

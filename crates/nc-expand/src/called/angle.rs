@@ -9,10 +9,11 @@
 //! The numbers written have 6 decimals.
 
 use diagnostic::{Text, both};
+use nc_program::modal::Modal;
 use nc_syntax::dialect::Action;
 use units::math;
 
-use crate::known::{Motion, State};
+use crate::known::{Motion, motion};
 use crate::shorthand::{AXES, Words, number};
 
 /// Radii and ways below this are none, in units of the program.
@@ -20,20 +21,20 @@ const NOTHING: f64 = 1e-6;
 
 /// The words that an arc's angle stands for, each with a blank before it.
 ///
-/// * `state` – before the block moves, its codes executed
+/// * `modal` – before the block moves, its codes executed
 /// * `words` – the block without `AR=`
 /// * `degrees` – the angle
 ///
 /// # Errors
 /// Why the arc cannot be told.
-pub(super) fn words(state: &State, words: &Words<'_, '_>, degrees: f64) -> Result<Vec<u8>, Text> {
+pub(super) fn words(modal: &Modal, words: &Words<'_, '_>, degrees: f64) -> Result<Vec<u8>, Text> {
     if !(degrees > 0.0 && degrees < 360.0) {
         return Err(both!(
             "an angle between 0 and 360 degrees was expected",
             "ожидался угол от 0 до 360 градусов"
         ));
     }
-    if state.motion != Motion::Arc {
+    if motion(modal) != Motion::Arc {
         return Err(both!("G2 or G3 was expected in the same block", "в том же кадре ожидалось G2 или G3"));
     }
     let clockwise = words.actions().any(|(action, _)| *action == Action::ArcClockwise);
@@ -41,8 +42,8 @@ pub(super) fn words(state: &State, words: &Words<'_, '_>, degrees: f64) -> Resul
     if clockwise == counter {
         return Err(both!("G2 or G3 was expected in the same block", "в том же кадре ожидалось G2 или G3"));
     }
-    let [u, v, _] = state.plane;
-    let (Some(a), Some(b)) = (state.at[u], state.at[v]) else {
+    let ([u, v, _], at) = (modal.plane.axes(), modal.places());
+    let (Some(a), Some(b)) = (at[u], at[v]) else {
         return Err(both!(
             "where the arc starts is not known: name both axes of the plane before it, in G90",
             "неизвестно, откуда начинается дуга: назовите до неё обе оси плоскости при G90"
@@ -50,14 +51,11 @@ pub(super) fn words(state: &State, words: &Words<'_, '_>, degrees: f64) -> Resul
     };
     let centres = [b"IJK"[u], b"IJK"[v]];
     let has = |letters: [u8; 2]| letters.map(|letter| words.number(letter).is_some());
-    let mut line = Vec::new();
-    let mut word = |letter: u8, value: f64| {
-        line.push(b' ');
-        number(&mut line, letter, value);
-    };
+    let mut line = b" ".to_vec();
+    let mut word = |letter: u8, value: f64| number(&mut line, letter, value);
     match (has([AXES[u], AXES[v]]), has(centres)) {
         (ends, [false, false]) if ends != [false, false] => {
-            let end = state.target(words);
+            let end = words.end(modal);
             let [Some(end_a), Some(end_b)] = [end[u], end[v]] else {
                 return Err(both!("where the arc ends is not known", "неизвестно, где кончается дуга"));
             };
@@ -71,11 +69,7 @@ pub(super) fn words(state: &State, words: &Words<'_, '_>, degrees: f64) -> Resul
             word(centres[1], 0.5 * way[1] + reach * way[0]);
         }
         ([false, false], [true, _] | [_, true]) => {
-            let centre = centres.map(|letter| {
-                words
-                    .number(letter)
-                    .map_or(0.0, |(number, _)| words.dialect.numbers.length(number, state.inch).to_f64())
-            });
+            let centre = centres.map(|letter| words.length(letter, modal.units).unwrap_or_default());
             if math::hypot(centre[0], centre[1]) < NOTHING {
                 return Err(both!("its radius is zero", "её радиус равен нулю"));
             }
@@ -84,7 +78,7 @@ pub(super) fn words(state: &State, words: &Words<'_, '_>, degrees: f64) -> Resul
                 a + centre[0] - cos * centre[0] + sin * centre[1],
                 b + centre[1] - sin * centre[0] - cos * centre[1],
             ];
-            let from = if state.absolute { [0.0; 2] } else { [a, b] };
+            let from = if modal.says_places() { [0.0; 2] } else { [a, b] };
             word(AXES[u], end[0] - from[0]);
             word(AXES[v], end[1] - from[1]);
         }

@@ -2,24 +2,26 @@
 
 use diagnostic::{Text, both};
 use nc_program::Owner;
+use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Called};
 use nc_syntax::{Block, ItemKind, Reader, Span, Value};
 use units::math;
 
-use super::{Fault, Writer, angle, arguments, called, dimension, names_axes};
+use super::{Writer, angle, arguments, called, dimension, names_axes};
 use crate::codes;
-use crate::known::{Motion, State};
-use crate::shorthand::{AXES, Words, from, number, shown};
+use crate::known::{Motion, motion};
+use crate::lowering::{Came, Fault};
+use crate::output::{Style, word};
+use crate::shorthand::{AXES, Words, add, line_of, numbers, shown};
 
 impl Writer<'_> {
     /// `X=AC()`, `X=IC()` and `TURN=` in a block.
-    pub(super) fn dimensions(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
-        let block = words.block;
-        let start = self.state().at;
-        let Some((here, owner)) = self.out.known.codes(block) else {
+    pub(super) fn dimensions(&mut self, came: &Came<'_>) -> Result<(), Fault> {
+        let (block, words) = (&came.block, &Words::of(came, self.dialect));
+        let start = self.modal().places();
+        let Some((here, owner)) = self.out.known().codes(block) else {
             // Its own codes are refused, before its words are asked for.
-            self.out.block(block);
-            return Ok(());
+            return self.out.came(came);
         };
         let owned = matches!(owner, Owner::Motion | Owner::DwellP);
         let refuse = |span: Span, label: Text| {
@@ -69,38 +71,29 @@ impl Writer<'_> {
                     };
                     (letter, place)
                 }
-                ItemKind::BracketCommand if called(block, self.dialect, item) == Some(Called::ArcAngle) => {
-                    let written = block.text(item.span);
-                    let value = written.iter().position(|byte| *byte == b'=').map(|at| &written[at + 1..]);
-                    let value = value.and_then(|value| std::str::from_utf8(value).ok());
-                    let Some(value) = value.and_then(|value| arguments::number(value.trim())) else {
-                        return Err(refuse(
-                            item.span,
-                            both!(
+                ItemKind::BracketCommand => {
+                    let written = std::str::from_utf8(block.text(item.span)).unwrap_or_default();
+                    let value = written.split_once('=').map(|(_, value)| value.trim());
+                    match called(block, self.dialect, item) {
+                        Some(Called::ArcAngle) => {
+                            let label = both!(
                                 "a plain number of degrees was expected",
                                 "ожидалось простое число градусов"
-                            ),
-                        ));
-                    };
-                    angle = Some((value, item.span));
-                    text.extend_from_slice(block.bytes[done..item.span.start as usize].trim_ascii_end());
-                    done = item.span.end as usize;
-                    continue;
-                }
-                ItemKind::BracketCommand if called(block, self.dialect, item) == Some(Called::Turns) => {
-                    let written = String::from_utf8_lossy(block.text(item.span)).into_owned();
-                    let count =
-                        written.split_once('=').and_then(|(_, count)| count.trim().parse::<u32>().ok());
-                    let Some(count) = count.filter(|count| *count <= 999) else {
-                        return Err(refuse(
-                            item.span,
-                            both!(
+                            );
+                            let value = value.and_then(arguments::number);
+                            angle = Some((value.ok_or_else(|| refuse(item.span, label))?, item.span));
+                        }
+                        Some(Called::Turns) => {
+                            let label = both!(
                                 "a whole number of turns up to 999 was expected",
                                 "ожидалось целое число оборотов до 999"
-                            ),
-                        ));
-                    };
-                    turns = Some((count, item.span));
+                            );
+                            let count =
+                                value.and_then(|value| value.parse().ok()).filter(|count| *count <= 999);
+                            turns = Some((count.ok_or_else(|| refuse(item.span, label))?, item.span));
+                        }
+                        _ => continue,
+                    }
                     text.extend_from_slice(block.bytes[done..item.span.start as usize].trim_ascii_end());
                     done = item.span.end as usize;
                     continue;
@@ -108,7 +101,7 @@ impl Writer<'_> {
                 _ => continue,
             };
             text.extend_from_slice(&block.bytes[done..item.span.start as usize]);
-            number(&mut text, letter, place);
+            let _ = word(&mut text, letter, place, Style::Decimals(6));
             done = item.span.end as usize;
         }
         text.extend_from_slice(&block.bytes[done..]);
@@ -118,7 +111,7 @@ impl Writer<'_> {
         if !reader.next(&mut plain_block) {
             return Ok(());
         }
-        let plain_words = Words { block: &plain_block, dialect: self.dialect };
+        let plain_words = Words { block: &plain_block, ..*words };
         if let Some((degrees, span)) = angle {
             if turns.is_some() {
                 return Err(refuse(span, both!("beside TURN", "рядом с TURN")));
@@ -137,7 +130,7 @@ impl Writer<'_> {
         let moves = owned && names_axes(&plain_words);
         match turns {
             Some((count, span)) if count > 0 => self.helix(words, &plain_words, &here, count, span)?,
-            _ => self.out.write(&text, from(block)),
+            _ => self.out.write(&text, words.from)?,
         }
         self.behind(words, moves, start)
     }
@@ -154,8 +147,8 @@ impl Writer<'_> {
         let stop = text.iter().position(|byte| *byte == b';').unwrap_or(text.len());
         let end = text[..stop].trim_ascii_end().len();
         let text = [&text[..end], more, &text[end..]].concat();
-        self.out.comment(shown(words.block), from(words.block));
-        self.out.write(&text, from(words.block));
+        self.out.comment(shown(words.block), words.from)?;
+        self.out.write(&text, words.from)?;
         self.behind(words, true, start)
     }
 
@@ -164,7 +157,7 @@ impl Writer<'_> {
         &mut self,
         words: &Words<'_, '_>,
         plain: &Words<'_, '_>,
-        here: &State,
+        here: &Modal,
         count: u32,
         span: Span,
     ) -> Result<(), Fault> {
@@ -177,10 +170,10 @@ impl Writer<'_> {
                 both!("let the CAM write each turn", "выводите из CAM каждый оборот"),
             )
         };
-        if here.motion != Motion::Arc {
+        if motion(here) != Motion::Arc {
             return Err(refuse(both!("G2 or G3 was expected", "ожидалось G2 или G3")));
         }
-        if !here.absolute {
+        if !here.says_places() {
             return Err(refuse(both!("under G91; write G90", "при G91; напишите G90")));
         }
         if plain.number(b'M').is_some()
@@ -196,15 +189,15 @@ impl Writer<'_> {
                 "рядом с функциями M, радиусом или командами"
             )));
         }
-        let [u, v, n] = here.plane;
+        let ([u, v, n], at) = (here.plane.axes(), here.places());
         let centre_letters = [b"IJK"[u], b"IJK"[v]];
-        let (Some(a), Some(b), Some(h)) = (here.at[u], here.at[v], here.at[n]) else {
+        let (Some(a), Some(b), Some(h)) = (at[u], at[v], at[n]) else {
             return Err(refuse(both!(
                 "where the helix starts is not known: name X, Y and Z before it, in G90",
                 "неизвестно, откуда начинается винтовая линия: назовите до неё X, Y и Z при G90"
             )));
         };
-        let target = here.target(plain);
+        let target = plain.end(here);
         let end = [u, v, n].map(|axis| target[axis].unwrap_or(f64::NAN));
         let centre = centre_letters
             .map(|letter| plain.number(letter).map_or(0.0, |(value, _)| value.decimal.to_f64()));
@@ -228,7 +221,8 @@ impl Writer<'_> {
             )));
         }
         let all = f64::from(count) * full + rest;
-        let code: &[u8] = if clockwise { b"G2 " } else { b"G3 " };
+        let code: &[u8] = if clockwise { b"G2" } else { b"G3" };
+        let centres = [(centre_letters[0], centre[0]), (centre_letters[1], centre[1])];
         for turn in 1..=count {
             let mut line = if turn == 1 {
                 kept(plain, [AXES[u], AXES[v], AXES[n], centre_letters[0], centre_letters[1]])
@@ -236,27 +230,11 @@ impl Writer<'_> {
                 code.to_vec()
             };
             let level = h + (end[2] - h) * (f64::from(turn) * full / all);
-            number(&mut line, AXES[u], a);
-            line.push(b' ');
-            number(&mut line, AXES[v], b);
-            line.push(b' ');
-            number(&mut line, AXES[n], level);
-            for (letter, offset) in centre_letters.into_iter().zip(centre) {
-                line.push(b' ');
-                number(&mut line, letter, offset);
-            }
-            self.out.line(&line, from(words.block));
+            numbers(&mut line, [(AXES[u], a), (AXES[v], b), (AXES[n], level)].into_iter().chain(centres));
+            self.out.line(&line, words.from)?;
         }
-        let mut line = code.to_vec();
-        for (k, axis) in [u, v, n].into_iter().enumerate() {
-            number(&mut line, AXES[axis], end[k]);
-            line.push(b' ');
-        }
-        number(&mut line, centre_letters[0], centre[0]);
-        line.push(b' ');
-        number(&mut line, centre_letters[1], centre[1]);
-        self.out.line(&line, from(words.block));
-        Ok(())
+        let places = [u, v, n].map(|axis| AXES[axis]).into_iter().zip(end);
+        self.out.line(&line_of(code, places.chain(centres)), words.from)
     }
 }
 
@@ -270,29 +248,29 @@ fn refuse_angle(words: &Words<'_, '_>, span: Span, label: Text) -> Fault {
     )
 }
 
-/// The words of a block but for some letters, each with a blank behind it.
+/// The words of a block but for some letters.
 fn kept(words: &Words<'_, '_>, without: [u8; 5]) -> Vec<u8> {
     let mut line = Vec::new();
     for item in &words.block.items {
         if let ItemKind::Word { letter, .. } = item.kind
             && !without.contains(&letter)
         {
-            line.extend_from_slice(words.block.text(item.span));
-            line.push(b' ');
+            add(&mut line, words.block.text(item.span));
         }
     }
     line
 }
 
 /// The number that a word without AC and IC needs.
-fn place(state: &State, letter: u8, value: f64, by: bool) -> Option<f64> {
+fn place(modal: &Modal, letter: u8, value: f64, by: bool) -> Option<f64> {
+    let at = modal.places();
     if let Some(axis) = AXES.iter().position(|axis| *axis == letter) {
-        return match (by, state.absolute) {
+        return match (by, modal.says_places()) {
             (false, true) | (true, false) => Some(value),
-            (true, true) => Some(state.at[axis]? + value),
-            (false, false) => Some(value - state.at[axis]?),
+            (true, true) => Some(at[axis]? + value),
+            (false, false) => Some(value - at[axis]?),
         };
     }
     let axis = usize::from(letter - b'I');
-    if by { Some(value) } else { Some(value - state.at[axis]?) }
+    if by { Some(value) } else { Some(value - at[axis]?) }
 }

@@ -5,10 +5,11 @@ use nc_program::Owner;
 use nc_syntax::dialect::Action;
 
 use super::hole::{Hole, Move};
-use super::{Fault, Writer, names_axes};
+use super::{Writer, names_axes};
 use crate::codes;
-use crate::known::{Motion, State};
-use crate::shorthand::{AXES, Words, from, number};
+use crate::known::{Motion, motion};
+use crate::lowering::Fault;
+use crate::shorthand::{AXES, Words, line_of, number};
 
 impl Writer<'_> {
     /// Feed and spindle behind a cycle that leaves them open: what the block says of them, or that it had to.
@@ -19,9 +20,9 @@ impl Writer<'_> {
             let code = word.number().filter(|_| word.letter == b'M').and_then(|number| number.integer());
             matches!(code, Some(3..=5))
         });
-        match self.out.known.codes(words.block) {
+        match self.out.known().codes(words.block) {
             Some((here, Owner::Motion | Owner::DwellP))
-                if names_axes(words) && matches!(here.motion, Motion::Line | Motion::Arc) =>
+                if names_axes(words) && matches!(motion(&here), Motion::Line | Motion::Arc) =>
             {
                 self.needs(words, true, true)
             }
@@ -55,8 +56,8 @@ impl Writer<'_> {
 
     /// The moves of a hole where the axes stand.
     pub(super) fn drill(&mut self, words: &Words<'_, '_>, hole: &Hole) -> Result<(), Fault> {
-        let State { absolute, plane, at: hole_at, .. } = self.state();
-        if !absolute {
+        let (plane, hole_at) = (self.plane(), self.modal().places());
+        if !self.modal().says_places() {
             return Err(words.fault(
                 codes::CALLED_CYCLE,
                 words.whole(),
@@ -69,60 +70,37 @@ impl Writer<'_> {
         self.unsaid.feed |= hole.leaves_feed;
         self.unsaid.spindle |= hole.leaves_spindle;
         let axis = plane[2];
-        let (source, letter) = (from(words.block), AXES[axis]);
+        let (source, letter) = (words.from, AXES[axis]);
         for step in &hole.moves {
-            let mut line = Vec::new();
-            match *step {
-                Move::Rapid(to) => {
-                    line.extend_from_slice(b"G0 ");
-                    number(&mut line, letter, to);
-                }
-                Move::Feed(to) => {
-                    line.extend_from_slice(b"G1 ");
-                    number(&mut line, letter, to);
-                }
-                Move::FeedAt(to, feed) => {
-                    line.extend_from_slice(b"G1 ");
-                    number(&mut line, letter, to);
-                    line.push(b' ');
-                    number(&mut line, b'F', feed);
-                }
-                Move::Spindle(code) => line.extend_from_slice(format!("M{code}").as_bytes()),
-                Move::Orient(angle) => {
-                    number(&mut line, b'=', angle);
-                    line.splice(0..0, *b"SPOS");
-                }
+            let line = match *step {
+                Move::Rapid(to) => line_of(b"G0", [(letter, to)]),
+                Move::Feed(to) => line_of(b"G1", [(letter, to)]),
+                Move::FeedAt(to, feed) => line_of(b"G1", [(letter, to), (b'F', feed)]),
+                Move::Spindle(code) => format!("M{code}").into_bytes(),
+                Move::Orient(angle) => [&b"SPOS"[..], &line_of(b"", [(b'=', angle)])].concat(),
                 Move::Aside(by) => {
-                    line.extend_from_slice(b"G0");
+                    let mut line = b"G0".to_vec();
                     for (axis, by) in plane.into_iter().zip(by).filter(|(_, by)| *by != 0.0) {
-                        let at = self.place(words, axis)? + by;
-                        line.push(b' ');
-                        number(&mut line, AXES[axis], at);
+                        number(&mut line, AXES[axis], self.place(words, axis)? + by);
                     }
+                    line
                 }
                 Move::Over(to) => {
-                    line.extend_from_slice(b"G0");
-                    let here = self.state().at;
-                    for axis in plane[..2].iter().filter(|axis| here[**axis] != hole_at[**axis]) {
-                        line.push(b' ');
-                        number(&mut line, AXES[*axis], hole_at[*axis].unwrap_or(f64::NAN));
-                    }
-                    line.push(b' ');
-                    number(&mut line, letter, to);
+                    let here = self.modal().places();
+                    let moved = plane[..2].iter().filter(|axis| here[**axis] != hole_at[**axis]);
+                    let back = moved.map(|axis| (AXES[*axis], hole_at[*axis].unwrap_or(f64::NAN)));
+                    line_of(b"G0", back.chain([(letter, to)]))
                 }
-                Move::Dwell(time) => {
-                    line.extend_from_slice(b"G4 ");
-                    number(&mut line, if time < 0.0 { b'S' } else { b'F' }, time.abs());
-                }
-            }
-            self.out.line(&line, source);
+                Move::Dwell(time) => line_of(b"G4", [(if time < 0.0 { b'S' } else { b'F' }, time.abs())]),
+            };
+            self.out.line(&line, source)?;
         }
         Ok(())
     }
 
     /// Where an axis stands.
     fn place(&self, words: &Words<'_, '_>, axis: usize) -> Result<f64, Fault> {
-        self.state().at[axis].ok_or_else(|| {
+        self.modal().places()[axis].ok_or_else(|| {
             words.fault(
                 codes::CALLED_CYCLE,
                 words.whole(),
@@ -137,10 +115,7 @@ impl Writer<'_> {
     pub(super) fn restore(&mut self, words: &Words<'_, '_>, before: Motion) -> Result<(), Fault> {
         match before {
             Motion::Rapid | Motion::None => Ok(()),
-            Motion::Line => {
-                self.out.line(b"G1", from(words.block));
-                Ok(())
-            }
+            Motion::Line => self.out.line(b"G1", words.from),
             Motion::Arc | Motion::Cycle => Err(words.fault(
                 codes::CALLED_CYCLE,
                 words.whole(),

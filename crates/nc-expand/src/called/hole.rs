@@ -6,13 +6,12 @@
 
 use diagnostic::{Text, both};
 use nc_syntax::dialect::Called;
+use toolpath::{MOST_PECKS, Retreat, Stroke, strokes};
 
-use super::Fault;
 use super::arguments::Arguments;
+use crate::lowering::Fault;
 use crate::shorthand::Words;
 
-/// Pecks of one hole; more are a wrong depth.
-const MOST_PECKS: usize = 2_000;
 /// How far chip breaking goes back where no argument says it, mm.
 const CHIP_MM: f64 = 1.0;
 /// How far above the depth reached the feed begins again in a hole of up to 30 mm, mm.
@@ -313,41 +312,55 @@ fn pecks(
         0.0 => deep_mm / unit_mm,
         own => own.abs(),
     };
-    let strokes = strokes(whole, first.min(whole), less).ok_or_else(|| {
+    let lengths = lengths(whole, first.min(whole), less).ok_or_else(|| {
         call.fault(
             words,
             both!("CYCLE83 of more than {MOST_PECKS} pecks", "CYCLE83 больше чем в {MOST_PECKS} проходов"),
             both!("arguments 6 to 8", "аргументы 6–8"),
         )
     })?;
-    let mut reached = reference;
-    for (index, stroke) in strokes.iter().enumerate() {
-        if index > 0 {
-            if chips_out {
+    // Strokes count from the reference plane, depths from where the drill comes to.
+    let mut deep = (near - reference).abs();
+    let mut depths: Vec<f64> = lengths
+        .iter()
+        .map(|length| {
+            deep += length;
+            deep
+        })
+        .collect();
+    let whole = (bottom - near).abs();
+    if let Some(last_depth) = depths.last_mut() {
+        *last_depth = whole;
+    }
+    let place = |depth: f64| near + inwards * depth;
+    let retreat = if chips_out { Retreat::Out { clearance: ahead } } else { Retreat::Back { by: back } };
+    for stroke in strokes(depths.into_iter(), retreat) {
+        match stroke {
+            Stroke::In(depth) => {
+                let (to, time) = if depth == whole { (bottom, last) } else { (place(depth), at_bottom) };
+                moves.push(Move::Feed(to));
+                dwell(time, moves);
+            }
+            Stroke::Out => {
                 moves.push(Move::Rapid(near));
                 dwell(at_start, moves);
-                // Never out of the hole on the way in.
-                moves.push(Move::Rapid(reached - inwards * ahead.min((reached - near).abs())));
-            } else {
-                moves.push(Move::Feed(reached - inwards * back.min((reached - near).abs())));
             }
+            // Never out of the hole on the way in.
+            Stroke::Again(depth) if chips_out => moves.push(Move::Rapid(place(depth))),
+            Stroke::Again(depth) => moves.push(Move::Feed(place(depth))),
         }
-        let end = index + 1 == strokes.len();
-        reached = if end { bottom } else { reached + inwards * stroke };
-        moves.push(Move::Feed(reached));
-        dwell(if end { last } else { at_bottom }, moves);
     }
     Ok(())
 }
 
-/// Strokes of a hole: each shorter than the one before it by `less` until it is no longer than that; the last two share
+/// How long the strokes of a hole are: each shorter than the one before it by `less` until it is no longer than that; the last two share
 /// what is left where the strokes shrink.
-fn strokes(whole: f64, first: f64, less: f64) -> Option<Vec<f64>> {
-    let mut strokes = vec![first];
+fn lengths(whole: f64, first: f64, less: f64) -> Option<Vec<f64>> {
+    let mut lengths = vec![first];
     let mut left = whole - first;
     let mut stroke = first;
     while left > NOTHING {
-        if strokes.len() >= MOST_PECKS {
+        if lengths.len() >= MOST_PECKS as usize {
             return None;
         }
         if stroke - less > less {
@@ -356,17 +369,17 @@ fn strokes(whole: f64, first: f64, less: f64) -> Option<Vec<f64>> {
             stroke = less;
         }
         if left <= stroke + NOTHING {
-            strokes.push(left);
+            lengths.push(left);
             break;
         }
         if less > 0.0 && left < 2.0 * stroke {
-            strokes.extend([0.5 * left, 0.5 * left]);
+            lengths.extend([0.5 * left, 0.5 * left]);
             break;
         }
-        strokes.push(stroke);
+        lengths.push(stroke);
         left -= stroke;
     }
-    Some(strokes)
+    Some(lengths)
 }
 
 #[cfg(test)]
@@ -376,11 +389,11 @@ mod tests {
     #[test]
     fn strokes_shrink_to_the_degression_and_the_last_two_share_the_rest() {
         // 150 mm, first 50, less 20: 50, 30, then 20 as long as more than 40 are left, the rest halved.
-        let found = strokes(150.0, 50.0, 20.0).unwrap();
+        let found = lengths(150.0, 50.0, 20.0).unwrap();
         assert_eq!(found, [50.0, 30.0, 20.0, 20.0, 15.0, 15.0]);
         assert_eq!(found.iter().sum::<f64>(), 150.0);
-        assert_eq!(strokes(10.0, 4.0, 0.0).unwrap(), [4.0, 4.0, 2.0]);
-        assert_eq!(strokes(10.0, 10.0, 0.0).unwrap(), [10.0]);
-        assert!(strokes(10.0, 1e-4, 0.0).is_none());
+        assert_eq!(lengths(10.0, 4.0, 0.0).unwrap(), [4.0, 4.0, 2.0]);
+        assert_eq!(lengths(10.0, 10.0, 0.0).unwrap(), [10.0]);
+        assert!(lengths(10.0, 1e-4, 0.0).is_none());
     }
 }

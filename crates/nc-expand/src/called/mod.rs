@@ -21,21 +21,20 @@ mod drill;
 mod hole;
 mod pattern;
 
-use diagnostic::{Diagnostic, both};
-use nc_program::{Owner, Setup};
+use diagnostic::{Text, both};
+use nc_program::Owner;
+use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Called};
-use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value};
+use nc_syntax::{Block, Dialect, Item, ItemKind, Span, Value};
 
 use crate::codes;
-use crate::known::{Rewriting, State};
-use crate::output::Written;
-use crate::shorthand::{AXES, Words, from, number, shown};
+use crate::known::{Rewriting, motion};
+use crate::lowering::{Came, Fault, Lower};
+use crate::shorthand::{AXES, Corners, Words, numbers, shown};
 use crate::siemens;
 use arguments::Arguments;
 pub(crate) use arguments::number as plain_number;
 use hole::Hole;
-
-type Fault = Box<Diagnostic>;
 
 /// True where the block has a name that this dialect writes out.
 pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
@@ -74,59 +73,66 @@ fn dimension(letter: u8, text: &[u8]) -> Option<(&str, bool)> {
     }
 }
 
-/// The program with its names written out, and where each stretch of it comes from.
-pub(crate) fn write_out(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Written, Fault> {
-    let out = Rewriting::new(dialect, setup, text);
-    let mut writer = Writer { dialect, out, modal: None, unsaid: Unsaid::default() };
-    let mut reader = Reader::new(text, dialect);
-    let mut block = Block::default();
-    let mut fault = None;
-    while fault.is_none() && reader.next(&mut block) {
-        fault = writer.block(&block).err();
-        // Behind a line with a corner it is the place that it names, from which dimensions count.
-        #[cfg(test)]
-        if (Words { block: &block, dialect }).corner().is_none() {
-            writer.out.believe(writer.out.known.state().belief());
-        }
-    }
-    writer.out.end(fault)
-}
-
-struct Writer<'d> {
+/// Writes names out, block by block.
+pub(crate) struct Writer<'d> {
     dialect: &'d Dialect,
-    out: Rewriting<'d>,
+    out: Corners<'d>,
     /// The cycle of MCALL.
     modal: Option<Hole>,
     unsaid: Unsaid,
 }
 
 /// What a cycle left in force that its manual does not say.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
 struct Unsaid {
     feed: bool,
     spindle: bool,
 }
 
-impl Writer<'_> {
-    fn block(&mut self, block: &Block<'_>) -> Result<(), Fault> {
-        let words = Words { block, dialect: self.dialect };
+impl<'d> Lower<'d> for Writer<'d> {
+    fn came(&mut self, came: &Came<'_>) -> Result<(), Fault> {
+        if self.modal.is_none() && self.unsaid == Unsaid::default() && !needed(&came.block, self.dialect) {
+            return self.out.came(came);
+        }
+        self.out.wake();
+        self.block(came)
+    }
+
+    fn fresh_line(&mut self) {
+        self.out.fresh_line();
+    }
+
+    fn end(self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>) {
+        self.out.end()
+    }
+}
+
+impl<'d> Writer<'d> {
+    pub(crate) const fn new(out: Rewriting<'d>) -> Self {
+        Self {
+            dialect: out.dialect,
+            out: Corners::new(out),
+            modal: None,
+            unsaid: Unsaid { feed: false, spindle: false },
+        }
+    }
+
+    fn block(&mut self, came: &Came<'_>) -> Result<(), Fault> {
+        let (block, words) = (&came.block, Words::of(came, self.dialect));
         self.said(&words)?;
         if !needed(block, self.dialect) {
-            let before = self.state().at;
-            let moves = self.moves(block);
-            self.out.block(block);
+            let before = self.modal().places();
+            let moves = self.moves(&words);
+            self.out.came(came)?;
             return self.behind(&words, moves, before);
         }
         if words.skipped() {
-            return Err(words.fault(
-                codes::BLOCK_DELETE,
-                words.whole(),
+            return Err(skipped(
+                &words,
                 both!(
                     "a cycle or an increment behind block delete",
                     "цикл или приращение в кадре с пропуском"
                 ),
-                both!("two programs in one", "две программы в одной"),
-                both!("remove the `/`, or the block", "уберите `/` или кадр"),
             ));
         }
         let calls: Vec<(Called, Span)> = block
@@ -136,7 +142,7 @@ impl Writer<'_> {
             .filter(|(called, _)| !matches!(called, Called::Turns | Called::ArcAngle))
             .collect();
         if calls.is_empty() {
-            return self.dimensions(&words);
+            return self.dimensions(came);
         }
         self.alone(&words)?;
         let comment = shown(block).to_vec();
@@ -167,11 +173,11 @@ impl Writer<'_> {
                     ));
                 }
                 self.modal = None;
-                self.out.comment(&comment, from(block));
+                self.out.comment(&comment, words.from)?;
             }
             [(Called::Modal, _), (cycle, span)] if self.drills(*cycle) => {
                 self.modal = Some(self.hole(&words, *cycle, *span)?);
-                self.out.comment(&comment, from(block));
+                self.out.comment(&comment, words.from)?;
             }
             [(Called::HolesRow | Called::HolesCircle, span)] => {
                 let call = Arguments::read(&words, *span)?;
@@ -190,20 +196,20 @@ impl Writer<'_> {
                 } else {
                     pattern::circle(&words, &call)?
                 };
-                self.out.comment(&comment, from(block));
-                let motion = self.state().motion;
+                self.out.comment(&comment, words.from)?;
+                let motion = motion(self.modal());
                 for place in places {
                     let mut line = b"G0 ".to_vec();
                     self.point(&mut line, place);
-                    self.out.line(&line, from(block));
+                    self.out.line(&line, words.from)?;
                     self.drill(&words, &hole)?;
                 }
                 self.restore(&words, motion)?;
             }
             [(cycle, span)] if self.drills(*cycle) => {
                 let hole = self.hole(&words, *cycle, *span)?;
-                self.out.comment(&comment, from(block));
-                let motion = self.state().motion;
+                self.out.comment(&comment, words.from)?;
+                let motion = motion(self.modal());
                 self.drill(&words, &hole)?;
                 self.restore(&words, motion)?;
             }
@@ -234,20 +240,23 @@ impl Writer<'_> {
 
     fn hole(&self, words: &Words<'_, '_>, cycle: Called, span: Span) -> Result<Hole, Fault> {
         let call = Arguments::read(words, span)?;
-        let State { inch, plane, .. } = self.state();
-        Hole::read(words, cycle, &call, if inch { 25.4 } else { 1.0 }, plane[2])
+        Hole::read(words, cycle, &call, self.modal().units.mm(), self.plane()[2])
     }
 
     /// Behind what is written.
-    fn state(&self) -> State {
-        self.out.known.state()
+    fn modal(&self) -> &Modal {
+        self.out.known().modal()
+    }
+
+    /// First and second axis of the plane, and its normal.
+    fn plane(&self) -> [usize; 3] {
+        self.modal().plane.axes()
     }
 
     /// True where the block has words of a motion.
-    fn moves(&self, block: &Block<'_>) -> bool {
-        let words = Words { block, dialect: self.dialect };
-        let owner = self.out.known.codes(block).map(|(_, owner)| owner);
-        matches!(owner, Some(Owner::Motion | Owner::DwellP)) && names_axes(&words)
+    fn moves(&self, words: &Words<'_, '_>) -> bool {
+        let owner = self.out.known().codes(words.block).map(|(_, owner)| owner);
+        matches!(owner, Some(Owner::Motion | Owner::DwellP)) && names_axes(words)
     }
 
     /// A call stands in a block of its own.
@@ -276,20 +285,14 @@ impl Writer<'_> {
     /// * `before` – where the axes stood
     fn behind(&mut self, at: &Words<'_, '_>, moves: bool, before: [Option<f64>; 3]) -> Result<(), Fault> {
         let Some(hole) = self.modal.clone() else { return Ok(()) };
-        if !moves && self.state().at == before {
+        if !moves && self.modal().places() == before {
             return Ok(());
         }
         if at.skipped() {
-            return Err(at.fault(
-                codes::BLOCK_DELETE,
-                at.whole(),
-                both!("a hole behind block delete", "отверстие в кадре с пропуском"),
-                both!("two programs in one", "две программы в одной"),
-                both!("remove the `/`, or the block", "уберите `/` или кадр"),
-            ));
+            return Err(skipped(at, both!("a hole behind block delete", "отверстие в кадре с пропуском")));
         }
-        let State { motion, plane, at: places, .. } = self.state();
-        if !moves || plane[..2].iter().any(|axis| places[*axis].is_none()) {
+        let (motion, places) = (motion(self.modal()), self.modal().places());
+        if !moves || self.plane()[..2].iter().any(|axis| places[*axis].is_none()) {
             return Err(at.fault(
                 codes::CALLED_CYCLE,
                 at.whole(),
@@ -309,11 +312,20 @@ impl Writer<'_> {
     }
 
     fn point(&self, line: &mut Vec<u8>, place: [f64; 2]) {
-        let [u, v, _] = self.state().plane;
-        number(line, AXES[u], place[0]);
-        line.push(b' ');
-        number(line, AXES[v], place[1]);
+        let [u, v, _] = self.plane();
+        numbers(line, [(AXES[u], place[0]), (AXES[v], place[1])]);
     }
+}
+
+/// Refuses what is done or not, by a switch.
+fn skipped(words: &Words<'_, '_>, message: Text) -> Fault {
+    words.fault(
+        codes::BLOCK_DELETE,
+        words.whole(),
+        message,
+        both!("two programs in one", "две программы в одной"),
+        both!("remove the `/`, or the block", "уберите `/` или кадр"),
+    )
 }
 
 /// The block has words that a motion takes: rotary axes move too, and a full circle names its centre alone.

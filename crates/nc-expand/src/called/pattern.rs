@@ -3,9 +3,9 @@
 use diagnostic::both;
 use units::math;
 
+use super::Writer;
 use super::arguments::Arguments;
-use super::{Fault, Writer};
-use crate::known::State;
+use crate::lowering::Fault;
 use crate::shorthand::Words;
 
 /// Holes of one pattern; more are a wrong count.
@@ -24,7 +24,7 @@ impl Writer<'_> {
             [call.or_zero(0) + along * cos, call.or_zero(1) + along * sin]
         };
         let mut places: Vec<[f64; 2]> = (0..count).map(at).collect();
-        let State { plane: [u, v, _], at: stands, .. } = self.state();
+        let ([u, v, _], stands) = (self.plane(), self.modal().places());
         let (Some(a), Some(b)) = (stands[u], stands[v]) else {
             return Err(call.fault(
                 words,

@@ -13,13 +13,13 @@ use nc_syntax::Span;
 use units::math;
 
 use super::emit::Code;
-use super::state::Motion;
-use super::{Fault, MILLION, Spot, Writer};
+use super::{MILLION, Spot, Writer};
+use crate::lowering::Fault;
 
 /// Passes of one thread; more are a wrong infeed.
 const MOST_PASSES: u32 = 1000;
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     pub(super) fn compound_thread(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
         let refuse =
@@ -40,10 +40,10 @@ impl Writer<'_, '_> {
                 ));
             }
         }
-        let length = |letter: u8| self.state.length(&words, letter).map(|value| value as f64);
+        let length = |letter: u8| self.length(&words, letter).map(|value| value as f64);
         let plain = |letter: u8| words.number(letter).map(|(number, _)| number.to_f64());
         let (Some((_, lead)), Some(end), Some(crest), Some(first), Some(height)) =
-            (words.number(b'P'), self.state.length(&words, b'Z'), length(b'I'), length(b'J'), length(b'K'))
+            (words.number(b'P'), self.length(&words, b'Z'), length(b'I'), length(b'J'), length(b'K'))
         else {
             return refuse(
                 both!("a thread without P, Z, I, J or K", "резьба без P, Z, I, J или K"),
@@ -68,7 +68,7 @@ impl Writer<'_, '_> {
             );
         };
         let fits = first > 0.0 && height >= first && crest != 0.0 && degression >= 1.0;
-        if !fits || !self.state.absolute || end >= start[1] || !(0.0..=80.0).contains(&angle) {
+        if !fits || !self.here.says_places() || end >= start[1] || !(0.0..=80.0).contains(&angle) {
             return refuse(
                 both!(
                     "a thread of several passes that is not certain",
@@ -86,7 +86,7 @@ impl Writer<'_, '_> {
         }
         let outside = if crest < 0.0 { 1.0 } else { -1.0 };
         let (crest, whole) = (crest.abs(), crest.abs() + height);
-        let slope = math::tan(angle.to_radians()) * self.scale()[0] * MILLION;
+        let slope = math::tan(angle.to_radians()) * self.plane([1, 0])[0] * MILLION;
         let shift = |depth: f64| (depth - crest) * slope;
         let mut depths = Vec::new();
         for pass in 1..=MOST_PASSES {
@@ -120,7 +120,7 @@ impl Writer<'_, '_> {
         }
         self.go(&mut moves, Code::Rapid, [start[0], end]);
         self.end(moves);
-        self.state.motion = Motion::Unknown;
+        self.leave_open();
         Ok(())
     }
 }

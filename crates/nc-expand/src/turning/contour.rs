@@ -1,14 +1,18 @@
 //! The blocks between P and Q as a way in the plane of radius and Z.
 
+use std::ops::RangeInclusive;
+
 use diagnostic::{Text, both};
 use nc_syntax::dialect::Action;
 use nc_syntax::{ItemKind, Span, Value};
 use units::math;
 
+use super::drawing::{self, Drawing};
 use super::emit::Code;
-use super::state::Motion;
-use super::{Fault, Spot, Writer};
+use super::place::may_stand_beside;
+use super::{Spot, Writer};
 use crate::codes;
+use crate::lowering::{Came, Fault, Held};
 use crate::shorthand::Words;
 
 /// Ends and centres of programs are rounded: so far may a contour turn back, mm or inches.
@@ -28,7 +32,7 @@ pub(super) struct Piece {
     /// Words of the centre or radius, as they were written.
     pub(super) round: Vec<u8>,
     pub(super) way: Way,
-    /// Index of its block.
+    /// Index of its block among those of the contour.
     pub(super) block: usize,
 }
 
@@ -54,6 +58,8 @@ pub(super) struct Contour {
     pub(super) first: usize,
     /// Block of Q.
     pub(super) last: usize,
+    /// Its blocks, their drawings written out.
+    pub(super) blocks: Vec<Held>,
     /// A: where the tool stands.
     pub(super) start: Spot,
     /// The way from A to A'.
@@ -178,9 +184,9 @@ impl Way {
     }
 }
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     /// Reads the contour between the blocks that P and Q of a cycle name, from where the tool stands.
-    pub(super) fn contour(&self, words: &Words<'_, '_>, start: Spot) -> Result<Contour, Fault> {
+    pub(super) fn contour(&mut self, words: &Words<'_, '_>, start: Spot) -> Result<Contour, Fault> {
         let first = self.numbered(words, b'P')?;
         let last = self.numbered(words, b'Q')?;
         if last < first {
@@ -191,21 +197,26 @@ impl Writer<'_, '_> {
                 both!("Q ends the contour", "Q завершает контур"),
             ));
         }
-        let mut state = self.state.clone();
-        state.stands_at(start);
+        let blocks = self.drawn(words, first..=last)?;
+        let mut ahead = self.out.known.clone();
+        ahead.written(&words.codes(may_stand_beside), words.from);
         // A code of the blocks before does not reach into the contour.
-        state.motion = Motion::Unknown;
+        let mut motion = None;
         let (mut at, mut pieces) = (start, Vec::new());
         let (mut names_both, mut says_feed, mut compensated) = (false, false, None);
         let mut retract: Vec<Piece> = Vec::new();
-        for index in first..=last {
-            let block = self.words(index);
+        for (index, held) in blocks.iter().enumerate() {
+            let came = held.came();
+            let block = Words::of(&came, self.dialect);
             self.check_contour_block(&block)?;
             says_feed |= block.number(b'F').is_some();
-            state.step(&block);
-            compensated = compensated.or(state.compensated.then_some(index));
-            if !state.moves(&block) {
-                if index == first {
+            let distance = |action: &Action| matches!(action, Action::Absolute | Action::Incremental);
+            ahead.written(&block.codes(distance), block.from);
+            motion = block.motion().or(motion);
+            let compensates = block.actions().any(|(action, _)| matches!(action, Action::Compensation(_)));
+            compensated = compensated.or(compensates.then_some(index));
+            if !block.names_a_place() {
+                if index == 0 {
                     return Err(block.contour_fault(
                         block.whole(),
                         both!("the contour does not begin with a move", "контур не начинается с движения"),
@@ -217,10 +228,11 @@ impl Writer<'_, '_> {
                 }
                 continue;
             }
-            let code = match state.motion {
-                Motion::Rapid => Code::Rapid,
+            let code = match motion {
+                Some(Code::Rapid) => Code::Rapid,
                 _ if !retract.is_empty() => {
-                    let rapid = self.words(retract[0].block);
+                    let rapid = blocks[retract[0].block].came();
+                    let rapid = Words::of(&rapid, self.dialect);
                     return Err(rapid.contour_fault(
                         rapid.whole(),
                         both!("a rapid within the contour", "быстрый ход внутри контура"),
@@ -230,9 +242,8 @@ impl Writer<'_, '_> {
                         ),
                     ));
                 }
-                Motion::Line => Code::Line,
-                Motion::Clockwise if !pieces.is_empty() => Code::Clockwise,
-                Motion::CounterClockwise if !pieces.is_empty() => Code::CounterClockwise,
+                Some(Code::Line) => Code::Line,
+                Some(arc @ (Code::Clockwise | Code::CounterClockwise)) if !pieces.is_empty() => arc,
                 _ => {
                     return Err(block.contour_fault(
                         block.whole(),
@@ -247,14 +258,14 @@ impl Writer<'_, '_> {
             {
                 return Err(corner_fault(&block, span));
             }
-            let [Some(x), Some(z)] = state.at else {
+            let [Some(x), Some(z)] = block.target(ahead.modal(), at.map(Some)) else {
                 return Err(block.contour_fault(
                     block.whole(),
                     both!("where the contour leads here is not known", "неизвестно, куда здесь ведёт контур"),
                     both!("another frame, or above 400 km", "другая система координат или больше 400 км"),
                 ));
             };
-            if index == first {
+            if index == 0 {
                 let named = |letters: [u8; 2]| letters.iter().any(|letter| block.number(*letter).is_some());
                 names_both = named(*b"XU") && named(*b"ZW");
             }
@@ -263,7 +274,7 @@ impl Writer<'_, '_> {
             let (arc, round) = match code {
                 Code::Clockwise | Code::CounterClockwise => {
                     let arc = self.arc(&block, from_plane, to_plane, code == Code::Clockwise)?;
-                    (Some(arc), round_words(&block))
+                    (Some(arc), block.texts(b"IKR"))
                 }
                 _ => (None, Vec::new()),
             };
@@ -286,7 +297,28 @@ impl Writer<'_, '_> {
                 both!("one move only leads to it", "к нему ведёт одно движение"),
             ));
         }
-        Ok(Contour { first, last, start, entry, pieces, retract, names_both, says_feed, compensated })
+        Ok(Contour { first, last, blocks, start, entry, pieces, retract, names_both, says_feed, compensated })
+    }
+
+    /// The blocks of a contour with their drawings written out, from where the tool stands.
+    fn drawn(&self, words: &Words<'_, '_>, range: RangeInclusive<usize>) -> Result<Vec<Held>, Fault> {
+        let blocks = &self.blocks[range];
+        let may_draw = |came: &Came<'_>| drawing::may_draw(&came.block, self.turning);
+        if !self.dialect.flow.corner_words || !blocks.iter().any(may_draw) {
+            return Ok(blocks.iter().map(Held::of).collect());
+        }
+        let mut out = self.out.ahead();
+        out.known.written(&words.codes(may_stand_beside), words.from);
+        let fault = Drawing::new(blocks, &mut out, true).contour().err();
+        let out = out.end(fault)?;
+        let mut drawn = Vec::new();
+        out.each_block(self.dialect, |came| {
+            // Its first line, as it was drawn, is no part of it.
+            if !drawn.is_empty() || !Words::of(came, self.dialect).idle() {
+                drawn.push(Held::of(came));
+            }
+        });
+        Ok(drawn)
     }
 
     /// The only block whose N is the number of P or Q.
@@ -422,10 +454,7 @@ impl Writer<'_, '_> {
         let refuse = |label: Text| {
             Err(words.contour_fault(words.whole(), both!("an arc that cannot be", "невозможная дуга"), label))
         };
-        let value = |letter: u8| {
-            let (number, _) = words.number(letter)?;
-            Some(words.dialect.numbers.length(number, self.state.inch).to_f64())
-        };
+        let value = |letter: u8| words.length(letter, self.here.units);
         let centre = match (value(b'R'), value(b'I'), value(b'K')) {
             (Some(radius), None, None) => {
                 let chord = [to[0] - from[0], to[1] - from[1]];
@@ -474,7 +503,8 @@ impl Writer<'_, '_> {
             for point in piece.way.extremes() {
                 let here = point[axis] * forwards;
                 if here < furthest - TURNS_BACK {
-                    let block = self.words(piece.block);
+                    let came = contour.blocks[piece.block].came();
+                    let block = Words::of(&came, self.dialect);
                     let name = ["X", "Z"][axis];
                     let cycle = String::from_utf8_lossy(words.block.bytes.trim_ascii()).into_owned();
                     return Err(block.contour_fault(
@@ -512,18 +542,4 @@ fn corner_fault(words: &Words<'_, '_>, span: Span) -> Fault {
 
 fn math_sqrt(square: f64) -> f64 {
     square.max(0.0).sqrt()
-}
-
-/// The words of a centre or a radius, as they stand.
-fn round_words(words: &Words<'_, '_>) -> Vec<u8> {
-    let mut text = Vec::new();
-    for letter in *b"IKR" {
-        if let Some((_, span)) = words.number(letter) {
-            if !text.is_empty() {
-                text.push(b' ');
-            }
-            text.extend_from_slice(words.block.text(span));
-        }
-    }
-    text
 }

@@ -5,60 +5,26 @@
 //! lines cross. `,R` rounds the corner to the next line, `,C` cuts it off by as much along each. Lines alone (G1) have
 //! them, between the blocks that P and Q of a cycle name too. What is written has six decimals.
 //!
-//! A cycle leaves the tool where it stood: so does the contour behind a roughing cycle, whose blocks the control passes over.
+//! A contour's lines are drawn when its cycle reads them.
 
 use diagnostic::{Text, both};
-use nc_program::modal::Distance;
-use nc_program::{Owner, Setup};
+use nc_program::modal::{Modal, MotionMode};
 use nc_syntax::dialect::CornerForm;
-use nc_syntax::dialect::{Action, Turning, TurningCycle};
-use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value};
+use nc_syntax::dialect::{Action, Turning};
+use nc_syntax::{Block, Item, ItemKind, Span, Value};
 use units::math;
 
 use super::contour::Point;
-use super::state::{Motion, State, may_stand_beside};
-use super::{AXES, Fault, MILLION, Spot, cycle_of};
+use super::emit::Code;
+use super::place::{diameters, plane, spot, standing};
+use super::{AXES, MILLION, Spot, cycle_of};
 use crate::codes;
 use crate::known::{Known, Rewriting};
-use crate::output::{Style, Written, word};
-use crate::shorthand::{Shape, Words, from, shown};
+use crate::lowering::{Came, Fault};
+use crate::shorthand::{Shape, Words, add, number, shown};
 
 /// Two lines whose directions differ by less have no certain crossing, rad.
 const PARALLEL_RAD: f64 = 1e-3;
-
-/// The program with its drawing words written out; `None` where it has none.
-pub(super) fn write_out(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Option<Written>, Fault> {
-    let Some(turning) = &dialect.turning else { return Ok(None) };
-    let (mut reader, mut block, mut blocks) = (Reader::new(text, dialect), Block::default(), Vec::new());
-    while reader.next(&mut block) {
-        blocks.push(block.clone());
-    }
-    if !dialect.flow.corner_words || !blocks.iter().any(|block| may_draw(block, turning)) {
-        return Ok(None);
-    }
-    let out = Rewriting::new(dialect, setup, text);
-    let mut drawing = Drawing {
-        dialect,
-        blocks: &blocks,
-        state: State::initial(turning, &out.known),
-        out,
-        contour: None,
-        unsure: [false; 2],
-        plain: turning.cycles.plain_drawing,
-    };
-    let (mut at, mut fault) = (0, None);
-    while fault.is_none() && at < blocks.len() {
-        match drawing.block(at) {
-            Ok(next) => at = next,
-            Err(refused) => fault = Some(refused),
-        }
-        #[cfg(test)]
-        if drawing.contour.is_none() {
-            drawing.out.believe(drawing.state.belief());
-        }
-    }
-    drawing.out.end(fault).map(Some)
-}
 
 /// True where a block may have words of a drawing: a line's it has, what R of other blocks is their codes say.
 pub(super) fn may_draw(block: &Block<'_>, turning: &Turning) -> bool {
@@ -74,22 +40,14 @@ fn drawn(item: &Item, plain: bool) -> Option<(u8, Value)> {
     }
 }
 
-/// The blocks of a contour that follow.
-struct Ahead<'b> {
-    /// N of the last one.
-    last: i64,
-    /// What is known behind it: what was before it, since the control passes over its blocks.
-    behind: Known<'b>,
-}
-
-struct Drawing<'b, 'a> {
-    dialect: &'b Dialect,
-    blocks: &'b [Block<'a>],
-    out: Rewriting<'b>,
-    state: State,
-    contour: Option<Ahead<'b>>,
-    /// X and Z that a cycle left where its parameters say, until they are named.
-    unsure: [bool; 2],
+/// Writes the lines of drawings among blocks.
+pub(super) struct Drawing<'w, 'b, 'a, 'd> {
+    blocks: &'b [Came<'a>],
+    out: &'w mut Rewriting<'d>,
+    /// No motion code in force reaches here.
+    open: bool,
+    /// The last block of a contour.
+    last: Option<usize>,
     /// A, C and R of lines need no comma.
     plain: bool,
 }
@@ -115,20 +73,35 @@ struct Line {
     absolute: bool,
 }
 
-impl<'b, 'a> Drawing<'b, 'a> {
-    fn words(&self, at: usize) -> Words<'b, 'a> {
-        Words { block: &self.blocks[at], dialect: self.dialect }
+impl<'w, 'b, 'a, 'd> Drawing<'w, 'b, 'a, 'd> {
+    pub(super) fn new(blocks: &'b [Came<'a>], out: &'w mut Rewriting<'d>, open: bool) -> Self {
+        let plain = out.dialect.turning.as_ref().is_some_and(|turning| turning.cycles.plain_drawing);
+        Self { blocks, out, open, last: None, plain }
     }
 
-    /// Writes a block, or the lines that it begins; says which block is next.
-    fn block(&mut self, at: usize) -> Result<usize, Fault> {
-        let words = self.words(at);
-        if let Some(first) = self.first_drawn(&words) {
-            return self.lines(at, first);
+    /// Writes the blocks of a contour.
+    pub(super) fn contour(mut self) -> Result<(), Fault> {
+        self.last = self.blocks.len().checked_sub(1);
+        let mut at = 0;
+        while at < self.blocks.len() {
+            let words = self.words(at);
+            at = match self.first_drawn(&words) {
+                Some(span) => self.lines(at, span)?,
+                None => {
+                    self.out.block(&self.blocks[at]);
+                    at + 1
+                }
+            };
+            self.open &= words.motion().is_none();
         }
-        self.step(&words);
-        self.leave_contour(&words);
-        Ok(at + 1)
+        Ok(())
+    }
+
+    fn words(&self, at: usize) -> Words<'b, 'a>
+    where
+        'd: 'b,
+    {
+        Words::of(&self.blocks[at], self.out.dialect)
     }
 
     fn drawn<'i>(&self, block: &'i Block<'_>) -> impl Iterator<Item = (&'i Item, u8, Value)> + use<'i> {
@@ -140,140 +113,33 @@ impl<'b, 'a> Drawing<'b, 'a> {
     }
 
     /// Where the first word of a drawing stands: behind a comma anywhere, without one in a line.
-    fn first_drawn(&self, words: &Words<'_, '_>) -> Option<Span> {
+    pub(super) fn first_drawn(&self, words: &Words<'_, '_>) -> Option<Span> {
+        if !self.out.dialect.flow.corner_words {
+            return None;
+        }
         let (first, ..) = self.drawn(words.block).next()?;
-        let is_line = || {
-            let mut state = self.state.clone();
-            state.step(words);
-            state.motion == Motion::Line && cycle_of(words).is_none()
-        };
         let behind_a_comma =
             self.drawn(words.block).any(|(item, ..)| matches!(item.kind, ItemKind::CommaWord { .. }));
+        let is_line = || self.is_line(words, self.out.known.modal()) && cycle_of(words).is_none();
         (behind_a_comma || is_line()).then_some(first.span)
     }
 
-    /// A block that is written as it stands.
-    fn step(&mut self, words: &Words<'_, '_>) {
-        let repeats = matches!(self.state.motion, Motion::Pass(_)) && !self.state.owns_motion(words);
-        // A pass without a place is none, and may stand beside a work offset.
-        let is_idle = |cycle: TurningCycle| cycle == TurningCycle::TurnPass && !self.state.moves(words);
-        let cycle = cycle_of(words).filter(|(cycle, _)| !is_idle(*cycle));
-        if cycle.is_none() && !repeats {
-            let codes = self.out.known.codes(words.block);
-            if matches!(codes, Some((here, Owner::Motion)) if here.absolute) && !words.skipped() {
-                let named = AXES.map(|letter| words.number(letter).is_some());
-                self.unsure = [0, 1].map(|axis| self.unsure[axis] && !named[axis]);
-            }
-            self.out.block(words.block);
-            self.state.step(words);
-            return self.follow();
+    /// True where a block is a line, in the state behind the codes before it.
+    fn is_line(&self, words: &Words<'_, '_>, modal: &Modal) -> bool {
+        match words.motion() {
+            Some(code) => code == Code::Line,
+            None => !self.open && matches!(modal.motion, MotionMode::Line(_)),
         }
-        self.out.unread(words.block);
-        let beside: Vec<&[u8]> = words
-            .actions()
-            .filter(|(action, _)| may_stand_beside(action))
-            .map(|(_, span)| words.block.text(span))
-            .collect();
-        self.out.known.written(&beside.join(&b' '), from(words.block));
-        self.state.settings(words);
-        let Some((cycle, _)) = cycle else { return self.follow() };
-        self.left_by(cycle, words);
-        let passes =
-            matches!(cycle, TurningCycle::TurnPass | TurningCycle::ThreadPass | TurningCycle::FacePass);
-        self.state.motion = if passes { Motion::Pass(cycle) } else { Motion::Unknown };
-        let roughs =
-            matches!(cycle, TurningCycle::RoughTurn | TurningCycle::RoughFace | TurningCycle::RoughPattern);
-        let last = words.number(b'Q').and_then(|(number, _)| number.integer());
-        self.contour = last.filter(|_| roughs).map(|last| Ahead { last, behind: self.out.known.clone() });
-        self.follow();
-    }
-
-    /// Where a cycle leaves the tool: where it stood, but for holes, behind which it stands on their axis, with G99 of systems B
-    /// and C at R. A contour that G70 makes leaves its G90 or G91.
-    fn left_by(&mut self, cycle: TurningCycle, words: &Words<'_, '_>) {
-        match cycle {
-            TurningCycle::DrillFace | TurningCycle::BoreFace => {
-                self.unsure[1] |= self.state.returns_to_r;
-                let (stands, target) = (self.state.at[0], self.state.target(words)[0]);
-                let way = target.zip(if self.state.absolute { Some(0) } else { stands });
-                let Some((to, from_place)) = way else { return self.unsure[0] = true };
-                let mut text = b"G0 ".to_vec();
-                let _ = word(&mut text, b'X', (to - from_place) as f64 / MILLION, Style::Decimals(6));
-                self.unsure[0] &= !self.state.absolute;
-                self.out.known.written(&text, from(words.block));
-            }
-            TurningCycle::Finish => {
-                let numbered = |letter: u8| words.number(letter).and_then(|(number, _)| number.integer());
-                let (first, last) = (numbered(b'P'), numbered(b'Q'));
-                let n = |block: &Block<'_>| {
-                    let words = Words { block, dialect: self.dialect };
-                    words.number(b'N').and_then(|(number, _)| number.integer())
-                };
-                let place = |wanted: Option<i64>| self.blocks.iter().position(|block| n(block) == wanted);
-                let (Some(first), Some(last)) = (place(first), place(last)) else { return };
-                for block in self.blocks.get(first..=last).unwrap_or_default() {
-                    let words = Words { block, dialect: self.dialect };
-                    for (action, span) in words.actions() {
-                        if matches!(action, Action::Absolute | Action::Incremental) {
-                            self.out.known.written(block.text(span), from(block));
-                        }
-                    }
-                }
-            }
-            TurningCycle::ThreadPasses if self.thread_has_other_words() => self.unsure = [true; 2],
-            TurningCycle::FinishRoutine
-            | TurningCycle::RoughTurnRoutine(_)
-            | TurningCycle::RoughFaceRoutine(_) => self.unsure = [true; 2],
-            _ => {}
-        }
-    }
-
-    /// LinuxCNC's G76, which ends at Z.
-    fn thread_has_other_words(&self) -> bool {
-        self.dialect.turning.as_ref().is_some_and(|turning| turning.thread_lead == b'K')
-    }
-
-    /// Takes over what is known behind what was written.
-    fn follow(&mut self) {
-        self.state.follow(self.out.known.modal());
-        let refused = self.out.known.refused().is_some();
-        for (place, unsure) in self.state.at.iter_mut().zip(self.unsure) {
-            *place = place.filter(|_| !unsure && !refused);
-        }
-    }
-
-    fn leave_contour(&mut self, words: &Words<'_, '_>) {
-        if self.ends_contour(words)
-            && let Some(ahead) = self.contour.take()
-        {
-            self.out.known = ahead.behind;
-            self.follow();
-        }
-    }
-
-    fn ends_contour(&self, words: &Words<'_, '_>) -> bool {
-        let number = words.number(b'N').and_then(|(number, _)| number.integer());
-        self.contour.as_ref().is_some_and(|ahead| number == Some(ahead.last))
-    }
-
-    fn scale(&self) -> [f64; 2] {
-        [if self.state.diameters == Some(true) { 0.5 / MILLION } else { 1.0 / MILLION }, 1.0 / MILLION]
-    }
-
-    fn plane(&self, spot: Spot) -> Point {
-        let scale = self.scale();
-        [0, 1].map(|k| spot[k] as f64 * scale[k])
-    }
-
-    fn spot(&self, point: Point) -> Spot {
-        let scale = self.scale();
-        [0, 1].map(|k| units::decimal::round(point[k] / scale[k]))
     }
 
     /// Lines that hang on one another, from the block `first` on.
-    fn lines(&mut self, first: usize, comma: Span) -> Result<usize, Fault> {
+    pub(super) fn lines(&mut self, first: usize, comma: Span) -> Result<usize, Fault> {
+        // Where a block was refused, what is known behind it is not what the line starts from.
+        if let Some(refused) = self.out.known.refused() {
+            return Err(refused);
+        }
         let words = self.words(first);
-        let [Some(x), Some(z)] = self.state.at else {
+        let [Some(x), Some(z)] = standing(self.out.known.modal()) else {
             return Err(refusal(
                 &words,
                 comma,
@@ -283,14 +149,15 @@ impl<'b, 'a> Drawing<'b, 'a> {
                 ),
             ));
         };
-        if self.state.diameters.is_none() {
+        if diameters(self.out.known.modal()).is_none() {
             return Err(refusal(
                 &words,
                 comma,
                 both!("whether X is a diameter or a radius is not said", "не сказано, диаметр X или радиус"),
             ));
         }
-        let start = self.plane([x, z]);
+        let start = plane(self.out.known.modal(), [x, z]);
+        let mut ahead = self.out.known.clone();
         let mut lines: Vec<Line> = Vec::new();
         let mut at = first;
         loop {
@@ -306,7 +173,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
             if !words.block.acts() {
                 continue;
             }
-            let line = self.line(&words, at - 1, start, &lines)?;
+            let line = self.line(&words, &mut ahead, at - 1, start, &lines)?;
             if let Some(before) = lines.last_mut().filter(|before| before.open) {
                 // `open` has an angle, and so has the line behind it.
                 let stands = before.to;
@@ -321,8 +188,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
             }
             let waits = line.open || line.corner.is_some();
             lines.push(line);
-            let ends = self.ends_contour(&words);
-            if waits && ends {
+            if waits && self.last == Some(at - 1) {
                 return Err(refusal(
                     &words,
                     words.whole(),
@@ -334,23 +200,19 @@ impl<'b, 'a> Drawing<'b, 'a> {
             }
         }
         // A contour's lines stay increments: its G91 must not outlive it.
-        let increments = self.contour.is_none() && lines.iter().any(|line| !line.absolute);
+        let increments = self.last.is_none() && lines.iter().any(|line| !line.absolute);
         if increments {
-            if self.out.known.modal().distance == Distance::Incremental {
-                self.out.line(b"G90", from(words.block));
+            if !self.out.known.modal().says_places() {
+                self.out.line(b"G90", words.from);
             }
             for line in &mut lines {
                 line.absolute = true;
             }
         }
-        let ends_incremental = !self.state.absolute;
         self.write(start, &lines, first, at)?;
-        if increments && ends_incremental {
-            self.out.line(b"G91", from(&self.blocks[at - 1]));
+        if increments && !ahead.modal().says_places() {
+            self.out.line(b"G91", self.blocks[at - 1].from);
         }
-        self.follow();
-        let last = self.words(at - 1);
-        self.leave_contour(&last);
         Ok(at)
     }
 
@@ -358,6 +220,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
     fn line(
         &mut self,
         words: &Words<'_, '_>,
+        ahead: &mut Known<'_>,
         block: usize,
         start: Point,
         lines: &[Line],
@@ -367,7 +230,6 @@ impl<'b, 'a> Drawing<'b, 'a> {
         let before = lines.last();
         let stands = before.map_or(start, |line| line.to);
         let open_before = before.is_some_and(|line| line.open);
-        self.state.at = self.spot(stands).map(Some);
         let fits = |action: &Action| {
             matches!(
                 action,
@@ -380,13 +242,15 @@ impl<'b, 'a> Drawing<'b, 'a> {
             )
         };
         let other = words.actions().any(|(action, _)| !fits(action));
-        self.state.step(words);
-        if self.state.motion != Motion::Line || other {
+        ahead.written(&words.codes(fits), words.from);
+        let modal = ahead.modal();
+        if !self.is_line(words, modal) || other {
             return refuse(both!(
                 "G1 was expected on both sides, and no other code in the block",
                 "по обе стороны ожидалось G1 и никаких других функций в кадре"
             ));
         }
+        self.open = false;
         let strange: &[u8] = if self.plain { b"IKT" } else { b"IKRT" };
         if words.skipped() || strange.iter().any(|letter| words.number(*letter).is_some()) {
             return refuse(both!(
@@ -399,7 +263,7 @@ impl<'b, 'a> Drawing<'b, 'a> {
             let Value::Number(number) = value else {
                 return refuse(both!("a number was expected", "ожидалось число"));
             };
-            let size = self.dialect.numbers.length(number, self.state.inch).to_f64();
+            let size = words.lengthy(number, modal.units);
             match letter {
                 b'A' if angle_rad.is_none() => angle_rad = Some(number.to_f64().to_radians()),
                 b'R' | b'C' if corner.is_none() && size > 0.0 => {
@@ -415,12 +279,12 @@ impl<'b, 'a> Drawing<'b, 'a> {
         }
         let named = [[b'X', b'U'], [b'Z', b'W']]
             .map(|letters| letters.iter().any(|letter| words.number(*letter).is_some()));
-        let increments = b"UW".iter().any(|letter| words.number(*letter).is_some()) || !self.state.absolute;
-        let [Some(x), Some(z)] = self.state.at else {
+        let increments = b"UW".iter().any(|letter| words.number(*letter).is_some()) || !modal.says_places();
+        let [Some(x), Some(z)] = words.target(modal, spot(modal, stands).map(Some)) else {
             return refuse(both!("where it leads is not known", "неизвестно, куда она ведёт"));
         };
-        let place = self.plane([x, z]);
-        let absolute = self.state.absolute;
+        let place = plane(modal, [x, z]);
+        let absolute = modal.says_places();
         let line = |to: Point, open: bool| Ok(Line { block, to, angle_rad, open, corner, absolute });
         if open_before {
             return match (angle_rad, named) {
@@ -455,6 +319,10 @@ impl<'b, 'a> Drawing<'b, 'a> {
                 line(to, false)
             }
         }
+    }
+
+    fn spot(&self, place: Point) -> Spot {
+        spot(self.out.known.modal(), place)
     }
 
     /// Writes the lines and their corners, and the blocks between them.
@@ -501,13 +369,12 @@ impl<'b, 'a> Drawing<'b, 'a> {
             };
             self.place(&mut text, from_begins, ends);
             if corner.round {
-                let here = self.plane(self.spot(begins));
+                let here = plane(self.out.known.modal(), self.spot(begins));
                 for (letter, k) in [(b'I', 0), (b'K', 1)] {
-                    text.push(b' ');
-                    let _ = word(&mut text, letter, centre[k] - here[k], Style::Decimals(6));
+                    number(&mut text, letter, centre[k] - here[k]);
                 }
             }
-            self.out.line(&text, from(block));
+            self.out.line(&text, block.from);
             (stands, says_line) = (ends, true);
         }
         Ok(())
@@ -517,19 +384,19 @@ impl<'b, 'a> Drawing<'b, 'a> {
     fn place(&self, text: &mut Vec<u8>, counted_from: Option<Spot>, to: Point) {
         let (to, zero) = (self.spot(to), counted_from.unwrap_or_default());
         for axis in 0..2 {
-            text.push(b' ');
-            let _ = word(text, AXES[axis], (to[axis] - zero[axis]) as f64 / MILLION, Style::Decimals(6));
+            number(text, AXES[axis], (to[axis] - zero[axis]) as f64 / MILLION);
         }
     }
 
     /// The block as a comment, then the block with a place instead of its own words.
-    fn replaced(&mut self, block: &Block<'_>, counted_from: Option<Spot>, to: Point, says_line: bool) {
-        self.out.comment(shown(block), from(block));
+    fn replaced(&mut self, came: &Came<'_>, counted_from: Option<Spot>, to: Point, says_line: bool) {
+        let block = &came.block;
+        self.out.comment(shown(block), came.from);
         let own = |item: &&Item| match item.kind {
             _ if drawn(item, self.plain).is_some() => true,
             ItemKind::Word { letter: b'X' | b'Z' | b'U' | b'W', .. } => true,
             ItemKind::Word { letter: b'G', value: Value::Number(_) } => {
-                let words = Words { block, dialect: self.dialect };
+                let words = Words::of(came, self.out.dialect);
                 let own = |action: &Action| {
                     *action == Action::Line || (counted_from.is_none() && *action == Action::Incremental)
                 };
@@ -537,26 +404,19 @@ impl<'b, 'a> Drawing<'b, 'a> {
             }
             _ => false,
         };
-        let of_block = Words { block, dialect: self.dialect };
+        let of_block = Words::of(came, self.out.dialect);
         let is_line = of_block.actions().any(|(action, _)| *action == Action::Line);
         let kept: Vec<&[u8]> =
             block.items.iter().filter(|item| !own(item)).map(|item| block.text(item.span)).collect();
-        let (number, rest): (Vec<&[u8]>, Vec<&[u8]>) =
+        let (numbered, rest): (Vec<&[u8]>, Vec<&[u8]>) =
             kept.into_iter().partition(|text| text[0].eq_ignore_ascii_case(&b'N'));
-        let mut text = number.join(&b' ');
-        if is_line || says_line {
-            if !text.is_empty() {
-                text.push(b' ');
-            }
-            text.extend_from_slice(b"G1");
-        }
+        let mut text = numbered.join(&b' ');
+        add(&mut text, if is_line || says_line { b"G1" } else { b"" });
         self.place(&mut text, counted_from, to);
-        let mut text = text.trim_ascii().to_vec();
         for part in rest {
-            text.push(b' ');
-            text.extend_from_slice(part);
+            add(&mut text, part);
         }
-        self.out.line(&text, from(block));
+        self.out.line(&text, came.from);
     }
 }
 

@@ -9,17 +9,16 @@
 //! lead off the hole. The manual's W counts from R, a word of the block from where the tool stands: with W alone nobody knows.
 
 use diagnostic::{Text, both};
+use nc_program::modal::ReturnLevel;
 use nc_syntax::dialect::{DrillPecks, DrillR};
 use nc_syntax::{Item, ItemKind, Number, Span, Value};
+use toolpath::{MOST_PECKS, Retreat, Stroke, peck_depths, strokes, whole_pecks};
 
 use super::emit::{Code, Moves};
-use super::state::Motion;
-use super::{Fault, Spot, Writer};
+use super::{Spot, Writer};
+use crate::lowering::Fault;
 use crate::output::{Style, word};
 use crate::shorthand::Words;
-
-/// Pecks of one hole; more are a wrong step.
-const MOST: i64 = 2_000;
 
 /// A hole on the axis, Z in millionths of the unit.
 #[derive(Clone, Copy, Debug)]
@@ -39,17 +38,18 @@ impl Hole {
     }
 }
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     /// G83.
     pub(super) fn drill(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
         let start = self.standing(&words, span)?;
         let hole = self.hole(&words, span, start)?;
-        let peck = self.state.depth(&words, b'Q').map_or(hole.deep, i64::abs);
-        let (style, back) =
-            if peck > 0 && peck < hole.deep { self.peck_rules(&words, span)? } else { (DrillPecks::Full, 0) };
-        let peck = if peck == 0 { hole.deep } else { peck };
-        if hole.deep / peck > MOST {
+        let peck = words.depth(&self.here, b'Q').map_or(hole.deep, i64::abs);
+        let peck = if (1..hole.deep).contains(&peck) { peck } else { hole.deep };
+        let retreat =
+            if peck < hole.deep { self.peck_rules(&words, span)? } else { Retreat::Back { by: 0.0 } };
+        let pecks = hole.deep as f64 / peck as f64;
+        if pecks > MOST_PECKS {
             return Err(words.cycle_fault(
                 span,
                 both!("a hole of more than 2000 pecks", "отверстие больше чем в 2000 проходов"),
@@ -60,18 +60,8 @@ impl Writer<'_, '_> {
         let mut moves = self.begin(&words, start, b"XZUWRQPK")?;
         self.go(&mut moves, Code::Rapid, [hole.x, hole.start]);
         self.go(&mut moves, Code::Rapid, hole.place(0));
-        let mut reached = 0;
-        while reached < hole.deep {
-            if reached > 0 {
-                let up = (reached - back).max(0);
-                if style == DrillPecks::Full {
-                    self.go(&mut moves, Code::Rapid, hole.place(0));
-                }
-                self.go(&mut moves, Code::Rapid, hole.place(up));
-            }
-            reached = (reached + peck).min(hole.deep);
-            self.go(&mut moves, Code::Line, hole.place(reached));
-        }
+        let depths = peck_depths(hole.deep as f64, peck as f64, whole_pecks(pecks));
+        self.strokes(&mut moves, depths, retreat, |depth| hole.place(depth));
         if let Some(dwell) = self.dwell(&words) {
             self.between(&mut moves, &dwell);
         }
@@ -93,12 +83,9 @@ impl Writer<'_, '_> {
                 "200",
             ));
         };
-        let feed = words
-            .number(b'F')
-            .map(|(feed, _)| feed)
-            .or(self.state.feed)
-            .filter(|_| !self.unsure_feed || words.number(b'F').is_some());
-        let (Some(feed), Some(out)) = (feed, feed.and_then(|feed| out_of(feed, percent))) else {
+        let feed = self.feed(&words).filter(|_| !self.unsure_feed || words.number(b'F').is_some());
+        let of_feed = |percent: f64| feed.and_then(|feed| feed_word(feed.to_f64() * percent / 100.0, feed));
+        let (Some(back), Some(out)) = (of_feed(100.0), of_feed(percent)) else {
             return Err(words.cycle_fault(
                 span,
                 both!(
@@ -118,7 +105,6 @@ impl Writer<'_, '_> {
         }
         self.go_with(&mut moves, Code::Line, hole.place(0), &out);
         // Behind the hole F holds as it was.
-        let back = [&b"F"[..], &feed_text(feed)].concat();
         self.between(&mut moves, &back);
         self.leave(moves, &words, hole);
         Ok(())
@@ -126,14 +112,12 @@ impl Writer<'_, '_> {
 
     /// Back to the start, or from R where G99 leaves the tool there.
     fn leave(&mut self, mut moves: Moves, words: &Words<'_, '_>, hole: Hole) {
-        if !self.state.returns_to_r {
+        if self.here.return_level != ReturnLevel::R {
             self.go(&mut moves, Code::Rapid, [hole.x, hole.start]);
         }
-        if let Some((feed, _)) = words.number(b'F') {
-            (self.state.feed, self.unsure_feed) = (Some(feed), false);
-        }
+        self.unsure_feed &= words.number(b'F').is_none();
         self.end(moves);
-        self.state.motion = Motion::Unknown;
+        self.leave_open();
     }
 
     /// Where the hole lies, what cannot be one refused.
@@ -150,13 +134,7 @@ impl Writer<'_, '_> {
                 both!("leave K out", "уберите K"),
             ));
         }
-        let [Some(x), Some(target)] = self.state.target(words) else {
-            return refuse(
-                both!("where the cycle leads is not known", "неизвестно, куда ведёт цикл"),
-                both!("above 400 km", "больше 400 км"),
-                both!("correct X and Z", "исправьте X и Z"),
-            );
-        };
+        let [x, target] = self.known_target(words, span)?;
         if x != 0 {
             return refuse(
                 both!("a hole off the axis", "отверстие не на оси"),
@@ -170,7 +148,7 @@ impl Writer<'_, '_> {
                 ),
             );
         }
-        let Some(r) = self.state.length(words, b'R') else {
+        let Some(r) = self.length(words, b'R') else {
             return refuse(
                 both!("a hole without a depth, or without R", "отверстие без глубины или без R"),
                 both!("R says where drilling begins", "R говорит, где начинается сверление"),
@@ -194,11 +172,11 @@ impl Writer<'_, '_> {
             );
         }
         let sign_to =
-            |level: i64| (if self.state.absolute { target - level } else { target - start[1] }).signum();
+            |level: i64| (if self.here.says_places() { target - level } else { target - start[1] }).signum();
         let level =
             if self.r_is_place(words, span, sign_to(start[1]) * r.signum())? { r } else { start[1] + r };
         // Under G91 Z counts from R.
-        let bottom = if self.state.absolute { target } else { target - start[1] + level };
+        let bottom = if self.here.says_places() { target } else { target - start[1] + level };
         let sign = (bottom - level).signum();
         if sign == 0 || sign != sign_to(start[1]) {
             return refuse(
@@ -221,7 +199,7 @@ impl Writer<'_, '_> {
     /// True where R is a place, false where it is a way from the start; `onwards`: that way leads towards the bottom (1), or
     /// off it (-1).
     fn r_is_place(&self, words: &Words<'_, '_>, span: Span, onwards: i64) -> Result<bool, Fault> {
-        if !self.state.absolute {
+        if !self.here.says_places() {
             return Ok(false);
         }
         match self.turning.cycles.drill_r {
@@ -240,8 +218,26 @@ impl Writer<'_, '_> {
         }
     }
 
-    /// How the control pecks, and by how much it stays off what is drilled, millionths of the unit.
-    fn peck_rules(&self, words: &Words<'_, '_>, span: Span) -> Result<(DrillPecks, i64), Fault> {
+    /// The moves of pecks down to these depths; `place` is that of a depth, all in millionths of the unit.
+    pub(super) fn strokes(
+        &mut self,
+        moves: &mut Moves,
+        depths: impl Iterator<Item = f64>,
+        retreat: Retreat,
+        place: impl Fn(i64) -> Spot,
+    ) {
+        for stroke in strokes(depths, retreat) {
+            let (code, depth) = match stroke {
+                Stroke::In(depth) => (Code::Line, depth),
+                Stroke::Out => (Code::Rapid, 0.0),
+                Stroke::Again(depth) => (Code::Rapid, depth),
+            };
+            self.go(moves, code, place(depth as i64));
+        }
+    }
+
+    /// How the control comes back between pecks, millionths of the unit.
+    fn peck_rules(&self, words: &Words<'_, '_>, span: Span) -> Result<Retreat, Fault> {
         let cycles = &self.turning.cycles;
         let Some(style) = cycles.drill_pecks else {
             return Err(words.parameter_fault(
@@ -262,7 +258,11 @@ impl Writer<'_, '_> {
                 "0.5",
             ));
         };
-        Ok((style, self.millionths_of(back)))
+        let back = self.millionths_of(back) as f64;
+        Ok(match style {
+            DrillPecks::Full => Retreat::Out { clearance: back },
+            DrillPecks::Chip => Retreat::Back { by: back },
+        })
     }
 
     /// The dwell at the bottom, as a block.
@@ -273,25 +273,11 @@ impl Writer<'_, '_> {
     }
 }
 
-/// F of the way out, as a word; `None` where it would count in increments that are none.
-fn out_of(feed: Number, percent: f64) -> Option<Vec<u8>> {
-    let value = feed.to_f64() * percent / 100.0;
-    let style = if feed.has_point {
-        Style::Decimals(6)
-    } else if value.fract() == 0.0 {
-        Style::Whole
-    } else {
-        return None;
-    };
+/// F as a word, with its point or without; `None` where it would count in increments that are none.
+fn feed_word(value: f64, like: Number) -> Option<Vec<u8>> {
+    let has_point = like.has_point;
+    let style = if has_point { Style::Decimals(6) } else { Style::Whole };
     let mut text = Vec::new();
     word(&mut text, b'F', value, style)?;
-    (value > 0.0).then_some(text)
-}
-
-/// F as it was written, near enough: a number with its point or without.
-fn feed_text(feed: Number) -> Vec<u8> {
-    let mut text = Vec::new();
-    let style = if feed.has_point { Style::Decimals(6) } else { Style::Whole };
-    let _ = word(&mut text, b'F', feed.to_f64(), style);
-    text.split_off(1)
+    (value > 0.0 && (has_point || value.fract() == 0.0)).then_some(text)
 }

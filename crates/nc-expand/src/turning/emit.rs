@@ -1,14 +1,15 @@
 //! Blocks out: what a cycle's block sets, then its moves.
 
 use diagnostic::both;
-use nc_program::modal::Distance;
+use nc_program::modal::Modal;
 use nc_syntax::dialect::Action;
-use nc_syntax::{Block, Item, ItemKind, Span, Value};
+use nc_syntax::{Item, ItemKind, Span, Value};
 
-use super::state::{may_stand_beside, millionths};
-use super::{AXES, Fault, MILLION, Spot, Writer};
-use crate::output::{From, Style, word};
-use crate::shorthand::{Words, from, shown};
+use super::place::{may_stand_beside, millionths};
+use super::{AXES, MILLION, Spot, Writer};
+use crate::lowering::Fault;
+use crate::output::From;
+use crate::shorthand::{Words, add, number, shown};
 
 /// What a written move is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,12 +21,23 @@ pub(super) enum Code {
     Thread,
 }
 
+/// Which codes of a dialect they are.
+pub(super) const CODES: [(Action, Code); 5] = [
+    (Action::Rapid, Code::Rapid),
+    (Action::Line, Code::Line),
+    (Action::ArcClockwise, Code::Clockwise),
+    (Action::ArcCounterClockwise, Code::CounterClockwise),
+    (Action::Thread, Code::Thread),
+];
+
 /// The moves of one cycle on their way out.
 #[derive(Debug)]
 pub(super) struct Moves {
     /// Whom they stand for.
     pub(super) from: From,
     at: Spot,
+    /// They are written as places, not as ways.
+    places: bool,
     /// Words that go before the first move.
     before: Vec<u8>,
     /// Words that the control executes behind its motion, for the last one.
@@ -37,9 +49,17 @@ pub(super) struct Moves {
 }
 
 impl Moves {
-    /// Moves from a place, for a block that is written already.
-    pub(super) const fn new(from: From, at: Spot) -> Self {
-        Self { from, at, before: Vec::new(), behind: Vec::new(), incremental: Vec::new(), last: None }
+    /// Moves from a place in a state, for a block that is written already.
+    pub(super) fn new(from: From, at: Spot, state: &Modal) -> Self {
+        Self {
+            from,
+            at,
+            places: state.says_places(),
+            before: Vec::new(),
+            behind: Vec::new(),
+            incremental: Vec::new(),
+            last: None,
+        }
     }
 
     /// Takes what the control executes behind the last move, for moves that come later.
@@ -57,7 +77,7 @@ impl Moves {
     }
 }
 
-impl<'b> Writer<'b, '_> {
+impl Writer<'_, '_, '_> {
     /// Begins the moves of a block's cycle: the block as a comment; of its words `own` are the cycle's.
     pub(super) fn begin(&mut self, words: &Words<'_, '_>, at: Spot, own: &[u8]) -> Result<Moves, Fault> {
         let block = words.block;
@@ -65,10 +85,9 @@ impl<'b> Writer<'b, '_> {
         let increments = words.actions().find(|(action, _)| **action == Action::Incremental);
         if let Some((_, span)) = increments {
             incremental = block.text(span).to_vec();
-            if self.out.known.modal().distance == Distance::Incremental {
+            if !self.out.known.modal().says_places() {
                 before = self.row(&Action::Absolute);
             }
-            self.state.absolute = true;
         }
         for item in &block.items {
             match item.kind {
@@ -85,21 +104,22 @@ impl<'b> Writer<'b, '_> {
                 ItemKind::Word { letter: b'G', value: Value::Number(_) } => {
                     let taken = increments.is_some_and(|(_, span)| span == item.span);
                     if setting(words, item.span)? && !taken {
-                        push(&mut before, block, item.span);
+                        add(&mut before, block.text(item.span));
                     }
                 }
                 ItemKind::Word { letter: b'M', value: Value::Number(number) } => {
                     let row = number.integer().and_then(|m| words.dialect.m_code(u16::try_from(m).ok()?));
                     let late = row.is_some_and(|row| row.after_motion);
-                    push(if late { &mut behind } else { &mut before }, block, item.span);
+                    add(if late { &mut behind } else { &mut before }, block.text(item.span));
                 }
-                ItemKind::Word { letter: b'N' | b'F' | b'S', .. } => push(&mut before, block, item.span),
+                ItemKind::Word { letter: b'N' | b'F' | b'S', .. } => add(&mut before, block.text(item.span)),
                 ItemKind::Comment | ItemKind::Name => {}
                 _ => return Err(stray(words, item)),
             }
         }
-        self.out.comment(shown(block), from(block));
-        Ok(Moves { before, behind, incremental, ..Moves::new(from(block), at) })
+        self.out.comment(shown(block), words.from);
+        let moves = Moves::new(words.from, at, &self.here);
+        Ok(Moves { before, behind, places: moves.places || increments.is_some(), incremental, ..moves })
     }
 
     /// A move to a place. Axes that a feed leaves where they are get no word; a rapid names both, so that both are corrected
@@ -113,20 +133,17 @@ impl<'b> Writer<'b, '_> {
         if to == moves.at && further.is_empty() {
             return;
         }
-        let mut line = self.code(code);
+        let own = CODES.iter().find(|(_, of)| *of == code);
+        let mut line = own.map_or_else(Vec::new, |(action, _)| self.row(action));
         for axis in 0..2 {
-            let named = code == Code::Rapid && self.state.absolute;
+            let named = code == Code::Rapid && moves.places;
             if named || to[axis] != moves.at[axis] {
-                let value = if self.state.absolute { to[axis] } else { to[axis] - moves.at[axis] };
-                line.push(b' ');
+                let value = if moves.places { to[axis] } else { to[axis] - moves.at[axis] };
                 // Millionths of a unit have six decimals.
-                let _ = word(&mut line, AXES[axis], value as f64 / MILLION, Style::Decimals(6));
+                number(&mut line, AXES[axis], value as f64 / MILLION);
             }
         }
-        if !further.is_empty() {
-            line.push(b' ');
-            line.extend_from_slice(further);
-        }
+        add(&mut line, further);
         moves.at = to;
         let last = moves.last.replace((line, moves.from));
         self.line(moves, last, false);
@@ -142,7 +159,6 @@ impl<'b> Writer<'b, '_> {
         if !moves.incremental.is_empty() {
             self.out.line(&moves.incremental, moves.from);
         }
-        self.state.stands_at(moves.at);
     }
 
     /// A block between two moves, which moves nothing.
@@ -155,35 +171,16 @@ impl<'b> Writer<'b, '_> {
     fn line(&mut self, moves: &mut Moves, line: Option<(Vec<u8>, From)>, last: bool) {
         let Some((line, from)) = line else { return };
         let behind: &[u8] = if last { &moves.behind } else { b"" };
-        let before = std::mem::take(&mut moves.before);
-        let parts: Vec<&[u8]> =
-            [&before, &line, behind].into_iter().filter(|part| !part.is_empty()).collect();
-        self.out.line(&parts.join(&b' '), from);
-    }
-
-    /// The dialect's own code.
-    fn code(&self, code: Code) -> Vec<u8> {
-        let action = match code {
-            Code::Rapid => Action::Rapid,
-            Code::Line => Action::Line,
-            Code::Clockwise => Action::ArcClockwise,
-            Code::CounterClockwise => Action::ArcCounterClockwise,
-            Code::Thread => Action::Thread,
-        };
-        self.row(&action)
+        let mut text = std::mem::take(&mut moves.before);
+        add(&mut text, &line);
+        add(&mut text, behind);
+        self.out.line(&text, from);
     }
 
     /// The dialect's code for what is done.
     fn row(&self, action: &Action) -> Vec<u8> {
         self.dialect.row_of(action).map_or_else(Vec::new, |row| row.code.to_string().into_bytes())
     }
-}
-
-fn push(words: &mut Vec<u8>, block: &Block<'_>, span: Span) {
-    if !words.is_empty() {
-        words.push(b' ');
-    }
-    words.extend_from_slice(block.text(span));
 }
 
 /// True for a code beside a cycle that sets something, false for the cycle's own; what moves or owns words is refused.

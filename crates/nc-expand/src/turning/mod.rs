@@ -5,7 +5,7 @@
 //! "Canned cycle", "Multiple repetitive cycle"), and by parameters of the control, which the profile has to say
 //! ([`nc_syntax::dialect::TurningParameters`]).
 //!
-//! * [`drawing`]: corners and angles of drawings, before all else.
+//! * [`drawing`]: corners and angles of drawings, where they come and in contours.
 //! * [`pass`]: one pass there and back, repeated by each block that names a place.
 //! * [`contour`]: the blocks between P and Q as a way in the plane.
 //! * [`rough`]: passes down to a contour, and the contour itself; [`pockets`]: where it has pockets.
@@ -24,28 +24,26 @@ mod emit;
 mod levels;
 mod pass;
 mod pecks;
+mod place;
 mod pockets;
 mod profile;
 mod rough;
 mod routine;
-mod state;
 mod threads;
 
-use std::ops::Range;
-
-use diagnostic::{Diagnostic, Text, both};
-use nc_program::Setup;
+use diagnostic::{Text, both};
+use nc_program::Compensation;
+use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
-use nc_syntax::{Block, Dialect, Reader, Span};
+use nc_syntax::{Block, Dialect, Number, Span};
 
 use crate::codes;
 use crate::known::Rewriting;
-use crate::output::Written;
-use crate::shorthand::Words;
+use crate::lowering::{Came, Fault, Held, Lower};
+use crate::shorthand::{Words, actions};
+use drawing::Drawing;
 use pass::Pass;
-use state::{Motion, State};
-
-type Fault = Box<Diagnostic>;
+use place::{diameters, ends_pass, may_stand_beside, plane, spot, standing};
 
 /// X word and Z, in millionths of the unit.
 type Spot = [i64; 2];
@@ -60,7 +58,7 @@ const AXES: [u8; 2] = *b"XZ";
 pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
     dialect.turning.as_ref().is_some_and(|turning| {
         let draws = turning.cycles.plain_drawing && drawing::may_draw(block, turning);
-        draws || cycle_of(&Words { block, dialect }).is_some()
+        draws || actions(block, dialect).any(|(action, _)| matches!(action, Action::Turning(_)))
     })
 }
 
@@ -72,81 +70,104 @@ fn cycle_of(words: &Words<'_, '_>) -> Option<(TurningCycle, Span)> {
     })
 }
 
-/// The program with its corners and angles written out, where it has some.
-pub(crate) fn draw(text: &[u8], dialect: &Dialect, setup: &Setup) -> Result<Option<Written>, Fault> {
-    drawing::write_out(text, dialect, setup)
+/// Holds a lathe's program, whose cycles name blocks anywhere in it, and writes it at its end.
+pub(crate) struct Lathe<'d> {
+    out: Rewriting<'d>,
+    turning: &'d Turning,
+    held: Vec<Held>,
 }
 
-/// The program with its cycles written out, and where each stretch of it comes from.
-///
-/// `routines`: bytes that hold the contours of cycles, each behind the block of its cycle.
-pub(crate) fn write_out(
-    text: &[u8],
-    dialect: &Dialect,
-    setup: &Setup,
-    routines: &[Range<u64>],
-) -> Result<Written, Fault> {
-    let out = Rewriting::new(dialect, setup, text);
-    let Some(turning) = &dialect.turning else { return out.end(None) };
-    let mut blocks = Vec::new();
-    let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
-    while reader.next(&mut block) {
-        blocks.push(block.clone());
+impl<'d> Lathe<'d> {
+    pub(crate) const fn new(out: Rewriting<'d>, turning: &'d Turning) -> Self {
+        Self { out, turning, held: Vec::new() }
     }
-    let mut writer = Writer {
-        dialect,
-        turning,
-        blocks: &blocks,
-        state: State::initial(turning, &out.known),
-        out,
-        pass: None,
-        passed: false,
-        routines,
-        first_blocks: rough::FirstBlocks::default(),
-        unsure_feed: false,
-    };
-    let (mut at, mut fault) = (0, None);
-    while fault.is_none() && at < blocks.len() {
-        match writer.block(at) {
-            Ok(next) => at = next,
-            Err(refused) => fault = Some(refused),
+}
+
+impl<'d> Lower<'d> for Lathe<'d> {
+    fn came(&mut self, came: &Came<'_>) -> Result<(), Fault> {
+        self.held.push(Held::of(came));
+        Ok(())
+    }
+
+    fn fresh_line(&mut self) {
+        if let Some(held) = self.held.last_mut() {
+            held.end_line(self.out.marks.line_ending);
         }
-        // Within a block or a cycle it is counted on, behind it nobody but the one reader says.
-        writer.state.follow(writer.out.known.modal());
-        #[cfg(test)]
-        writer.out.believe(writer.state.belief());
     }
-    writer.out.end(fault)
+
+    fn end(mut self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>) {
+        let blocks: Vec<Came<'_>> = self.held.iter_mut().map(Held::taken).collect();
+        let ended = Writer::new(&blocks, self.turning, &mut self.out).all();
+        (self.out, ended)
+    }
 }
 
 /// Writes the program block by block.
-struct Writer<'b, 'a> {
-    dialect: &'b Dialect,
-    turning: &'b Turning,
-    blocks: &'b [Block<'a>],
-    out: Rewriting<'b>,
-    state: State,
-    /// The single pass in force.
+struct Writer<'b, 'a, 'd> {
+    dialect: &'d Dialect,
+    turning: &'d Turning,
+    blocks: &'b [Came<'a>],
+    out: &'b mut Rewriting<'d>,
+    /// What the codes of the block in hand make of the one reader's state.
+    here: Modal,
+    /// The single pass in force, which each block with a place repeats.
     pass: Option<Pass>,
+    /// Behind a cycle no motion code was said: which one is in force nobody knows.
+    open: bool,
     /// The program has made a single pass, whose words may still be held.
     passed: bool,
-    /// Where contours stand that are subroutines.
-    routines: &'b [Range<u64>],
     /// What the blocks without P and Q said, which hold for those with them.
     first_blocks: rough::FirstBlocks,
     /// The last F stood in a roughing block: whether it holds behind that the manual leaves open.
     unsure_feed: bool,
 }
 
-impl<'b, 'a> Writer<'b, 'a> {
+impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
+    fn new(blocks: &'b [Came<'a>], turning: &'d Turning, out: &'b mut Rewriting<'d>) -> Self {
+        Self {
+            dialect: out.dialect,
+            turning,
+            blocks,
+            pass: None,
+            passed: false,
+            open: false,
+            here: out.known.modal().clone(),
+            out,
+            first_blocks: rough::FirstBlocks::default(),
+            unsure_feed: false,
+        }
+    }
+
+    fn all(mut self) -> Result<(), Fault> {
+        let mut at = 0;
+        while at < self.blocks.len() {
+            at = self.block(at)?;
+        }
+        Ok(())
+    }
+
     /// Writes a block, and says which one is next.
     fn block(&mut self, at: usize) -> Result<usize, Fault> {
         let words = self.words(at);
+        if !self.out.wakes(words.block) {
+            self.out.block(&self.blocks[at]);
+            return Ok(at + 1);
+        }
+        let mut drawing = Drawing::new(self.blocks, self.out, self.open || self.pass.is_some());
+        if let Some(span) = drawing.first_drawn(&words) {
+            let next = drawing.lines(at, span)?;
+            for index in at..next {
+                self.said(&self.words(index));
+            }
+            return Ok(next);
+        }
+        let beside = self.out.known.settings(&words.codes(may_stand_beside), words.from);
+        self.here = beside.unwrap_or_else(|| self.out.known.modal().clone());
         let Some((cycle, span)) = cycle_of(&words) else {
             if self.repeats(&words) {
                 self.repeated(at)?;
             } else {
-                self.plain(&words)?;
+                self.plain(at)?;
             }
             return Ok(at + 1);
         };
@@ -164,7 +185,7 @@ impl<'b, 'a> Writer<'b, 'a> {
                 ),
             ));
         }
-        if self.state.compensated {
+        if self.out.known.modal().compensation != Compensation::Off {
             return Err(words.cycle_fault(
                 span,
                 both!("a cycle under compensation of the nose", "цикл при коррекции на радиус при вершине"),
@@ -178,53 +199,37 @@ impl<'b, 'a> Writer<'b, 'a> {
                 ),
             ));
         }
-        self.state.settings(&words);
         match cycle {
             TurningCycle::TurnPass | TurningCycle::ThreadPass | TurningCycle::FacePass => {
                 self.first_pass(at, cycle, span)?;
-                Ok(at + 1)
-            }
-            TurningCycle::Finish => {
-                self.finish(at, span)?;
-                Ok(at + 1)
             }
             TurningCycle::RoughTurn | TurningCycle::RoughFace | TurningCycle::RoughPattern => {
-                self.rough(at, cycle, span)
+                return self.rough(at, cycle, span);
             }
             TurningCycle::FinishRoutine
             | TurningCycle::RoughTurnRoutine(_)
-            | TurningCycle::RoughFaceRoutine(_) => self.routine(at, cycle, span),
-            TurningCycle::PeckFace | TurningCycle::PeckGroove => {
-                self.pecks(at, cycle, span)?;
-                Ok(at + 1)
+            | TurningCycle::RoughFaceRoutine(_) => return self.routine(at, cycle, span),
+            TurningCycle::Finish => self.finish(at, span)?,
+            TurningCycle::PeckFace | TurningCycle::PeckGroove => self.pecks(at, cycle, span)?,
+            TurningCycle::DrillFace => self.drill(at, span)?,
+            TurningCycle::BoreFace => self.bore(at, span)?,
+            // Where K is the lead of a thread, its cycle has LinuxCNC's words.
+            TurningCycle::ThreadPasses if self.turning.thread_lead == b'K' => {
+                self.compound_thread(at, span)?;
             }
-            TurningCycle::DrillFace => {
-                self.drill(at, span)?;
-                Ok(at + 1)
-            }
-            TurningCycle::BoreFace => {
-                self.bore(at, span)?;
-                Ok(at + 1)
-            }
-            TurningCycle::ThreadPasses => {
-                // Where K is the lead of a thread, its cycle has LinuxCNC's words.
-                if self.turning.thread_lead == b'K' {
-                    self.compound_thread(at, span)?;
-                } else {
-                    self.thread(at, span)?;
-                }
-                Ok(at + 1)
-            }
+            TurningCycle::ThreadPasses => self.thread(at, span)?,
         }
+        Ok(at + 1)
     }
 
     fn words(&self, at: usize) -> Words<'b, 'a> {
-        Words { block: &self.blocks[at], dialect: self.dialect }
+        Words::of(&self.blocks[at], self.dialect)
     }
 
     /// A block that is no cycle's.
-    fn plain(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
-        if self.state.motion == Motion::Unknown && self.state.moves(words) && !self.state.owns_motion(words) {
+    fn plain(&mut self, at: usize) -> Result<(), Fault> {
+        let words = &self.words(at);
+        if self.pass.is_none() && self.open && words.names_a_place() && !words.owns_motion() {
             return Err(words.cycle_fault(
                 words.whole(),
                 both!(
@@ -238,18 +243,34 @@ impl<'b, 'a> Writer<'b, 'a> {
                 both!("write G0 or G1 in this block", "напишите в этом кадре G0 или G1"),
             ));
         }
-        self.unsure_feed &= words.number(b'F').is_none();
-        self.state.step(words);
-        if !matches!(self.state.motion, Motion::Pass(_)) {
-            self.pass = None;
-        }
-        self.out.block(words.block);
+        self.said(words);
+        self.out.block(&self.blocks[at]);
         Ok(())
+    }
+
+    /// What a block that is no cycle's says of what cycles have left.
+    fn said(&mut self, words: &Words<'_, '_>) {
+        self.unsure_feed &= words.number(b'F').is_none();
+        if words.motion().is_some() {
+            (self.pass, self.open) = (None, false);
+        } else if self.pass.is_some() && words.actions().any(|(action, _)| ends_pass(action)) {
+            self.leave_open();
+        }
+    }
+
+    /// Behind a cycle.
+    fn leave_open(&mut self) {
+        (self.pass, self.open) = (None, true);
+    }
+
+    /// The last F; `words`: of the block in hand.
+    fn feed(&self, words: &Words<'_, '_>) -> Option<Number> {
+        words.number(b'F').map(|(feed, _)| feed).or(self.out.known.modal().feed)
     }
 
     /// Where the tool stands, both axes.
     fn standing(&self, words: &Words<'_, '_>, span: Span) -> Result<Spot, Fault> {
-        if let [Some(x), Some(z)] = self.state.at {
+        if let [Some(x), Some(z)] = standing(self.out.known.modal()) {
             return Ok([x, z]);
         }
         Err(words.cycle_fault(
@@ -266,26 +287,47 @@ impl<'b, 'a> Writer<'b, 'a> {
         ))
     }
 
-    /// Millimetres or inches of radius and Z in a millionth of the words.
-    fn scale(&self) -> [f64; 2] {
-        [if self.state.diameters == Some(true) { 0.5 / MILLION } else { 1.0 / MILLION }, 1.0 / MILLION]
+    /// Where the words of the block in hand lead.
+    fn target(&self, words: &Words<'_, '_>) -> [Option<i64>; 2] {
+        words.target(&self.here, standing(self.out.known.modal()))
+    }
+
+    /// The same where it is known.
+    fn known_target(&self, words: &Words<'_, '_>, span: Span) -> Result<Spot, Fault> {
+        if let [Some(x), Some(z)] = self.target(words) {
+            return Ok([x, z]);
+        }
+        Err(words.cycle_fault(
+            span,
+            both!("where the cycle leads is not known", "неизвестно, куда ведёт цикл"),
+            both!("above 400 km", "больше 400 км"),
+            both!("correct X and Z", "исправьте X и Z"),
+        ))
+    }
+
+    /// A length in millionths of the unit.
+    fn length(&self, words: &Words<'_, '_>, letter: u8) -> Option<i64> {
+        words.millionths(&self.here, letter)
+    }
+
+    /// Millionths of an X word in one of the radius.
+    fn twice(&self) -> i64 {
+        if diameters(&self.here) == Some(true) { 2 } else { 1 }
     }
 
     /// A place in the plane of radius and Z.
     fn plane(&self, spot: Spot) -> [f64; 2] {
-        let scale = self.scale();
-        [0, 1].map(|k| spot[k] as f64 * scale[k])
+        plane(&self.here, spot)
     }
 
     /// The place whose words are nearest.
-    fn spot(&self, plane: [f64; 2]) -> Spot {
-        let scale = self.scale();
-        [0, 1].map(|k| units::decimal::round(plane[k] / scale[k]))
+    fn spot(&self, place: [f64; 2]) -> Spot {
+        spot(&self.here, place)
     }
 
     /// Whether X is a diameter must be known for depths and tapers, which are radii.
     fn require_diameters(&self, words: &Words<'_, '_>, span: Span) -> Result<(), Fault> {
-        if self.state.diameters.is_some() {
+        if diameters(&self.here).is_some() {
             return Ok(());
         }
         Err(words.cycle_fault(

@@ -15,9 +15,9 @@ use nc_syntax::{ItemKind, Span};
 use units::math;
 
 use super::emit::{Code, Moves};
-use super::state::Motion;
-use super::{Fault, MILLION, Spot, Writer};
-use crate::shorthand::{Words, from, shown};
+use super::{MILLION, Spot, Writer};
+use crate::lowering::Fault;
+use crate::shorthand::{Words, shown};
 
 /// What a pass holds.
 #[derive(Clone, Copy, Debug)]
@@ -34,14 +34,14 @@ pub(super) struct Pass {
 /// Chamfer at the end of a thread: 45 degrees where the parameter is zero or not said.
 const CHAMFER_DEG: f64 = 45.0;
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     /// A block with the code of a pass.
     pub(super) fn first_pass(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
-        if !self.state.moves(&words) {
+        if !words.names_a_place() {
             let holds_a_place = self.passed || taper_word(&words, cycle).is_some();
             if !holds_a_place && cycle == TurningCycle::TurnPass {
-                self.idle_pass(&words);
+                self.idle_pass(at);
                 return Ok(());
             }
             return Err(words.cycle_fault(
@@ -53,7 +53,7 @@ impl Writer<'_, '_> {
         }
         self.require_diameters(&words, span)?;
         let start = self.standing(&words, span)?;
-        let held = self.pass.filter(|_| matches!(self.state.motion, Motion::Pass(_)));
+        let held = self.pass;
         let tapered = held.is_some_and(|pass| pass.taper != 0);
         if tapered && taper_word(&words, cycle).is_none() {
             return Err(words.cycle_fault(
@@ -66,7 +66,6 @@ impl Writer<'_, '_> {
                 both!("write R in this block, R0 for none", "напишите R в этом кадре, R0 — без конуса"),
             ));
         }
-        self.state.motion = Motion::Pass(cycle);
         let to = held.map_or([None; 2], |pass| if pass.cycle == cycle { pass.to } else { [None; 2] });
         self.pass = Some(Pass { cycle, start, to, taper: 0 });
         self.repeated(at)
@@ -76,10 +75,10 @@ impl Writer<'_, '_> {
     ///
     /// It has no place and none is held from a pass before it, so nothing moves; and what a control might make of it all the
     /// same would come back to where the tool stands. It is left out, and which motion is in force behind it nobody knows.
-    fn idle_pass(&mut self, words: &Words<'_, '_>) {
+    fn idle_pass(&mut self, at: usize) {
+        let words = self.words(at);
         self.unsure_feed &= words.number(b'F').is_none();
-        self.state.step(words);
-        (self.state.motion, self.pass) = (Motion::Unknown, None);
+        self.leave_open();
         let block = words.block;
         let is_pass = |span: Span| {
             words.actions().any(|(action, other)| other == span && matches!(action, Action::Turning(_)))
@@ -87,9 +86,9 @@ impl Writer<'_, '_> {
         let kept =
             block.items.iter().filter(|item| !matches!(item.kind, ItemKind::Comment) && !is_pass(item.span));
         let kept: Vec<&[u8]> = kept.map(|item| block.text(item.span)).collect();
-        self.out.comment(shown(block), from(block));
+        self.out.comment(shown(block), words.from);
         if !kept.is_empty() {
-            self.out.line(&kept.join(&b' '), from(block));
+            self.out.line_of(&kept.join(&b' '), &self.blocks[at]);
         }
     }
 
@@ -110,7 +109,7 @@ impl Writer<'_, '_> {
                     | Action::MachineCoordinates
             )
         };
-        matches!(self.state.motion, Motion::Pass(_))
+        self.pass.is_some()
             && words.block.acts()
             && !ends.is_some_and(|row| row.ends_program)
             && !words.actions().any(|(action, _)| own(action))
@@ -122,7 +121,7 @@ impl Writer<'_, '_> {
         let span = words.whole();
         let Some(mut pass) = self.pass else { return Ok(()) };
         let taper = taper_word(&words, pass.cycle);
-        if words.skipped() || (!self.state.moves(&words) && taper.is_none()) {
+        if words.skipped() || (!words.names_a_place() && taper.is_none()) {
             return Err(words.cycle_fault(
                 span,
                 both!(
@@ -139,9 +138,7 @@ impl Writer<'_, '_> {
                 ),
             ));
         }
-        self.state.settings(&words);
-        self.state.stands_at(pass.start);
-        let target = self.state.target(&words);
+        let target = words.target(&self.here, pass.start.map(Some));
         let letters = [(b'X', b'U'), (b'Z', b'W')];
         for (axis, (own, increment)) in letters.into_iter().enumerate() {
             if words.number(own).is_some() || words.number(increment).is_some() {
@@ -149,7 +146,7 @@ impl Writer<'_, '_> {
             }
         }
         if let Some(letter) = taper {
-            pass.taper = self.state.length(&words, letter).unwrap_or_default();
+            pass.taper = self.length(&words, letter).unwrap_or_default();
         }
         let [Some(x), Some(z)] = pass.to else {
             return Err(words.cycle_fault(
@@ -169,10 +166,7 @@ impl Writer<'_, '_> {
             _ => b"XZUWRI",
         };
         let mut moves = self.begin(&words, pass.start, own)?;
-        if words.number(b'F').is_some() {
-            self.state.feed = words.number(b'F').map(|(number, _)| number);
-            self.unsure_feed = false;
-        }
+        self.unsure_feed &= words.number(b'F').is_none();
         let to = [x, z];
         if pass.cycle == TurningCycle::ThreadPass {
             self.thread_pass(&mut moves, &words, &pass, to)?;
@@ -195,8 +189,7 @@ impl Writer<'_, '_> {
 
     /// R as the words of its axis count.
     fn taper(&self, pass: &Pass) -> i64 {
-        let twice = pass.cycle != TurningCycle::FacePass && self.state.diameters == Some(true);
-        if twice { 2 * pass.taper } else { pass.taper }
+        if pass.cycle == TurningCycle::FacePass { pass.taper } else { self.twice() * pass.taper }
     }
 
     fn thread_pass(
@@ -207,15 +200,7 @@ impl Writer<'_, '_> {
         to: Spot,
     ) -> Result<(), Fault> {
         let first = [to[0] + self.taper(pass), pass.start[1]];
-        let mut further = Vec::new();
-        for letter in *b"QE" {
-            if let Some((_, span)) = words.number(letter) {
-                if !further.is_empty() {
-                    further.push(b' ');
-                }
-                further.extend_from_slice(words.block.text(span));
-            }
-        }
+        let further = words.texts(b"QE");
         self.go(moves, Code::Rapid, first);
         self.chamfered_thread(moves, words, to, pass.start[0], &further)?;
         self.go(moves, Code::Rapid, [pass.start[0], to[1]]);
@@ -256,7 +241,7 @@ impl Writer<'_, '_> {
         let exact = |lead: nc_syntax::Number| {
             lead.has_point || self.dialect.numbers.point_free == nc_syntax::dialect::PointFree::Unit
         };
-        let lead = self.state.feed.filter(|lead| exact(*lead));
+        let lead = self.feed(words).filter(|lead| exact(*lead));
         let start = moves.at();
         let length = match (leads > 0.0, lead, words.number(b'E')) {
             (false, ..) => 0.0,
@@ -313,8 +298,7 @@ impl Writer<'_, '_> {
 
     /// Words of a number with six decimals.
     pub(super) fn millionths_of(&self, mm: f64) -> i64 {
-        let unit_mm = if self.state.inch { 25.4 } else { 1.0 };
-        units::decimal::round(mm / unit_mm * MILLION)
+        units::decimal::round(mm / self.here.units.mm() * MILLION)
     }
 }
 

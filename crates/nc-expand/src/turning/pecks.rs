@@ -9,23 +9,24 @@
 use diagnostic::both;
 use nc_syntax::Span;
 use nc_syntax::dialect::TurningCycle;
+use toolpath::{Retreat, peck_depths, whole_pecks};
 
 use super::emit::Code;
-use super::state::Motion;
-use super::{Fault, Spot, Writer};
+use super::{Spot, Writer};
+use crate::lowering::Fault;
 
 /// Pecks of one cycle at all its places; more are a wrong step.
 const MOST: i64 = 10_000;
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     pub(super) fn pecks(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
         self.require_diameters(&words, span)?;
         // The axis of the pecks: Z of G74, X of G75.
         let down = if cycle == TurningCycle::PeckFace { 1 } else { 0 };
         let along = 1 - down;
-        if !self.state.moves(&words) {
-            let Some(back) = self.state.length(&words, b'R') else {
+        if !words.names_a_place() {
+            let Some(back) = self.length(&words, b'R') else {
                 return Err(words.cycle_fault(
                     span,
                     both!("a cycle without a place", "цикл без конечной точки"),
@@ -53,21 +54,12 @@ impl Writer<'_, '_> {
                 both!("leave R out of this block", "уберите R из этого кадра"),
             ));
         }
-        let target = self.state.target(&words);
-        let [Some(x), Some(z)] = target else {
-            return Err(words.cycle_fault(
-                span,
-                both!("where the cycle leads is not known", "неизвестно, куда ведёт цикл"),
-                both!("above 400 km", "больше 400 км"),
-                both!("correct X and Z", "исправьте X и Z"),
-            ));
-        };
-        let to = [x, z];
+        let to = self.known_target(&words, span)?;
         let whole = [to[0] - start[0], to[1] - start[1]];
-        let twice = [if self.state.diameters == Some(true) { 2 } else { 1 }, 1];
+        let twice = [self.twice(), 1];
         let letters = [b'P', b'Q'];
         let step = |axis: usize| {
-            let said = self.state.depth(&words, letters[axis]).map(|step| twice[axis] * step.abs());
+            let said = words.depth(&self.here, letters[axis]).map(|step| twice[axis] * step.abs());
             said.filter(|step| *step > 0).unwrap_or_else(|| whole[axis].abs())
         };
         let (peck, across) = (step(down), step(along));
@@ -123,14 +115,11 @@ impl Writer<'_, '_> {
         let mut sideways = 0;
         loop {
             self.go(&mut moves, Code::Rapid, place(sideways, 0));
-            let (deep, mut reached) = (whole[down].abs(), 0);
-            while reached < deep {
-                reached = (reached + peck).min(deep);
-                self.go(&mut moves, Code::Line, place(sideways, reached));
-                if reached < deep {
-                    self.go(&mut moves, Code::Rapid, place(sideways, (reached - back).max(0)));
-                }
-            }
+            let deep = whole[down].abs() as f64;
+            let depths = peck_depths(deep, peck as f64, whole_pecks(deep / peck as f64));
+            self.strokes(&mut moves, depths, Retreat::Back { by: back as f64 }, |depth| {
+                place(sideways, depth)
+            });
             self.go(&mut moves, Code::Rapid, place(sideways, 0));
             if sideways >= whole[along].abs() {
                 break;
@@ -138,11 +127,9 @@ impl Writer<'_, '_> {
             sideways = (sideways + across).min(whole[along].abs());
         }
         self.go(&mut moves, Code::Rapid, start);
-        if let Some((feed, _)) = words.number(b'F') {
-            (self.state.feed, self.unsure_feed) = (Some(feed), false);
-        }
+        self.unsure_feed &= words.number(b'F').is_none();
         self.end(moves);
-        self.state.motion = Motion::Unknown;
+        self.leave_open();
         Ok(())
     }
 }

@@ -18,10 +18,11 @@
 
 use diagnostic::both;
 
+use super::Writer;
 use super::contour::{Axis, Contour, Point, Way};
 use super::emit::{Code, Moves};
 use super::rough::{MOST_PASSES, Passes, SAME};
-use super::{Fault, Writer};
+use crate::lowering::Fault;
 use crate::output::{Style, word};
 use crate::shorthand::Words;
 
@@ -54,8 +55,8 @@ struct Chain<'p> {
 }
 
 /// Passes on their way out.
-struct Cut<'w, 'b, 'a, 'p> {
-    writer: &'w mut Writer<'b, 'a>,
+struct Cut<'w, 'b, 'a, 'd, 'p> {
+    writer: &'w mut Writer<'b, 'a, 'd>,
     moves: &'w mut Moves,
     chain: &'p Chain<'p>,
 }
@@ -142,7 +143,7 @@ impl Way {
     }
 }
 
-impl Cut<'_, '_, '_, '_> {
+impl Cut<'_, '_, '_, '_, '_> {
     fn go(&mut self, code: Code, to: Point) {
         let spot = self.writer.spot(to);
         self.writer.go(self.moves, code, spot);
@@ -214,7 +215,7 @@ impl Cut<'_, '_, '_, '_> {
     }
 }
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     /// G71 and G72 along a contour with pockets, from the corner off the start; ends there.
     pub(super) fn pockets(
         &mut self,

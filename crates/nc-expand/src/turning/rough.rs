@@ -12,14 +12,15 @@
 //! and S of their own, and goes back in a rapid to where it began.
 
 use diagnostic::both;
+use nc_program::Compensation;
 use nc_syntax::dialect::TurningCycle;
 use nc_syntax::{ItemKind, Span};
 
 use super::contour::{Axis, Contour, Piece, Point};
 use super::emit::{Code, Moves};
-use super::state::Motion;
-use super::{Fault, MILLION, Spot, Writer, cycle_of};
-use crate::shorthand::{Words, from, shown};
+use super::{MILLION, Spot, Writer, cycle_of};
+use crate::lowering::Fault;
+use crate::shorthand::{Words, shown};
 
 /// Passes of one cycle; more are a wrong depth.
 pub(super) const MOST_PASSES: i64 = 10_000;
@@ -63,7 +64,7 @@ pub(super) struct FirstBlocks {
     pub(super) thread: Option<super::threads::Settings>,
 }
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     /// G71, G72, G73: the block that sets, or the one that cuts; says which block is next.
     pub(super) fn rough(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<usize, Fault> {
         let words = self.words(at);
@@ -86,7 +87,8 @@ impl Writer<'_, '_> {
             ));
         }
         if let Some(block) = contour.compensated.filter(|_| !self.is_finished(&contour)) {
-            let block = self.words(block);
+            let came = contour.blocks[block].came();
+            let block = Words::of(&came, self.dialect);
             return Err(block.contour_fault(
                 block.whole(),
                 both!(
@@ -99,6 +101,7 @@ impl Writer<'_, '_> {
                 ),
             ));
         }
+        let last_feed = self.out.known.modal().feed;
         let own: &[u8] = if cycle == TurningCycle::RoughPattern { b"PQUWDIK" } else { b"PQUWD" };
         let mut moves = self.begin(&words, start, own)?;
         let allowance = self.allowance(&words);
@@ -108,16 +111,14 @@ impl Writer<'_, '_> {
             self.passes(&mut moves, &words, cycle, span, &contour, allowance)?;
         }
         let feed = words.number(b'F').map(|(number, _)| number);
-        let other =
-            feed.is_some_and(|feed| self.state.feed.is_none_or(|known| known.to_f64() != feed.to_f64()));
         self.end(moves);
         if let Some(feed) = feed {
-            (self.state.feed, self.unsure_feed) = (Some(feed), other);
+            self.unsure_feed = last_feed.is_none_or(|known| known.to_f64() != feed.to_f64());
         }
-        self.state.motion = Motion::Unknown;
-        for index in contour.first..=contour.last {
-            let block = &self.blocks[index];
-            self.out.comment(shown(block), from(block));
+        self.leave_open();
+        for held in &contour.blocks {
+            let came = held.came();
+            self.out.comment(shown(&came.block), came.from);
         }
         Ok(contour.last + 1)
     }
@@ -150,7 +151,7 @@ impl Writer<'_, '_> {
                 ),
             ));
         }
-        let length = |letter: u8| self.state.length(words, letter);
+        let length = |letter: u8| self.length(words, letter);
         let mut set = self.first_blocks;
         match cycle {
             TurningCycle::RoughPattern => {
@@ -196,7 +197,7 @@ impl Writer<'_, '_> {
 
     /// U and W as X and Z words count.
     fn allowance(&self, words: &Words<'_, '_>) -> Spot {
-        [b'U', b'W'].map(|letter| self.state.length(words, letter).unwrap_or_default())
+        [b'U', b'W'].map(|letter| self.length(words, letter).unwrap_or_default())
     }
 
     /// G73.
@@ -210,7 +211,7 @@ impl Writer<'_, '_> {
     ) -> Result<(), Fault> {
         let one_block = words.number(b'D').is_some();
         let (relief, cuts) = if one_block {
-            let length = |letter: u8| self.state.length(words, letter).unwrap_or_default();
+            let length = |letter: u8| self.length(words, letter).unwrap_or_default();
             let cuts = words.number(b'D').and_then(|(number, _)| number.integer());
             (Some([length(b'I'), length(b'K')]), cuts)
         } else {
@@ -225,7 +226,7 @@ impl Writer<'_, '_> {
             ));
         };
         // The relief along X is a radius, X words may be diameters.
-        let twice = if self.state.diameters == Some(true) { 2 } else { 1 };
+        let twice = self.twice();
         let relief = [twice * relief[0], relief[1]];
         for cut in 0..cuts {
             let share = |whole: i64| {
@@ -257,7 +258,8 @@ impl Writer<'_, '_> {
         let forwards = (b[along] - a1[along]).signum();
         let aside = a1[along] != a[along];
         if a1[down] == a[down] || b[along] == a1[along] || (aside && !contour.names_both) {
-            let block = self.words(contour.first);
+            let came = contour.blocks[0].came();
+            let block = Words::of(&came, self.dialect);
             let name = ["X", "Z"][down];
             return Err(block.contour_fault(
                 block.whole(),
@@ -334,7 +336,7 @@ impl Writer<'_, '_> {
 
     /// Depth of cut and escape in units of radius or Z.
     fn depths(&self, words: &Words<'_, '_>, span: Span, down: Axis) -> Result<(f64, f64), Fault> {
-        let depth = self.state.depth(words, b'D').or(self.first_blocks.depth[down]);
+        let depth = words.depth(&self.here, b'D').or(self.first_blocks.depth[down]);
         let Some(depth) = depth.filter(|depth| *depth != 0) else {
             let letter = ["U", "W"][down];
             return Err(words.cycle_fault(
@@ -368,7 +370,7 @@ impl Writer<'_, '_> {
     fn along(&mut self, moves: &mut Moves, contour: &Contour, by: Spot) {
         let whom = moves.from;
         for piece in std::iter::once(&contour.entry).chain(&contour.pieces).chain(&contour.retract) {
-            moves.from = from(&self.blocks[piece.block]);
+            moves.from = contour.blocks[piece.block].came().from;
             self.go_with(moves, piece.code, sum(piece.to, by), &piece.round);
         }
         moves.from = whom;
@@ -409,16 +411,16 @@ impl Writer<'_, '_> {
         let behind = moves.take_behind();
         self.unsure_feed &= words.number(b'F').is_none();
         self.end(moves);
-        for index in contour.first..=contour.last {
-            let block = self.words(index);
+        for held in &contour.blocks {
+            let came = held.came();
+            let block = Words::of(&came, self.dialect);
             self.unsure_feed &= block.number(b'F').is_none();
-            self.state.step(&block);
             self.copy_without_number(&block);
-            self.state.follow(self.out.known.modal());
         }
-        if self.state.compensated {
-            return Err(self.words(contour.last).contour_fault(
-                self.words(contour.last).whole(),
+        let last = self.words(contour.last);
+        if self.out.known.modal().compensation != Compensation::Off {
+            return Err(last.contour_fault(
+                last.whole(),
                 both!("compensation is in force behind the contour", "после контура действует коррекция"),
                 both!(
                     "the way back to the start of the cycle would be compensated",
@@ -426,11 +428,11 @@ impl Writer<'_, '_> {
                 ),
             ));
         }
-        let end = self.standing(&self.words(contour.last), span)?;
-        let mut back = Moves::new(from(words.block), end).with_behind(behind);
+        let end = self.standing(&last, span)?;
+        let mut back = Moves::new(words.from, end, self.out.known.modal()).with_behind(behind);
         self.go(&mut back, Code::Rapid, start);
         self.end(back);
-        self.state.motion = Motion::Unknown;
+        self.leave_open();
         Ok(())
     }
 
@@ -447,7 +449,7 @@ impl Writer<'_, '_> {
             .concat(),
         };
         self.out.fresh_line();
-        self.out.write(&rest, from(block));
+        self.out.write(&rest, words.from);
     }
 }
 

@@ -11,23 +11,25 @@
 use std::ops::Range;
 
 use diagnostic::{Text, both};
+use nc_program::modal::{ArcCentres, FeedMode};
 use nc_syntax::dialect::{Action, TurningCycle};
 use nc_syntax::{ItemKind, Span, Value};
 
+use toolpath::Plane;
+
 use super::emit::Code;
 use super::profile::{Misfit, Profile, Round, Segment, Stroke};
-use super::state::Motion;
-use super::{Fault, MILLION, Spot, Writer};
+use super::{MILLION, Spot, Writer};
 use crate::codes;
-use crate::output::{Style, word};
-use crate::shorthand::{Words, from, shown};
+use crate::lowering::Fault;
+use crate::shorthand::{Words, numbers, shown};
 
 /// Passes of G70; more are a wrong P.
 const MOST_PASSES: i64 = 1000;
 /// So much must the radius of an arc be above half its chord: at less the interpreter may find no centre.
 const HALF_CIRCLE: f64 = 1e-9;
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     /// Writes the cycle, and says which block is next.
     pub(super) fn routine(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<usize, Fault> {
         let words = self.words(at);
@@ -47,7 +49,10 @@ impl Writer<'_, '_> {
                 ));
             }
         }
-        if !self.state.absolute || !self.state.in_zx || self.state.inverse_time || self.state.centres_absolute
+        if !self.here.says_places()
+            || self.here.plane != Plane::Zx
+            || self.here.feed_mode == FeedMode::InverseTime
+            || self.here.arc_centres == ArcCentres::Absolute
         {
             return refuse(
                 both!("a cycle outside G18 G90 G91.1 and G94 or G95", "цикл вне G18 G90 G91.1 и G94 или G95"),
@@ -61,7 +66,7 @@ impl Writer<'_, '_> {
         let named = *b"XZ";
         let both_named = named.iter().all(|letter| words.number(*letter).is_some());
         let standing = if both_named { [i64::MAX; 2] } else { self.standing(&words, span)? };
-        let start = match self.state.target(&words) {
+        let start = match self.target(&words) {
             [Some(x), Some(z)] => [x, z],
             _ => self.standing(&words, span)?,
         };
@@ -84,7 +89,7 @@ impl Writer<'_, '_> {
         let pieces = self.pieces(&words, start, blocks.clone())?;
         let own: &[u8] = if cycle == TurningCycle::FinishRoutine { b"XZQDEP" } else { b"XZQDIR" };
         let length = |letter: u8, usual: f64| {
-            self.state.length(&words, letter).map_or(usual, |value| value as f64 / MILLION)
+            self.length(&words, letter).map_or(usual, |value| value as f64 / MILLION)
         };
         let passes = words.number(b'P').map_or(Some(1), |(number, _)| number.integer());
         let passes = passes.filter(|passes| (1..=MOST_PASSES).contains(passes));
@@ -124,23 +129,19 @@ impl Writer<'_, '_> {
                     continue;
                 }
                 let here = self.plane(moves.at());
-                let _ = word(&mut round, b'I', centre[0] - here[0], Style::Decimals(6));
-                round.push(b' ');
-                let _ = word(&mut round, b'K', centre[1] - here[1], Style::Decimals(6));
+                numbers(&mut round, [(b'I', centre[0] - here[0]), (b'K', centre[1] - here[1])]);
             }
             self.go_with(&mut moves, code, to, &round);
         }
-        if let Some((feed, _)) = words.number(b'F') {
-            (self.state.feed, self.unsure_feed) = (Some(feed), false);
-        }
+        self.unsure_feed &= words.number(b'F').is_none();
         self.end(moves);
-        self.state.motion = Motion::Unknown;
+        self.leave_open();
         for index in blocks.clone() {
-            let block = &self.blocks[index];
-            if block.acts() {
-                self.out.comment(shown(block), from(block));
+            let came = &self.blocks[index];
+            if came.block.acts() {
+                self.out.comment(shown(&came.block), came.from);
             } else {
-                self.out.block(block);
+                self.out.block(came);
             }
         }
         Ok(blocks.end)
@@ -148,12 +149,8 @@ impl Writer<'_, '_> {
 
     /// The blocks of the subroutine, which stand behind the cycle's.
     fn blocks_behind(&self, at: usize) -> Option<Range<usize>> {
-        let block = &self.blocks[at];
-        let end = block.offset + block.bytes.len() as u64;
-        let text = block.offset + block.bytes.trim_ascii_end().len() as u64;
-        let bytes = self.routines.iter().find(|range| (text..=end).contains(&range.start))?;
-        let behind = self.blocks[at + 1..].iter().take_while(|block| block.offset < bytes.end).count();
-        Some(at + 1..at + 1 + behind)
+        let behind = self.blocks[at + 1..].iter().take_while(|came| came.from.contour).count();
+        (behind > 0).then_some(at + 1..at + 1 + behind)
     }
 
     /// The contour in radius and Z; the first piece leads to it from the start.
@@ -163,21 +160,16 @@ impl Writer<'_, '_> {
         start: Spot,
         blocks: Range<usize>,
     ) -> Result<Vec<Segment>, Fault> {
-        let mut state = self.state.clone();
-        state.stands_at(start);
-        state.motion = Motion::Unknown;
+        let (mut spot, mut motion) = (start, None);
         let (mut at, mut pieces) = (self.plane(start), Vec::new());
         for index in blocks {
             let words = self.words(index);
             let refuse = |message: Text, label: Text| Err(words.routine_fault(words.whole(), message, label));
             words.check_routine_block()?;
-            state.step(&words);
-            let (clockwise, arc) = match state.motion {
-                Motion::Clockwise => (true, true),
-                Motion::CounterClockwise => (false, true),
-                _ => (false, false),
-            };
-            if !state.moves(&words) {
+            motion = words.motion().or(motion);
+            let clockwise = motion == Some(Code::Clockwise);
+            let arc = clockwise || motion == Some(Code::CounterClockwise);
+            if !words.names_a_place() {
                 if arc && b"IK".iter().any(|letter| words.number(*letter).is_some()) {
                     return refuse(
                         both!("an arc without an end", "дуга без конечной точки"),
@@ -189,17 +181,18 @@ impl Writer<'_, '_> {
                 }
                 continue;
             }
-            let [Some(x), Some(z)] = state.at else {
+            let [Some(x), Some(z)] = words.target(&self.here, spot.map(Some)) else {
                 return refuse(
                     both!("where the contour leads here is not known", "неизвестно, куда здесь ведёт контур"),
                     both!("another frame, or above 400 km", "другая система координат или больше 400 км"),
                 );
             };
-            let to = self.plane([x, z]);
+            spot = [x, z];
+            let to = self.plane(spot);
             if to == at {
                 continue;
             }
-            if state.motion == Motion::Unknown || (arc && pieces.is_empty()) {
+            if motion.is_none() || (arc && pieces.is_empty()) {
                 return refuse(
                     both!("the contour does not begin with G0 or G1", "контур не начинается с G0 или G1"),
                     both!(
@@ -219,8 +212,7 @@ impl Writer<'_, '_> {
                 );
             }
             let round = if arc {
-                let radius =
-                    words.number(b'R').map(|(r, _)| words.dialect.numbers.length(r, state.inch).to_f64());
+                let radius = words.length(b'R', self.here.units);
                 let half = 0.5 * units::math::hypot(to[0] - at[0], to[1] - at[1]);
                 if radius.is_some_and(|radius| radius * radius - half * half < HALF_CIRCLE || radius < 0.0) {
                     return refuse(

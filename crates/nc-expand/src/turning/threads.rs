@@ -19,8 +19,8 @@ use nc_syntax::dialect::FlankFrom;
 use units::math;
 
 use super::emit::Code;
-use super::state::Motion;
-use super::{Fault, Spot, Writer};
+use super::{Spot, Writer};
+use crate::lowering::Fault;
 use crate::shorthand::Words;
 
 /// Passes of one thread; more are a wrong infeed.
@@ -36,11 +36,11 @@ pub(super) struct Settings {
     allowance: i64,
 }
 
-impl Writer<'_, '_> {
+impl Writer<'_, '_, '_> {
     pub(super) fn thread(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
         self.require_diameters(&words, span)?;
-        if !self.state.moves(&words) {
+        if !words.names_a_place() {
             return self.set_thread(at, span);
         }
         let start = self.standing(&words, span)?;
@@ -67,7 +67,7 @@ impl Writer<'_, '_> {
                 ),
             );
         };
-        let [Some(x), Some(z)] = self.state.target(&words) else {
+        let [Some(x), Some(z)] = self.target(&words) else {
             return refuse(
                 both!("where the thread ends is not known", "неизвестно, где кончается резьба"),
                 both!("X and Z were expected", "ожидались X и Z"),
@@ -75,9 +75,9 @@ impl Writer<'_, '_> {
             );
         };
         let (height, first) = if in_one_block {
-            (self.state.length(&words, b'K'), self.state.depth(&words, b'D'))
+            (self.length(&words, b'K'), words.depth(&self.here, b'D'))
         } else {
-            (self.state.depth(&words, b'P'), self.state.depth(&words, b'Q'))
+            (words.depth(&self.here, b'P'), words.depth(&self.here, b'Q'))
         };
         let (Some(height), Some(first)) = (height.filter(|h| *h > 0), first.filter(|q| *q > 0)) else {
             return refuse(
@@ -96,15 +96,15 @@ impl Writer<'_, '_> {
                 ),
             );
         };
-        let Some((feed, _)) = words.number(b'F') else {
+        if words.number(b'F').is_none() {
             return refuse(
                 both!("a thread without its lead", "резьба без хода"),
                 both!("F was expected", "ожидалось F"),
                 both!("write F, the lead, in this block", "напишите F — ход резьбы — в этом кадре"),
             );
-        };
-        let taper = self.state.length(&words, if in_one_block { b'I' } else { b'R' }).unwrap_or_default();
-        let twice = if self.state.diameters == Some(true) { 2 } else { 1 };
+        }
+        let taper = self.length(&words, if in_one_block { b'I' } else { b'R' }).unwrap_or_default();
+        let twice = self.twice();
         // Outside threads start above their root.
         let outwards = (start[0] - (x + twice * taper)).signum();
         if outwards == 0 || (start[0] - x) * outwards < twice * height || start[1] == z {
@@ -134,7 +134,6 @@ impl Writer<'_, '_> {
         let flank = self.flank(&words, span, &settings, &depths)?;
         let own: &[u8] = if in_one_block { b"XZUWIKDA" } else { b"XZUWPQR" };
         let mut moves = self.begin(&words, start, own)?;
-        self.state.feed = Some(feed);
         self.unsure_feed = false;
         for depth in depths {
             let above = outwards * twice * (height - depth);
@@ -145,7 +144,7 @@ impl Writer<'_, '_> {
             self.go(&mut moves, Code::Rapid, start);
         }
         self.end(moves);
-        self.state.motion = Motion::Unknown;
+        self.leave_open();
         Ok(())
     }
 
@@ -233,8 +232,8 @@ impl Writer<'_, '_> {
     fn set_thread(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
         let digits = words.number(b'P').and_then(|(number, _)| number.integer());
-        let least = self.state.depth(&words, b'Q');
-        let allowance = self.state.length(&words, b'R');
+        let least = words.depth(&self.here, b'Q');
+        let allowance = self.length(&words, b'R');
         let (Some(digits), Some(least), Some(allowance)) =
             (digits.filter(|p| (0..1_000_000).contains(p)), least, allowance)
         else {
