@@ -44,8 +44,6 @@ pub(crate) enum Term {
     Order {
         /// Component.
         component: usize,
-        /// Power of the share of the way through.
-        power: i32,
         /// Anew in every run, or through all of them.
         anew: bool,
     },
@@ -87,9 +85,7 @@ impl Term {
                 (true, _) => unit(component - 3).cross(&geometry.nominal_tip_mm(&row.command)) * 1e-3,
             },
             Self::BarLength => Vector::zeros(),
-            Self::Order { component, power, anew } => {
-                unit(*component) * row.order[usize::from(*anew)].powi(*power)
-            }
+            Self::Order { component, anew } => unit(*component) * row.order[usize::from(*anew)],
             Self::UnknownApproach(axis) => {
                 if row.command.direction[*axis] == 0 {
                     unit(*axis)

@@ -77,8 +77,7 @@ impl Assembly<'_> {
         for i in positions.clone() {
             let name = match solution.terms[i] {
                 Term::Effect { index, .. } => names[index].to_owned(),
-                Term::Order { component, power: 1, .. } => format!("{}_um", ["x", "y", "z"][component]),
-                Term::Order { component, power, .. } => format!("p{power}_{}_um", ["x", "y", "z"][component]),
+                Term::Order { component, .. } => format!("{}_um", ["x", "y", "z"][component]),
                 _ => continue,
             };
             let u95 = Some(quantile * deviation(i));

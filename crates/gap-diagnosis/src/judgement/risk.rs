@@ -8,6 +8,7 @@
 //! measured does not.
 
 use diagnostic::{Text, both};
+use machine_model::effects::EffectKind;
 use machine_model::{Range, Vector, Volume};
 use nalgebra::{DMatrix, DVector};
 
@@ -29,8 +30,10 @@ const NODES: usize = 9;
 const SAMPLES: usize = 4;
 /// Quantile of the normal distribution: 95 %, one side.
 const SURE: f64 = 1.645;
-/// Share of an axis that must pass for a part of the volume to be worth writing.
-const WORTH: f64 = 0.15;
+/// Nodes are uneven by the golden ratio's multiples, which have no period.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// Share of every axis that must pass for a part of the volume to be worth writing.
+const WORTH: f64 = 0.5;
 
 /// Where the correction may be used.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,7 +113,9 @@ impl Assembly<'_> {
             |parts: &[Part]| -> f64 { self.values(parts).iter().map(|(t, v)| log_prior(t, *v)).sum() };
         let own_prior = prior(parts);
         let pairs = (0..parts.len()).flat_map(|a| (0..a).map(move |b| vec![b, a]));
-        let groups = (0..parts.len()).map(|a| vec![a]).chain(pairs);
+        let written =
+            |group: &Vec<usize>| group.iter().all(|place| self.corrects(library.kind(parts[*place])));
+        let groups = (0..parts.len()).map(|a| vec![a]).chain(pairs).filter(written);
         let mut found = Vec::new();
         for group in groups {
             let mut rest = parts.clone();
@@ -137,12 +142,18 @@ impl Assembly<'_> {
         sub.terms.into_iter().zip(values).skip(self.model.library.nuisances).collect()
     }
 
-    /// A model of some parts, of which those of the machine move it.
+    /// False for faults of the instrument, and for causes that such a fault could have shown as well: nothing is written of them.
+    fn corrects(&self, kind: EffectKind) -> bool {
+        let mut named = self.ordered.iter().filter(|r| self.model.library.kind(r.part) == kind);
+        !kind.is_instrument() && !named.any(|r| r.told().any(|rival| rival.kind.is_instrument()))
+    }
+
+    /// A model of some parts, of which those count that a correction could be made of.
     fn explained(&self, parts: &[Part], stand: Option<Stand>) -> Explained {
         let sub = self.model.space.gram.select(&self.model.library.model_columns(parts));
         let (values, covariance) = sub.estimate(self.model.solution.rho);
-        let is_machine = |i: &usize| sub.terms[*i].kind().is_some_and(|kind| !kind.is_instrument());
-        let own: Vec<usize> = (0..sub.terms.len()).filter(is_machine).collect();
+        let is_corrected = |i: &usize| sub.terms[*i].kind().is_some_and(|kind| self.corrects(kind));
+        let own: Vec<usize> = (0..sub.terms.len()).filter(is_corrected).collect();
         Explained {
             stand,
             terms: own.iter().map(|i| sub.terms[*i]).collect(),
@@ -167,7 +178,10 @@ impl Grid {
             let (low, high) = volume.map_or(data.range_mm(a), |Volume(all)| (all[a].low, all[a].high));
             let count = if high - low > 1e-6 { NODES } else { 1 };
             let step = (high - low) / (count - 1).max(1) as f64;
-            (0..count).map(|k| low + step * k as f64).collect::<Vec<f64>>()
+            // Even nodes would all see one phase of a screw.
+            let uneven =
+                |k: usize| if k == 0 || k + 1 == count { 0.0 } else { (k as f64 * GOLDEN).fract() - 0.5 };
+            (0..count).map(|k| low + step * (k as f64 + 0.6 * uneven(k))).collect::<Vec<f64>>()
         });
         let [x, y, z] = &axes;
         let plane = |x: f64| y.iter().flat_map(move |y| z.iter().map(move |z| Vector::new(x, *y, *z)));
@@ -222,13 +236,13 @@ impl Grid {
             let slab = |side: usize| {
                 let (from, to) = kept[side / 2];
                 let mut slab = kept;
-                slab[side / 2] = if side % 2 == 0 { (from, from) } else { (to, to) };
+                slab[side / 2] = if side.is_multiple_of(2) { (from, from) } else { (to, to) };
                 share(slab)
             };
             let Some(worst) = sides.max_by(|a, b| slab(*a).total_cmp(&slab(*b))) else {
                 return Use::Nowhere(forbids);
             };
-            if worst % 2 == 0 { kept[worst / 2].0 += 1 } else { kept[worst / 2].1 -= 1 }
+            if worst.is_multiple_of(2) { kept[worst / 2].0 += 1 } else { kept[worst / 2].1 -= 1 }
         }
         let thin =
             (0..3).any(|a| count[a] > 1 && ((kept[a].1 - kept[a].0) as f64) < WORTH * (count[a] - 1) as f64);

@@ -121,29 +121,26 @@ impl Library {
         }
     }
 
-    /// A drift in the order of the rows, through all runs or anew in each; on places that are passed once the order is the place.
+    /// An even drift in the order of the rows, through all runs or anew in each; on places that are passed once the order is the
+    /// place, and there and back any bend of it is.
     fn orders(&mut self, data: &Measurements) -> Vec<Variant> {
-        let place = |row: &Row| row.command.linear_mm.map(|q| (1e3 * q).round() as i64);
-        let mut places: Vec<[i64; 3]> = data.rows.iter().map(|row| place(row).into()).collect();
-        places.sort_unstable();
-        places.dedup();
-        if 2 * places.len() > data.rows.len() {
-            return Vec::new();
-        }
         let scalars = data.scalars(None);
         let is_read = |component: &usize| scalars.iter().any(|s| s.class == *component);
-        let moves = |anew: &bool| data.rows.iter().any(|row| row.order[usize::from(*anew)] > 0.0);
+        let passed_again = |anew: &bool| {
+            let place = |row: &Row| row.command.linear_mm.map(|q| (1e3 * q).round() as i64);
+            let within = |row: &Row| if *anew { row.run } else { 0 };
+            let mut places: Vec<(usize, [i64; 3])> =
+                data.rows.iter().map(|row| (within(row), place(row).into())).collect();
+            places.sort_unstable();
+            places.dedup();
+            2 * places.len() <= data.rows.len() && data.rows.iter().any(|row| row.order != [0.0; 2])
+        };
         let mut forms = Vec::new();
-        for anew in [false, true].into_iter().filter(moves) {
+        for anew in [false, true].into_iter().filter(passed_again) {
             for component in (0..3).filter(is_read) {
-                let first = self.terms.len();
-                self.terms.extend([1, 2].map(|power| Term::Order { component, power, anew }));
-                let form = |count| Variant {
-                    columns: (first..first + count).collect(),
-                    enriched: count > 1,
-                    only_rival: false,
-                };
-                forms.extend([1, 2].map(form));
+                self.terms.push(Term::Order { component, anew });
+                let columns = vec![self.terms.len() - 1];
+                forms.push(Variant { columns, enriched: false, only_rival: false });
             }
         }
         forms
