@@ -61,6 +61,7 @@ fn design(csv: &str, profile: &str, kept: &dyn Fn(&str) -> bool) -> Measurements
             instrument: None,
             station: None,
             artefact: None,
+            order: [0.0; 2],
             reading: Reading::Displacement([Some(0.0); 3]),
             line: 0,
         });

@@ -57,6 +57,7 @@ mod holes;
 mod identity;
 mod large;
 mod map;
+mod measured_designs;
 mod ms300;
 mod newcomer;
 mod on_a_terminal;

@@ -51,6 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 instrument: None,
                 station: None,
                 artefact: None,
+                order: [0.0; 2],
                 reading: Reading::Displacement([Some(read.x), Some(read.y), Some(read.z)]),
                 line: rows.len() as u64 + 2,
             });

@@ -59,6 +59,7 @@ pub fn underpowered(rows: usize, missing: Vec<Text>) -> Diagnosis {
         places: Vec::new(),
         causes: Vec::new(),
         withheld: None,
+        within: None,
         setup: Setup::default(),
         leftover: Leftover::default(),
         holdout: None,

@@ -76,6 +76,7 @@ fn measured(plan: Plan, field_um: impl Fn(&Row) -> Vector) -> Measurements {
                     instrument: None,
                     station: None,
                     artefact: None,
+                    order: [0.0; 2],
                     reading: Reading::Magnitude(0.0),
                     line: rows.len() as u64 + 2,
                 };
@@ -227,7 +228,7 @@ fn a_period_is_found_and_not_named_where_places_are_too_far_apart() {
     let scalars = data.scalars(None);
     let values: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
     let source = Source::new(&data, &scalars);
-    let (found, asked) = crate::search::proposals::Pitches::new(&source, 0).best(&source, &values, 0);
+    let (found, asked, _) = crate::search::proposals::Pitches::new(&source, 0).best(&source, &values, 0);
     // 400 mm of travel resolve 40.3² / 400 = 4 mm between neighbours of equal power; a tenth of that is enough here.
     assert!((found[0] - 40.3).abs() < 0.5 && asked > 17, "{found:?} of {asked}");
     assert!(crate::library::sampling::Sampling::new(&data, 0).is_coarse(40.3));

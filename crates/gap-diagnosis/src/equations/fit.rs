@@ -71,6 +71,13 @@ impl Gram {
         self.normal(&self.whitened(rho).0).1
     }
 
+    /// The same with their covariance divided by σ².
+    #[must_use]
+    pub(crate) fn estimate(&self, rho: f64) -> (Vec<f64>, DMatrix<f64>) {
+        let (factor, coefficients) = self.normal(&self.whitened(rho).0);
+        (coefficients, factor.inverse(self.terms.len()))
+    }
+
     /// The factor of whitened products, and the coefficients of all columns.
     fn normal(&self, whitened: &DMatrix<f64>) -> (Factor, Vec<f64>) {
         let count = self.terms.len();

@@ -92,7 +92,7 @@ impl Gram {
     ) {
         let first = self.terms.len();
         self.widen(new, f64::NAN);
-        let kind = |i: usize| if let Term::Effect { kind, .. } = self.terms[i] { Some(kind) } else { None };
+        let kind = |i: usize| self.terms[i].kind();
         let is_core = |i: usize| core.get(i).is_some_and(|c| *c);
         // The core first, then kind by kind the old columns and the new ones.
         let mut order: Vec<usize> = (0..first).filter(|i| is_core(*i)).collect();

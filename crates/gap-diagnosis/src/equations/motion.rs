@@ -20,12 +20,17 @@ enum Path {
 }
 
 impl Measurements {
-    /// Fills in the shares and the ways of every row from its neighbours in the run.
+    /// Fills in the order, the shares and the ways of every row from its neighbours in the run.
     pub fn follow(&mut self) {
         let timed = self.rows.iter().all(|row| row.conditions.time_s.is_some());
         let mut runs: Vec<Vec<usize>> = vec![Vec::new(); self.runs.len()];
         for (index, row) in self.rows.iter().enumerate() {
             runs[row.run].push(index);
+        }
+        let longest = runs.iter().map(Vec::len).max().unwrap_or(1) as f64;
+        let all = self.rows.len() as f64;
+        for (nth, index) in runs.iter().flat_map(|run| run.iter().enumerate()) {
+            self.rows[*index].order = [*index as f64 / all, nth as f64 / longest];
         }
         for mut run in runs {
             if timed {

@@ -104,6 +104,20 @@ pub(crate) fn bound(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> O
     Some(Noise { variance: found.variance.max(floor), ..found })
 }
 
+/// True where rows measured one after the other lie so far apart that a gap of any shape differs between them as noise does.
+#[must_use]
+pub(crate) fn neighbours_are_far(rows: &[Row]) -> bool {
+    /// Of the diagonal of what was measured: a line has four steps and more.
+    const FAR: f64 = 0.25;
+    let place = |row: &Row| row.command.linear_mm + row.command.tool_mm;
+    let corner = |pick: fn(f64, f64) -> f64| {
+        rows.iter().map(place).reduce(|a, b| a.zip_map(&b, pick)).unwrap_or_default()
+    };
+    let pairs = rows.windows(2).filter(|pair| pair[0].run == pair[1].run);
+    let mut steps: Vec<f64> = pairs.map(|pair| (place(&pair[1]) - place(&pair[0])).norm()).collect();
+    median(&mut steps).is_some_and(|step| step > FAR * (corner(f64::max) - corner(f64::min)).norm())
+}
+
 /// Step of the readings, µm, 0 where they have none: a display that shows whole micrometres gives few different values.
 #[must_use]
 pub(crate) fn quantum_um(scalars: &[Scalar]) -> f64 {
@@ -355,6 +369,11 @@ fn lines(rows: &[Row], scalars: &[Scalar]) -> Lines {
     lines
 }
 
+/// No way at all stands for any: a direction of 2 is none.
+const fn anyhow((place, class, _): Returning) -> Returning {
+    (place, class, [2; 3])
+}
+
 /// Equations with how far off each is, in standard deviations, and what others say of its place.
 struct Surroundings<'a> {
     rows: &'a [Row],
@@ -362,7 +381,7 @@ struct Surroundings<'a> {
     far: &'a [f64],
     /// Sum and count at one place of a run, whatever the direction and the repeat.
     places: BTreeMap<(usize, usize, [i64; 6]), (f64, f64)>,
-    /// Sum and count at one place reached one way, whatever the run.
+    /// Sum and count at one place reached one way, whatever the run; and reached any way: edges of a cube begin in one corner.
     returns: BTreeMap<Returning, (f64, f64)>,
 }
 
@@ -374,8 +393,10 @@ impl<'a> Surroundings<'a> {
             let (place, returning) = (all.place_of(scalar), all.return_of(scalar));
             let entry = all.places.entry(place).or_default();
             *entry = (entry.0 + far, entry.1 + 1.0);
-            let entry = all.returns.entry(returning).or_default();
-            *entry = (entry.0 + far, entry.1 + 1.0);
+            for way in [returning, anyhow(returning)] {
+                let entry = all.returns.entry(way).or_default();
+                *entry = (entry.0 + far, entry.1 + 1.0);
+            }
         }
         all
     }
@@ -418,8 +439,9 @@ impl<'a> Surroundings<'a> {
                     count > 1.0 && (sum - value) / (count - 1.0) * value.signum() >= ACCOMPLICE
                 };
                 let scalar = &self.scalars[*index];
-                let confirmed =
-                    says(self.places[&self.place_of(scalar)]) || says(self.returns[&self.return_of(scalar)]);
+                let returning = self.return_of(scalar);
+                let confirmed = says(self.places[&self.place_of(scalar)])
+                    || [returning, anyhow(returning)].iter().any(|way| says(self.returns[way]));
                 if alone && !confirmed {
                     found.push(scalar.row);
                 }

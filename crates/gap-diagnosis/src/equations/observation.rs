@@ -40,6 +40,8 @@ pub struct Row {
     pub station: Option<usize>,
     /// What was read.
     pub reading: Reading,
+    /// How far through the file and through its run it stands, 0 to 1 ([`Measurements::follow`]).
+    pub order: [f64; 2],
     /// Line of the file, for messages.
     pub line: u64,
 }

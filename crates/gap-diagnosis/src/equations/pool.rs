@@ -49,7 +49,7 @@ impl<'a> Pool<'a> {
             .collect();
         // The set-up is in every model.
         let (effects, set_up): (Vec<Term>, Vec<Term>) =
-            new.into_iter().partition(|term| matches!(term, Term::Effect { .. }));
+            new.into_iter().partition(|term| term.kind().is_some());
         debug_assert!(set_up.is_empty() || known == 0, "the set-up comes first");
         if !set_up.is_empty() {
             self.gram.extend(set_up, &self.source);

@@ -40,6 +40,13 @@ pub(crate) enum Term {
     /// Rows whose direction of approach on an axis is not known, among others where it is: their mean may
     /// lie anywhere between the two sides. First the axis, then the component it is seen in.
     UnknownApproach(usize),
+    /// Readings drift in the order of the rows, where no time is given; coefficient in µm at the end.
+    Order {
+        /// Component.
+        component: usize,
+        /// Anew in every run, or through all of them.
+        anew: bool,
+    },
     /// One coefficient of an effect, in the unit of its name.
     Effect {
         /// Which.
@@ -78,6 +85,7 @@ impl Term {
                 (true, _) => unit(component - 3).cross(&geometry.nominal_tip_mm(&row.command)) * 1e-3,
             },
             Self::BarLength => Vector::zeros(),
+            Self::Order { component, anew } => unit(*component) * row.order[usize::from(*anew)],
             Self::UnknownApproach(axis) => {
                 if row.command.direction[*axis] == 0 {
                     unit(*axis)
@@ -101,6 +109,16 @@ impl Term {
             return 0.0;
         }
         scalar.along.dot(&self.displacement_um(row, geometry))
+    }
+
+    /// The effect that it is a column of.
+    #[must_use]
+    pub(crate) fn kind(&self) -> Option<EffectKind> {
+        match self {
+            Self::Effect { kind, .. } => Some(*kind),
+            Self::Order { .. } => Some(EffectKind::InstrumentDrift),
+            _ => None,
+        }
     }
 
     /// The axis on whose position and direction of approach, and the rotary axes, alone the displacement depends; `None`
@@ -134,6 +152,7 @@ impl Term {
             Self::InstrumentShift { axis, .. } => axis == component,
             Self::StationFrame { component: shift @ 0..=2, .. } => shift == component,
             Self::StationFrame { component: turn, .. } => turn - 3 != component,
+            Self::Order { component: own, .. } => own == component,
             Self::BarLength => false,
             Self::Effect { kind, index, .. } => match kind {
                 EffectKind::Scale(a)

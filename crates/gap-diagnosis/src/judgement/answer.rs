@@ -1,8 +1,8 @@
 //! The answer: what `vpost diagnose` reports.
 
 use diagnostic::{Text, both};
-use machine_model::Vector;
 use machine_model::effects::{EffectKind, EffectTerm};
+use machine_model::{Vector, Volume};
 
 use crate::judgement::verdict::WorseRun;
 
@@ -54,7 +54,7 @@ impl Verdict {
         }
     }
 
-    /// True where a part of the gap has no name, or unseen rows refute the causes: none to act on.
+    /// True where a part of the gap has no name, or unseen rows refute the causes.
     #[must_use]
     pub const fn leaves_open(self) -> bool {
         matches!(self, Self::Partial | Self::Unknown)
@@ -196,6 +196,12 @@ pub struct Cause {
 }
 
 impl Cause {
+    /// A play below zero: directions of approach or signs that are the wrong way round, or an over-compensated reversal.
+    pub(crate) fn is_turned_play(&self) -> bool {
+        matches!(self.term.kind(), EffectKind::Backlash(_))
+            && self.parameters.first().is_some_and(|half_width| half_width.value < 0.0)
+    }
+
     /// True where a fault of the instrument could have shown as well; one that is such a fault stands by its own name.
     fn may_be_the_instrument(&self) -> bool {
         let mut rivals = self.cannot_be_told_from.iter().filter_map(|id| id.parse::<EffectKind>().ok());
@@ -326,6 +332,8 @@ pub struct Diagnosis {
     pub causes: Vec<Cause>,
     /// Why no correction may be made of the causes, in words; `None` where one may.
     pub withheld: Option<Text>,
+    /// The part of the volume to which a correction is limited.
+    pub within: Option<Volume>,
     /// Set-up.
     pub setup: Setup,
     /// Rest.
@@ -347,11 +355,14 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// The causes that a profile may take: they explain the gap, no unseen row speaks against them, they do no harm where
-    /// nothing was measured, and what a fault of the instrument could have shown as well is none of them.
+    /// The causes that a profile may take: no unseen row speaks against them, they do no harm under any explanation that the
+    /// rows do not refute, and what a fault of the instrument could have shown as well is none of them.
     pub fn corrections(&self) -> impl Iterator<Item = &Cause> {
-        let doubted = self.verdict.leaves_open() || self.withheld.is_some();
-        self.causes.iter().filter(move |cause| !doubted && !cause.may_be_the_instrument())
+        let doubted = self.withheld.is_some();
+        // A drift in the order of the rows has no number that a profile could hold.
+        let holds = |cause: &Cause| cause.term.coefficients().any(|(_, value)| value != 0.0);
+        let written = move |cause: &&Cause| !doubted && !cause.may_be_the_instrument() && holds(cause);
+        self.causes.iter().filter(written)
     }
 
     /// True where there are any.

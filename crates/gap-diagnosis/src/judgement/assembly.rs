@@ -8,7 +8,7 @@ use machine_model::effects::EffectKind;
 use crate::equations::align::{FREE_OFFSETS, aligned, rms, row_lengths};
 use crate::equations::f_test::f_tail;
 use crate::equations::linear::Products;
-use crate::equations::noise::{Noise, bound, estimate};
+use crate::equations::noise::{Noise, NoiseSource, bound, estimate, neighbours_are_far};
 use crate::equations::observation::{Measurements, Scalar};
 use crate::equations::set_up::frame;
 use crate::equations::term::Term;
@@ -17,7 +17,6 @@ use crate::judgement::rivals::{Rival, rivals};
 use crate::judgement::structure::{correlates, lack_of_fit};
 use crate::judgement::verdict::{Evidence, LACK_OF_FIT, NOISE_FACTOR, WORTH_NAMING};
 use crate::library::candidates::Part;
-use crate::search::bounds::{Bounds, Harm};
 use crate::search::crossval::Folds;
 use crate::search::explanation::Explanation;
 use crate::search::moves::without;
@@ -25,6 +24,13 @@ use crate::search::space::FREE;
 
 /// Readings that keep more than this of the one before are no noise that a verdict of NO GAP could rest on.
 const SLOW_PHI: f64 = 0.5;
+
+/// True for causes of which the first leave more than there was: the others take off what they put on.
+fn cancel(causes: &[Cause], gap_um: f64) -> bool {
+    /// What two or three causes may leave on their way, by chance, as a factor of the gap.
+    const MORE: f64 = 1.1;
+    causes.iter().any(|cause| cause.rms_after_um > MORE * gap_um)
+}
 
 /// A solved model and what is needed to speak about it.
 pub(crate) struct Assembly<'a> {
@@ -206,14 +212,6 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// What the causes do together where nothing was measured.
-    pub(crate) fn harm(&self) -> Option<Harm> {
-        let parts = self.model.parts.iter().enumerate();
-        let causes: Vec<_> =
-            parts.map(|(place, part)| (self.model.library.kind(*part), self.own(place))).collect();
-        Bounds::new(self.data, &self.model.scalars).broken_together(&causes, self.data)
-    }
-
     /// What the verdict depends on, unseen rows not yet asked; `corner_um`: how uncertain the causes are in the corners of the
     /// volume.
     pub(crate) fn evidence(
@@ -222,7 +220,6 @@ impl<'a> Assembly<'a> {
         leftover: &Leftover,
         causes: &[Cause],
         corner_um: f64,
-        harm: Option<Harm>,
     ) -> Evidence {
         let model = self.model;
         let after_um = causes.last().map_or(gap.rms_um, |c| c.rms_after_um);
@@ -239,11 +236,20 @@ impl<'a> Assembly<'a> {
             carries: corner_um <= gap.rms_um,
             slow: self.noise.is_some_and(|n| n.is_slow()) || model.caution.lag(1) > SLOW_PHI,
             exceeds: self.exceeds_noise(),
+            guessed: self.noise_is_guessed(),
             trifling: gap.rms_um - after_um < WORTH_NAMING * gap.rms_um,
-            swings: matches!(harm, Some(Harm::Swings(..) | Harm::Cancels(..))),
-            shifts: matches!(harm, Some(Harm::Shifts(..))),
+            cancels: cancel(causes, gap.rms_um),
+            risks: causes.iter().any(Cause::is_turned_play),
             unseen: None,
         }
+    }
+
+    /// True where nothing says how much of the scatter is noise: no repeats, no statement, and neighbours too far apart.
+    fn noise_is_guessed(&self) -> bool {
+        let (rows, model) = (&self.data.rows, self.model);
+        let repeated = self.noise.is_some_and(|noise| noise.source == NoiseSource::Repeats)
+            || bound(rows, &model.scalars, &model.solution.residuals_um).is_some();
+        !repeated && self.noise_ratio().is_none() && neighbours_are_far(rows)
     }
 
     /// True where the rows scatter by far more than the noise that was found, or than the same commands do in other runs, which

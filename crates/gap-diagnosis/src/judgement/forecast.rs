@@ -12,6 +12,7 @@ use crate::judgement::answer::Shrinkage;
 use crate::judgement::assembly::Assembly;
 use crate::judgement::shrinkage::{Alternative, LEAST_WEIGHT, Strength, transported};
 use crate::library::candidates::Part;
+use crate::search::bounds::is_straight;
 use crate::search::crossval::{Folding, Folds};
 
 impl Assembly<'_> {
@@ -66,11 +67,15 @@ impl Assembly<'_> {
             crate::equations::gram::eliminate(&whitened, if align { nuisances } else { 0 }, &gram.squares());
         let offset = products.nrows() - 1 - own.len();
         let covariance = &self.model.solution.unit_covariance;
-        let (mut square, mut spread) = (0.0, 0.0);
-        for (i, (_, a)) in own.iter().enumerate() {
-            for (j, (_, b)) in own.iter().enumerate() {
+        let (mut square, mut bent, mut spread) = (0.0, 0.0, 0.0);
+        let is_bent = |term: &Term| !term.kind().is_some_and(is_straight);
+        for (i, (first, a)) in own.iter().enumerate() {
+            for (j, (second, b)) in own.iter().enumerate() {
                 let product = products[(offset + i, offset + j)];
                 square += a * b * product;
+                if is_bent(first) && is_bent(second) {
+                    bent += a * b * product;
+                }
                 spread += covariance[(positions[i], positions[j])] * product;
             }
         }
@@ -80,6 +85,7 @@ impl Assembly<'_> {
         let fitted = if align { rank as f64 + offsets } else { 0.0 };
         Strength {
             square: square / equations / noise,
+            bent: bent / equations / noise,
             spread: spread * self.variance() / equations / noise,
             noise: self.unaligned() * (1.0 - fitted / equations).max(0.05),
         }

@@ -7,6 +7,7 @@ pub(crate) mod forecast;
 pub(crate) mod locate;
 pub(crate) mod next;
 pub(crate) mod parameters;
+pub(crate) mod risk;
 pub(crate) mod rivals;
 pub(crate) mod shrinkage;
 pub(crate) mod structure;

@@ -163,6 +163,7 @@ pub(crate) fn lines(data: &Measurements) -> Vec<Line> {
         instrument: None,
         station: None,
         artefact: None,
+        order: [0.0; 2],
         reading: Reading::Displacement([Some(0.0); 3]),
         ..typical
     };

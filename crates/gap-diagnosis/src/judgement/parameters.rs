@@ -33,7 +33,7 @@ impl Assembly<'_> {
     }
 
     /// By how much the variance of a part's numbers grows because readings hang together.
-    fn inflations(&self, place: usize) -> Vec<f64> {
+    pub(crate) fn inflations(&self, place: usize) -> Vec<f64> {
         let (model, own) = (self.model, self.positions(place));
         if model.caution.is_none() {
             return vec![1.0; own.len()];
@@ -75,14 +75,13 @@ impl Assembly<'_> {
             });
         }
         for i in positions.clone() {
-            if let Term::Effect { index, .. } = solution.terms[i] {
-                let u95 = Some(quantile * deviation(i));
-                parameters.push(Parameter {
-                    name: names[index].to_owned(),
-                    value: solution.coefficients[i],
-                    u95,
-                });
-            }
+            let name = match solution.terms[i] {
+                Term::Effect { index, .. } => names[index].to_owned(),
+                Term::Order { component, .. } => format!("{}_um", ["x", "y", "z"][component]),
+                _ => continue,
+            };
+            let u95 = Some(quantile * deviation(i));
+            parameters.push(Parameter { name, value: solution.coefficients[i], u95 });
         }
         let shapes = kind.shape_names();
         let entry = self.term(place).entry();

@@ -8,6 +8,8 @@ use crate::judgement::answer::Shrinkage;
 pub(crate) struct Strength {
     /// Mean square of their displacement.
     pub square: f64,
+    /// The same of those that are no straight lines.
+    pub bent: f64,
     /// Mean square of what the uncertainty of their numbers displaces.
     pub spread: f64,
     /// Noise that the alignment leaves: one minus the share of fitted set-up numbers.
@@ -33,8 +35,9 @@ pub(crate) struct Alternative {
 ///
 /// `m` is the cross-validated mean square of the residual on the data, in units of the noise variance, and
 /// `m_error` its standard error. What of it is neither noise nor uncertainty of the numbers is a wrong shape and
-/// grows with the displacement: `m' = noise + spread' + (m - 1 - spread) square' / square` (primes: target), and
-/// `S = 1 - sqrt(m' / (m' + square'))`. Where rivals explain the data as well, each predicts its own
+/// grows with the displacement of what has one: `m' = noise + spread' + (m - 1 - spread) grown / square`, primes: target, and
+/// `grown = bent' + (straight + straight') / 2`: a scale or a squareness has no other shape, and whether what is left beside
+/// it grows as it does nobody knows. Then `S = 1 - sqrt(m' / (m' + square'))`. Where rivals explain the data as well, each predicts its own
 /// `S_r = 1 - sqrt((m' + difference) / (m' + square_r))`: `mid` is the mean weighted by their likelihoods, and the
 /// interval holds them all. It goes below zero where the correction of a wrong cause would do harm.
 #[must_use]
@@ -46,7 +49,9 @@ pub(crate) fn transported(
     rivals: &[Alternative],
 ) -> Shrinkage {
     let left = |m: f64| {
-        let ratio = if data.square > 0.0 { target.square / data.square } else { 1.0 };
+        let straight = |of: &Strength| (of.square - of.bent).max(0.0);
+        let grown = target.bent + 0.5 * (straight(data) + straight(target));
+        let ratio = if data.square > 0.0 { grown / data.square } else { 1.0 };
         let shape = ((m - 1.0 - data.spread) * ratio).max(-0.5);
         (target.noise + target.spread + shape * target.noise).max(0.05)
     };
@@ -71,7 +76,7 @@ mod tests {
     use super::*;
 
     fn strength(square: f64) -> Strength {
-        Strength { square, spread: 0.0, noise: 1.0 }
+        Strength { square, bent: square, spread: 0.0, noise: 1.0 }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::equations::align::{aligned, magnitude_errors, rms, row_lengths};
 use crate::equations::noise::tail_factor;
-use crate::equations::observation::{Measurements, Reading, Scalar};
+use crate::equations::observation::{Measurements, Reading, Row, Scalar};
 use crate::equations::term::Term;
 use crate::judgement::answer::{Holdout, Residual, Shrinkage, Step, Verdict};
 use crate::judgement::assembly::Assembly;
@@ -144,25 +144,38 @@ impl Assembly<'_> {
     }
 }
 
-/// Every fourth run kept back and the whole search made on the others: what becomes of its forecast. `None` where these runs
-/// lie outside what the others cover, are few, or the others name nothing.
+/// Every fourth run kept back, of few runs two stretches of each, and the whole search made on the others: what becomes of its
+/// forecast. `None` where these rows lie outside what the others cover, are few, or the others name nothing.
 #[must_use]
 pub(crate) fn kept_back(data: &Measurements, without: &[EffectKind]) -> Option<Unseen> {
     /// Fewer runs leave no three quarters that cover the machine.
     const RUNS: usize = 8;
-    /// More rows make a second search too slow.
-    const ROWS: usize = 20_000;
+    /// More rows make a second search too slow, fewer leave none for it.
+    const ROWS: std::ops::RangeInclusive<usize> = 60..=20_000;
+    /// Stretches of a run, of which every fourth is kept back.
+    const STRETCHES: usize = 8;
     let all = data.runs.len();
-    if all < RUNS || data.rows.len() > ROWS || data.has_magnitudes() {
+    if !ROWS.contains(&data.rows.len()) || data.has_magnitudes() {
         return None;
     }
+    let by_runs = all >= RUNS;
+    let mut lengths = vec![0; all];
+    data.rows.iter().for_each(|row| lengths[row.run] += 1);
     let part = |wanted: bool| {
-        let chosen: Vec<usize> = (0..all).filter(|run| (run % 4 == 2) == wanted).collect();
+        let chosen: Vec<usize> = (0..all).filter(|run| !by_runs || (run % 4 == 2) == wanted).collect();
+        let mut passed = vec![0; all];
         let rows = data.rows.iter().filter_map(|row| {
-            chosen.binary_search(&row.run).ok().map(|run| crate::equations::observation::Row { run, ..*row })
+            let stretch = STRETCHES * passed[row.run] / lengths[row.run];
+            passed[row.run] += 1;
+            let run = chosen.binary_search(&row.run).ok()?;
+            (by_runs || (stretch % 4 == 2) == wanted).then_some(Row { run, ..*row })
         });
-        let runs = chosen.iter().map(|run| data.runs[*run].clone()).collect();
-        Measurements { runs, rows: rows.collect(), ..data.clone() }
+        let rows = rows.collect();
+        Measurements {
+            runs: chosen.iter().map(|run| data.runs[*run].clone()).collect(),
+            rows,
+            ..data.clone()
+        }
     };
     let (fitted, kept) = (part(false), part(true));
     let inside = |axis: usize| {
@@ -176,7 +189,7 @@ pub(crate) fn kept_back(data: &Measurements, without: &[EffectKind]) -> Option<U
     let model = explain(&fitted, &fitted.scalars(None), without);
     let unseen = Assembly::new(&fitted, &model).on_runs_kept_back(&kept)?;
     // Every fourth run, from the third one on.
-    let worse = unseen.worse.map(|worse| WorseRun { run: 4 * worse.run + 2, ..worse });
+    let worse = unseen.worse.map(|w| WorseRun { run: if by_runs { 4 * w.run + 2 } else { w.run }, ..w });
     Some(Unseen { worse, ..unseen })
 }
 
@@ -264,7 +277,6 @@ mod tests {
     use machine_model::effects::{Conditions, EffectGeometry};
 
     use super::*;
-    use crate::equations::observation::Row;
 
     /// Fifty rows a run, of which every second one grows by 3 µm² more than the other shrinks.
     fn grown(runs: usize, growth: f64) -> Option<WorseRun> {
@@ -283,6 +295,7 @@ mod tests {
             instrument: None,
             station: None,
             artefact: None,
+            order: [0.0; 2],
             reading: Reading::Displacement([Some(0.0), None, None]),
             line: 0,
         };

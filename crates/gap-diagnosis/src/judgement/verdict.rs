@@ -38,12 +38,14 @@ pub(crate) struct Evidence {
     pub slow: bool,
     /// The rows scatter by more than the noise that was found, or that what comes back leaves room for.
     pub exceeds: bool,
+    /// Nothing says how much of the scatter is noise.
+    pub guessed: bool,
     /// The causes take off less than [`WORTH_NAMING`] of the gap's RMS.
     pub trifling: bool,
-    /// Together the causes move places between those measured by more than any reading could mean, or cancel each other.
-    pub swings: bool,
-    /// Nothing may be written of the causes: they would shift all places measured by more than was ever read.
-    pub shifts: bool,
+    /// The causes cancel each other: the first of them alone leaves more than there was.
+    pub cancels: bool,
+    /// Nothing may be written of the causes: nowhere is it sure that a correction does no harm.
+    pub risks: bool,
     /// What rows that no fit has seen say.
     pub unseen: Option<Unseen>,
 }
@@ -76,6 +78,14 @@ pub(crate) struct WorseRun {
     pub before_um: f64,
     /// RMS with them, µm.
     pub after_um: f64,
+}
+
+impl Evidence {
+    /// Rows that no fit has seen keep the forecast of causes beside which something is left.
+    pub(crate) fn confirmed(&self) -> bool {
+        on_the_rows(self) == Verdict::Partial
+            && self.unseen.is_some_and(|u| !u.refutes() && u.achieved() > SHORT)
+    }
 }
 
 impl Unseen {
@@ -129,18 +139,19 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 ///
 /// 1. UNDERPOWERED: fewer than 12 equations beside the set-up, one run (set-up and machine are the same then), or a design
 ///    that shows no effect of the library.
-/// 2. Nothing named: UNKNOWN where more than [`PHI_PARTIAL`] of the gap is structure by the lack-of-fit test, NOISE MODEL
+/// 2. Nothing named: UNKNOWN where more than [`PHI_PARTIAL`] of the gap is structure by the lack-of-fit test, UNDERPOWERED
+///    where nothing says how much of the scatter is noise, NOISE MODEL
 ///    SUSPECT where the scatter is not what the file states by more than [`NOISE_FACTOR`], or exceeds the noise that was found
 ///    by as much (few readings may prove no structure, and are no all-clear either), else NO GAP.
 /// 3. Something named and structure left: UNDERPOWERED where the causes are not known better than the gap is large in the
 ///    corners of the volume, UNKNOWN where more than [`PHI_UNKNOWN`] is left, else PARTIAL. A share alone is not enough: a small
 ///    gap leaves a large share of noise; a test alone is not enough: with many rows a nanometre is significant.
-/// 4. PARTIAL where nothing may be written of the causes: NAMED asks to act on them.
-/// 5. AMBIGUOUS where any cause has rivals; this stands before the next rule, since a drift of the instrument that a warm-up of
+/// 4. AMBIGUOUS where any cause has rivals; this stands before the next rule, since a drift of the instrument that a warm-up of
 ///    the machine explains as well is not known to be the instrument's.
+/// 5. PARTIAL where nothing may be written of the causes: NAMED asks to act on them.
 /// 6. NOISE MODEL SUSPECT where every cause is a fault of the instrument, else NAMED.
 ///
-/// Causes that swing between the places measured, or cancel each other, explain nothing, however well they fit: UNKNOWN.
+/// Causes that cancel each other explain nothing, however well they fit: UNKNOWN.
 ///
 /// What rows that no fit has seen say comes last and weighs most: a forecast they refute is PARTIAL, UNKNOWN where they
 /// contradict it, and NO GAP is UNKNOWN where their gap is above [`UNSEEN_GAP`] times the noise, above what noise and
@@ -177,10 +188,13 @@ fn on_the_rows(e: &Evidence) -> Verdict {
         if structured {
             return Verdict::Unknown;
         }
+        if e.guessed {
+            return Verdict::Underpowered;
+        }
         let suspect = e.noise_ratio.is_some_and(|r| !(1.0 / NOISE_FACTOR..=NOISE_FACTOR).contains(&r));
         return if suspect || e.slow || e.exceeds { Verdict::NoiseModelSuspect } else { Verdict::NoGap };
     }
-    if e.swings {
+    if e.cancels {
         return Verdict::Unknown;
     }
     if structured {
@@ -190,11 +204,11 @@ fn on_the_rows(e: &Evidence) -> Verdict {
         }
         return if e.phi > PHI_UNKNOWN || e.trifling { Verdict::Unknown } else { Verdict::Partial };
     }
-    if e.shifts {
-        return Verdict::Partial;
-    }
     if e.ambiguous {
         return Verdict::Ambiguous;
+    }
+    if e.risks {
+        return Verdict::Partial;
     }
     if e.instrument_causes == e.causes { Verdict::NoiseModelSuspect } else { Verdict::Named }
 }
@@ -216,9 +230,10 @@ mod tests {
         carries: true,
         slow: false,
         exceeds: false,
+        guessed: false,
         trifling: false,
-        swings: false,
-        shifts: false,
+        cancels: false,
+        risks: false,
         unseen: None,
     };
 
@@ -248,13 +263,15 @@ mod tests {
             (Evidence { instrument_causes: 1, causes: 2, ..CLEAR }, Verdict::Named),
             (Evidence { trifling: true, ..left }, Verdict::Unknown),
             (Evidence { slow: true, ..none }, Verdict::NoiseModelSuspect),
-            (Evidence { swings: true, ..CLEAR }, Verdict::Unknown),
-            (Evidence { swings: true, ambiguous: true, ..CLEAR }, Verdict::Unknown),
-            (Evidence { swings: true, ..none }, Verdict::NoGap),
+            (Evidence { cancels: true, ..CLEAR }, Verdict::Unknown),
+            (Evidence { cancels: true, ambiguous: true, ..CLEAR }, Verdict::Unknown),
+            (Evidence { cancels: true, ..none }, Verdict::NoGap),
             // What may not be written is not NAMED.
-            (Evidence { shifts: true, ..CLEAR }, Verdict::Partial),
-            (Evidence { shifts: true, ambiguous: true, ..CLEAR }, Verdict::Partial),
+            (Evidence { risks: true, ..CLEAR }, Verdict::Partial),
+            (Evidence { risks: true, ambiguous: true, ..CLEAR }, Verdict::Ambiguous),
             (Evidence { exceeds: true, ..none }, Verdict::NoiseModelSuspect),
+            (Evidence { guessed: true, ..none }, Verdict::Underpowered),
+            (Evidence { guessed: true, ..CLEAR }, Verdict::Named),
             (Evidence { exceeds: true, ..CLEAR }, Verdict::Named),
         ];
         for (evidence, expected) in cases {

@@ -2,7 +2,7 @@
 
 use machine_model::effects::{EffectKind, Shape};
 
-use crate::equations::observation::Measurements;
+use crate::equations::observation::{Measurements, Row};
 use crate::equations::set_up::{Clamping, frame, instruments};
 use crate::equations::term::Term;
 use crate::library::candidates::{Candidate, Library, Variant};
@@ -41,10 +41,14 @@ impl Library {
             }
         }
         let nuisances = terms.len();
+        let untimed = data.rows.iter().all(|row| row.conditions.time_s.is_none());
         let mut library = Self { sampling: seen.sampling, terms, framing, nuisances, candidates: Vec::new() };
         for kind in EffectKind::all().into_iter().filter(|k| !without.contains(k)) {
             let mut variants = library.forms(kind, &seen);
             variants.retain(|form| seen.carry(kind, form.columns.len()));
+            if kind == EffectKind::InstrumentDrift && untimed {
+                variants = library.orders(data);
+            }
             if !variants.is_empty() {
                 library.candidates.push(Candidate { kind, variants, rejected: 0 });
             }
@@ -85,7 +89,7 @@ impl Library {
             EffectKind::Eccentricity(axis) if seen.rotary[axis] => {
                 self.selections(kind, none, &[&[0, 1], &[0, 1, 2, 3, 4, 5]])
             }
-            EffectKind::ProbeLobing if seen.direction[0] && seen.direction[1] => {
+            EffectKind::ProbeLobing if seen.probed => {
                 self.selections(kind, none, &[&[0, 1], &[0, 1, 4], &[0, 1, 2, 3, 4]])
             }
             EffectKind::InstrumentDrift if seen.time.is_some() => {
@@ -115,6 +119,31 @@ impl Library {
             EffectKind::Tracker(_) if seen.station => self.selections(kind, none, &[&[0]]),
             _ => Vec::new(),
         }
+    }
+
+    /// An even drift in the order of the rows, through all runs or anew in each; on places that are passed once the order is the
+    /// place, and there and back any bend of it is.
+    fn orders(&mut self, data: &Measurements) -> Vec<Variant> {
+        let scalars = data.scalars(None);
+        let is_read = |component: &usize| scalars.iter().any(|s| s.class == *component);
+        let passed_again = |anew: &bool| {
+            let place = |row: &Row| row.command.linear_mm.map(|q| (1e3 * q).round() as i64);
+            let within = |row: &Row| if *anew { row.run } else { 0 };
+            let mut places: Vec<(usize, [i64; 3])> =
+                data.rows.iter().map(|row| (within(row), place(row).into())).collect();
+            places.sort_unstable();
+            places.dedup();
+            2 * places.len() <= data.rows.len() && data.rows.iter().any(|row| row.order != [0.0; 2])
+        };
+        let mut forms = Vec::new();
+        for anew in [false, true].into_iter().filter(passed_again) {
+            for component in (0..3).filter(is_read) {
+                self.terms.push(Term::Order { component, anew });
+                let columns = vec![self.terms.len() - 1];
+                forms.push(Variant { columns, enriched: false, only_rival: false });
+            }
+        }
+        forms
     }
 
     /// A curve along an axis.

@@ -6,7 +6,7 @@ use crate::equations::observation::Measurements;
 /// So many places at uneven distances show a wave even where they lie further apart than half its period.
 const ENOUGH_PLACES: usize = 24;
 /// A step that differs from the typical one by more than this share is uneven.
-const UNEVEN: f64 = 0.15;
+pub(crate) const UNEVEN: f64 = 0.15;
 
 /// The places of one linear axis in a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,6 +43,15 @@ impl Sampling {
         let uneven = 3 * steps.iter().filter(odd).count() >= places.len();
         let narrowest_mm = 2.5 * median(&mut steps).unwrap_or(0.0);
         Self { range_mm, places: places.len(), spacing_mm, effective, narrowest_mm, uneven }
+    }
+
+    /// True where an error within a turn of a usual screw, 5 mm and more, passes for a slow curve, or for nothing.
+    #[must_use]
+    pub(crate) fn hides_turns(&self) -> bool {
+        /// Places of a line, not of some lines beside each other.
+        const LINE: usize = 6;
+        const USUAL_MM: f64 = 5.0;
+        self.places >= LINE && !self.uneven && self.spacing_mm > USUAL_MM
     }
 
     /// True where a wave of this period is sampled at less than two places per period, so that it could be any curve.

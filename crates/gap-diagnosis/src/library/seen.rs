@@ -14,6 +14,8 @@ pub(super) struct Seen {
     pub(super) sampling: [Sampling; 3],
     pub(super) direction: [bool; 3],
     pub(super) unknown_direction: [bool; 3],
+    /// A stylus came from between X and Y as well: lobes seen along the axes alone are play of theirs.
+    pub(super) probed: bool,
     pub(super) temperature: [bool; 3],
     pub(super) time: Option<(f64, f64)>,
     pub(super) load: bool,
@@ -33,8 +35,8 @@ pub(super) struct Seen {
     pub(super) curved: bool,
     /// Their accelerations differ so that what grows with them is no constant.
     pub(super) accelerations: bool,
-    /// Levers, by the axis that carries and the direction turned about, that are one number all over a file of lengths: on
-    /// such a circle an angle is a straightness, a squareness or a scale, as ISO 230-4 has it.
+    /// Levers, by the axis that carries and the direction turned about, that are one number all over a file: there an angle is
+    /// a straightness or a positioning curve with its slope, as ISO 230-4 has it of a circle, and one line of any other.
     pub(super) one_lever: [[bool; 3]; 3],
 }
 
@@ -65,6 +67,7 @@ impl Seen {
                 let has = |d: i8| rows.iter().any(|r| r.command.direction[a] == d);
                 has(1) && has(-1)
             }),
+            probed: rows.iter().any(|r| r.command.direction[0] != 0 && r.command.direction[1] != 0),
             unknown_direction: [0, 1, 2].map(|a| rows.iter().any(|r| r.command.direction[a] == 0)),
             temperature: [0, 1, 2].map(|a| {
                 range(rows, &|r| r.conditions.temp_c[a])
@@ -134,11 +137,7 @@ fn one_lever(data: &Measurements, about: usize, axis: usize) -> bool {
             range[c] = (range[c].0.min(moved[c]), range[c].1.max(moved[c]));
         }
     }
-    // Vectors show what a length in one plane never does.
-    data.has_lengths()
-        && range
-            .iter()
-            .all(|(low, high)| high - low <= SAME * low.abs().max(high.abs()).max(1.0) || high < low)
+    range.iter().all(|(low, high)| high - low <= SAME * low.abs().max(high.abs()).max(1.0) || high < low)
 }
 
 /// The axis along which an effect is a curve.

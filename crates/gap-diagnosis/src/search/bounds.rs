@@ -13,7 +13,6 @@ use machine_model::effects::{EffectGeometry, EffectKind, legendre};
 use crate::equations::noise::median;
 use crate::equations::observation::{Measurements, Row, Scalar};
 use crate::equations::term::Term;
-use crate::library::seen::curve_axis;
 use crate::search::explanation::Why;
 
 /// A cause may displace by so many times the largest reading: twice is what two causes that overlap can need.
@@ -21,8 +20,6 @@ const LARGEST: f64 = 2.0;
 /// Rows at which a cause is evaluated, and places per axis between which it is.
 const ROWS: usize = 240;
 const PLACES: usize = 120;
-/// Pairs of rows between which causes are looked at together.
-const WAYS: usize = 1500;
 /// Where between two places, as shares of their distance.
 const BETWEEN: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 
@@ -40,24 +37,6 @@ pub(crate) struct Bounds {
     /// Largest difference of two readings of a component, µm: what an axis that leans or stretches shows from end to end,
     /// while the measuring frame takes up to half of it off each reading.
     widest_um: f64,
-    /// Components that were read; all where the readings are lengths.
-    read: [bool; 3],
-    /// Longest reading, µm: all its components together, each from its median, or as they stand where that is less.
-    longest_um: f64,
-    /// Lengths of the ranges of the components together, or the longest reading as it stands where that is less, µm.
-    span_um: f64,
-}
-
-/// Why causes that pass each alone correct nothing together.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Harm {
-    /// They swing between the places measured: by so much they displace a place, or change from their mean over the rows; and the longest reading; µm.
-    Swings(f64, f64),
-    /// They shift: straight lines through machine zero, read on a short way far from it, move all of that way by so much,
-    /// which the measuring frame took off the readings; and the range of these, or the longest; µm.
-    Shifts(f64, f64),
-    /// They cancel: with the first of them alone so much is left, and so much without any; RMS, µm.
-    Cancels(f64, f64),
 }
 
 impl Bounds {
@@ -81,85 +60,16 @@ impl Bounds {
                 }
             }
         }
-        let (mut largest_um, mut widest_um, mut span_square): (f64, f64, f64) = (0.0, 0.0, 0.0);
-        let mut read = [false; 3];
-        let (mut squares, mut as_read) = (vec![0.0; data.rows.len()], vec![0.0; data.rows.len()]);
+        let (mut largest_um, mut widest_um): (f64, f64) = (0.0, 0.0);
         for class in 0..4 {
-            let of_class = || scalars.iter().filter(|s| s.class == class);
-            let gaps = || of_class().map(|s| s.gap_um);
+            let gaps = || scalars.iter().filter(|s| s.class == class).map(|s| s.gap_um);
             if let Some(middle) = median(&mut gaps().collect::<Vec<f64>>()) {
                 largest_um = gaps().fold(largest_um, |most, gap| most.max((gap - middle).abs()));
                 let ends = gaps().fold((middle, middle), |(low, high), gap| (gap.min(low), gap.max(high)));
                 widest_um = widest_um.max(ends.1 - ends.0);
-                span_square += (ends.1 - ends.0) * (ends.1 - ends.0);
-                of_class().for_each(|s| {
-                    squares[s.row] += (s.gap_um - middle) * (s.gap_um - middle);
-                    as_read[s.row] += s.gap_um * s.gap_um;
-                });
-                match read.get_mut(class) {
-                    Some(component) => *component = true,
-                    None => read = [true; 3],
-                }
             }
         }
-        let longest = |squares: Vec<f64>| squares.into_iter().fold(0.0, f64::max).sqrt();
-        let as_read_um = longest(as_read);
-        let longest_um = longest(squares).min(as_read_um);
-        let span_um = span_square.sqrt().min(as_read_um);
-        Self { probes, measured, known: RefCell::default(), largest_um, widest_um, read, longest_um, span_um }
-    }
-
-    /// What is wrong with causes that each pass alone; `None` where nothing is. Faults of the instrument correct nothing.
-    ///
-    /// What is straight is held to its own limits, and only its shift counts here.
-    #[must_use]
-    pub(crate) fn broken_together(
-        &self,
-        causes: &[(EffectKind, Vec<(Term, f64)>)],
-        data: &Measurements,
-    ) -> Option<Harm> {
-        let geometry = &data.geometry;
-        let mut probes = self.probes.clone();
-        probes.extend(ways(&data.rows, &self.summits(causes, geometry)));
-        let moved = |counts: fn(EffectKind) -> bool| {
-            let counted = causes.iter().filter(|(kind, _)| !kind.is_instrument() && counts(*kind));
-            let terms: Vec<(Term, f64)> = counted.flat_map(|(_, terms)| terms.iter().copied()).collect();
-            displacements_um(&probes, &terms, geometry)
-        };
-        let length = |d: Vector| (0..3).filter(|c| self.read[*c]).map(|c| d[c] * d[c]).sum::<f64>().sqrt();
-        let farthest =
-            |all: &[Vector], from: Vector| all.iter().map(|d| length(d - from)).fold(0.0, f64::max);
-        let bent = moved(|kind| !is_straight(kind));
-        // What depends on the place alone has no zero but its own; a straight line beside a curve is a part of it.
-        let curved = causes.iter().any(|(kind, _)| depends_on_place(*kind));
-        let of_places =
-            if curved { moved(|kind| depends_on_place(kind) || is_straight(kind)) } else { Vec::new() };
-        let swing_um = farthest(&bent, self.mean(&bent)).max(farthest(&of_places, Vector::zeros()));
-        if swing_um > LARGEST * self.longest_um {
-            return Some(Harm::Swings(swing_um, self.longest_um));
-        }
-        let shift_um = farthest(&moved(|_| true), Vector::zeros());
-        (shift_um > LARGEST * self.span_um).then_some(Harm::Shifts(shift_um, self.span_um))
-    }
-
-    /// Where a curve is farthest from its mean: an axis and a place on it, mm, for each cause that is one.
-    fn summits(
-        &self,
-        causes: &[(EffectKind, Vec<(Term, f64)>)],
-        geometry: &EffectGeometry,
-    ) -> Vec<(usize, f64)> {
-        let summit = |(kind, terms): &(EffectKind, Vec<(Term, f64)>)| {
-            let axis = match kind {
-                EffectKind::Local(axis) | EffectKind::Joint(axis) => *axis,
-                _ => curve_axis(*kind)?,
-            };
-            let all = self.displacements_um(terms, geometry);
-            let mean = self.mean(&all);
-            let farthest =
-                (0..all.len()).max_by(|a, b| (all[*a] - mean).norm().total_cmp(&(all[*b] - mean).norm()))?;
-            Some((axis, self.probes[farthest].command.linear_mm[axis]))
-        };
-        causes.iter().filter_map(summit).collect()
+        Self { probes, measured, known: RefCell::default(), largest_um, widest_um }
     }
 
     /// Displacements by some terms at and between the places measured, µm.
@@ -239,55 +149,24 @@ impl Bounds {
     }
 }
 
-/// Points on straight ways from any row to any other, for a machine goes there: where a way crosses the summit of a curve,
-/// and once anywhere. Curves of several axes swing farthest where their summits meet, which few ways do.
-fn ways(rows: &[Row], summits: &[(usize, f64)]) -> Vec<Row> {
-    // Pairs and shares fill their cube evenly (Roberts' sequence in three dimensions).
-    let nth_way = |nth: usize| -> [f64; 3] {
-        [0.819_172_5, 0.671_043_6, 0.549_700_5].map(|step| ((nth as f64 + 0.5) * step).fract())
-    };
-    let along = |nth: usize| {
-        let [from, to, anywhere] = nth_way(nth);
-        let [from, to] = [from, to].map(|at| &rows[(at * rows.len() as f64) as usize]);
-        let (start, end) = (from.command.linear_mm, to.command.linear_mm);
-        let crossing =
-            move |(axis, place): &(usize, f64)| (place - start[*axis]) / (end[*axis] - start[*axis]);
-        let shares = summits.iter().map(crossing).chain([anywhere]).collect::<Vec<f64>>().into_iter();
-        shares.filter(|share| (0.0..=1.0).contains(share)).map(move |share| {
-            let mut row = *from;
-            row.command.linear_mm = start.lerp(&end, share);
-            row
-        })
-    };
-    (0..WAYS).flat_map(along).collect()
-}
-
-/// Displacements by some terms, µm.
-fn displacements_um(probes: &[Row], terms: &[(Term, f64)], geometry: &EffectGeometry) -> Vec<Vector> {
-    let at = |row: &Row| -> Vector {
-        terms.iter().map(|(term, value)| term.displacement_um(row, geometry) * *value).sum()
-    };
-    probes.iter().map(at).collect()
-}
-
 /// What is straight does not swing between places.
-const fn is_straight(kind: EffectKind) -> bool {
+pub(crate) const fn is_straight(kind: EffectKind) -> bool {
     matches!(kind, EffectKind::Scale(_) | EffectKind::Squareness(..))
 }
 
-/// A curve over places: it does not count from a temperature, a time or a load.
-const fn depends_on_place(kind: EffectKind) -> bool {
-    matches!(
-        kind,
-        EffectKind::Positioning(_)
-            | EffectKind::Straightness { .. }
-            | EffectKind::Local(_)
-            | EffectKind::Joint(_)
-            | EffectKind::Pitch(_)
-            | EffectKind::Angular { .. }
-            | EffectKind::Sag(_)
-            | EffectKind::Eccentricity(_)
-    )
+/// Logarithm of how plausible a coefficient is before anything is measured, as far as it parts effects that look alike: what
+/// assembly leaves between axes, and what an instrument's temperature does to a scale, is hundreds of µrad and µm/m; an angle of
+/// a carriage changes by tens of µrad on its way (20 arc seconds are a bad one), and a screw errs by some µm within a turn.
+#[must_use]
+pub(crate) fn log_prior(term: &Term, value: f64) -> f64 {
+    let Term::Effect { kind, .. } = term else { return 0.0 };
+    let usual = match kind {
+        EffectKind::Angular { .. } => 100.0,
+        EffectKind::Scale(_) | EffectKind::Squareness(..) => 500.0,
+        EffectKind::Pitch(_) => 10.0,
+        _ => return 0.0,
+    };
+    -0.5 * (value / usual) * (value / usual)
 }
 
 /// Numbers that no machine has, far beyond what wear, crashes and bad assembly do.

@@ -6,6 +6,7 @@ use units::math;
 use crate::equations::columns::Source;
 use crate::equations::noise::median;
 use crate::equations::observation::Scalar;
+use crate::library::sampling::UNEVEN;
 
 /// Pitches that screws, racks and gears are made with, mm.
 const NOMINAL_PITCHES_MM: [f64; 17] =
@@ -20,6 +21,8 @@ const SHORTEST_MM: f64 = 1.0;
 const LONGEST_MM: f64 = 60.0;
 /// Rows before and after a knock: of fewer at the end of a file nobody can tell it from a blunder or two.
 pub(crate) const STEP_ROWS: usize = 4;
+/// Places in a damage: one or two alone could be anything.
+pub(crate) const LOCAL_PLACES: usize = 3;
 /// Equations that a scan over shapes looks at; more are thinned evenly.
 pub(crate) const SCAN_EQUATIONS: usize = 12_000;
 
@@ -36,6 +39,8 @@ pub(crate) fn thinned(scalars: &[Scalar]) -> Vec<usize> {
 pub(crate) struct Pitches {
     /// Neighbouring periods, mm.
     grid: Vec<Vec<f64>>,
+    /// Of the nominal ones those that even steps show as a slow curve, or not at all: rivals of curves.
+    strobed: Vec<Vec<f64>>,
     /// How many are looked at.
     asked: usize,
 }
@@ -67,6 +72,9 @@ impl Pitches {
             found.asked += 2 * count.unsigned_abs() as usize + 1;
             let neighbours = (-count..=count).map(|k| nominal + step * f64::from(k));
             found.grid.push(neighbours.filter(|pitch| !is_strobed(&steps, *pitch)).collect());
+            if is_strobed(&steps, nominal) {
+                found.strobed.push(vec![nominal]);
+            }
         }
         // Where an axis is read so finely that no curve passes for a wave, gears and racks may have any period.
         let read = thinned(source.scalars).into_iter().map(|i| source.scalars[i].row);
@@ -77,9 +85,11 @@ impl Pitches {
         if distinct.len() < MANY {
             return found;
         }
-        // Lines beside each other do not make a wave of what each sees at few places.
+        // Places without an order show any wave, even ones only what is far longer than their step.
         let step = median(&mut steps.clone()).unwrap_or(f64::INFINITY);
-        let mut pitch = (FINE * (square / length.max(1e-9)).max(step)).max(SHORTEST_MM);
+        let odd = steps.iter().filter(|s| (**s / step - 1.0).abs() > UNEVEN).count();
+        let fine = if 3 * odd >= steps.len() { 0.0 } else { FINE * (square / length.max(1e-9)).max(step) };
+        let mut pitch = fine.max(SHORTEST_MM);
         while pitch <= LONGEST_MM.min(length / 3.0) {
             let group_end = 1.25 * pitch;
             let mut group = Vec::new();
@@ -94,9 +104,14 @@ impl Pitches {
         found
     }
 
-    /// Those that explain most of the residual, the best first, and how many were looked at.
+    /// Those that explain most of the residual, the best first, how many were looked at, and the best one that even steps hide.
     #[must_use]
-    pub(crate) fn best(&self, source: &Source<'_>, residuals_um: &[f64], axis: usize) -> (Vec<f64>, usize) {
+    pub(crate) fn best(
+        &self,
+        source: &Source<'_>,
+        residuals_um: &[f64],
+        axis: usize,
+    ) -> (Vec<f64>, usize, Option<f64>) {
         let mut places: Vec<Place> = thinned(source.scalars)
             .into_iter()
             .map(|i| (&source.scalars[i], residuals_um[i]))
@@ -116,13 +131,16 @@ impl Pitches {
             }
             same
         });
-        let mut found: Vec<(f64, f64)> = Vec::new();
-        for neighbours in &self.grid {
-            let powers = neighbours.iter().map(|pitch| (*pitch, power(&places, *pitch)));
-            found.extend(powers.reduce(|best, next| if next.1 > best.1 { next } else { best }));
-        }
-        found.sort_by(|a, b| b.1.total_cmp(&a.1));
-        (found.into_iter().take(2).map(|(p, _)| p).collect(), self.asked)
+        let strongest = |grid: &[Vec<f64>]| {
+            let of_group = |neighbours: &Vec<f64>| {
+                let powers = neighbours.iter().map(|pitch| (*pitch, power(&places, *pitch)));
+                powers.reduce(|best, next| if next.1 > best.1 { next } else { best })
+            };
+            let mut found: Vec<(f64, f64)> = grid.iter().filter_map(of_group).collect();
+            found.sort_by(|a, b| b.1.total_cmp(&a.1));
+            found.into_iter().map(|(pitch, _)| pitch)
+        };
+        (strongest(&self.grid).take(2).collect(), self.asked, strongest(&self.strobed).next())
     }
 }
 
@@ -260,18 +278,17 @@ pub(crate) fn damage(
             asked += 1;
             let from = points.partition_point(|p| p.0 <= centre - 0.5 * width);
             let to = points.partition_point(|p| p.0 < centre + 0.5 * width);
-            let (mut cross, mut square, mut different) = (Vector::zeros(), Vector::zeros(), 0);
+            let (mut cross, mut square, mut different) = (Vector::zeros(), Vector::zeros(), 0_usize);
             let mut last = f64::NAN;
             for (q, along, r) in &points[from..to] {
                 let wave = math::cos(std::f64::consts::PI * (q - centre) / width);
                 let bump = along * (wave * wave);
                 cross += bump * *r;
                 square += bump.component_mul(&bump);
-                different += i32::from(*q != last);
+                different += usize::from(*q != last);
                 last = *q;
             }
-            // One or two places alone could be anything.
-            if different < 3 {
+            if different < LOCAL_PLACES {
                 continue;
             }
             let power: f64 =

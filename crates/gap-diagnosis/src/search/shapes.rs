@@ -21,11 +21,12 @@ impl State<'_, '_> {
             if self.without.contains(&kind) || self.uses(kind) {
                 continue;
             }
-            let (found, asked) = self.pitches[axis].best(self.source, &solution.residuals_um, axis);
+            let (found, asked, hidden) = self.pitches[axis].best(self.source, &solution.residuals_um, axis);
             for pitch in found {
                 let variants = self.library.pitch(axis, pitch);
                 self.library.add_variants(kind, variants, asked);
             }
+            self.strobe(kind, axis, hidden);
         }
         // Residuals with the runs' offsets put back: a knock between two runs hides in them.
         let marginal = residuals(&sub.terms, &solution.coefficients, self.source);
@@ -76,6 +77,16 @@ impl State<'_, '_> {
         }
         self.refine_shapes(rho);
         self.grow();
+    }
+
+    /// Forms of a screw's period that even steps show as a slow curve: never named, rivals of what is.
+    fn strobe(&mut self, kind: EffectKind, axis: usize, hidden: Option<f64>) {
+        let Some(mut form) = hidden.and_then(|pitch| self.library.pitch(axis, pitch).into_iter().next())
+        else {
+            return;
+        };
+        form.only_rival = true;
+        self.library.add_variants(kind, vec![form], 0);
     }
 
     /// Refined shapes of the effects in the model.
@@ -141,6 +152,10 @@ impl State<'_, '_> {
                 .map(|(r, s)| r - s.gap_um)
                 .collect();
             for axis in 0..3 {
+                let hidden = self.pitches[axis].best(self.source, &displaced, axis).2;
+                if own != EffectKind::Pitch(axis) && !self.without.contains(&EffectKind::Pitch(axis)) {
+                    self.strobe(EffectKind::Pitch(axis), axis, hidden);
+                }
                 let allowed = |kind: EffectKind| kind != own && !self.without.contains(&kind);
                 let kind = EffectKind::Step(axis);
                 if let Some((time_s, _)) =

@@ -8,14 +8,15 @@ use machine_model::effects::{EffectKind, Shape};
 
 use crate::equations::f_test::f_tail;
 use crate::equations::linear::{Products, explained};
+use crate::equations::observation::Row;
 use crate::equations::term::Term;
-use crate::library::candidates::Part;
+use crate::library::candidates::{Library, Part};
 use crate::library::seen::curve_axis;
 use crate::search::crossval::{Folding, Folds};
 use crate::search::doubt::inflations;
 use crate::search::explanation::{Reason, Refused, Why};
 use crate::search::moves::without;
-use crate::search::proposals::STEP_ROWS;
+use crate::search::proposals::{LOCAL_PLACES, STEP_ROWS};
 use crate::search::space::{FREE, Fit};
 use crate::search::state::State;
 
@@ -64,7 +65,7 @@ impl State<'_, '_> {
         if p > LEVEL {
             return refuse(Reason::Unproven);
         }
-        let misfit = self.unsupported(part).or_else(|| self.crowded(&with));
+        let misfit = unsupported(&self.library, part, self.source.rows).or_else(|| self.crowded(&with));
         if let Some(words) = misfit.or_else(|| self.out_of_bounds(&with, fit.level)) {
             return refuse(Reason::Form(words));
         }
@@ -100,10 +101,10 @@ impl State<'_, '_> {
     }
 
     /// How many times as many equations there are as a part acts on, where its physics says which those are: at a turn of
-    /// an axis. Its share counts there, as a machinist reads the marks at the quadrants; a place that was searched for must
+    /// an axis, or of the axis that moves. Its share counts there, as a machinist reads the marks at the quadrants; a place that was searched for must
     /// earn its share of all.
     fn spread(&self, part: Part) -> f64 {
-        if !matches!(self.library.kind(part), EffectKind::Spike(_)) {
+        if !matches!(self.library.kind(part), EffectKind::Spike(_) | EffectKind::Backlash(_)) {
             return 1.0;
         }
         let columns = &self.library.form(part).columns;
@@ -121,34 +122,13 @@ impl State<'_, '_> {
         (self.source.scalars.len() as f64 / most).max(1.0)
     }
 
-    /// Why a knock cannot be told: hardly a row lies on its other side.
-    fn unsupported(&self, part: Part) -> Option<Why> {
-        let (EffectKind::Step(_), shape) = self.shape(part)? else { return None };
-        let times = || self.source.rows.iter().filter_map(|row| row.conditions.time_s);
-        let before = times().filter(|time| *time < shape.time_s).count();
-        let fewest = before.min(times().count() - before);
-        (fewest < STEP_ROWS).then_some([
-            "so few rows lie on one side of the knock that they could be blunders",
-            "по одну сторону скачка так мало строк, что это могут быть промахи",
-        ])
-    }
-
     /// True for damage where a joint of the same rails stands: the shape of the joint leaves something there.
     fn on_a_flank(&self, rest: &[Part], part: Part) -> bool {
-        let Some((EffectKind::Local(axis), own)) = self.shape(part) else { return false };
-        rest.iter().filter_map(|other| self.shape(*other)).any(|(kind, other)| {
+        let Some((EffectKind::Local(axis), own)) = shape(&self.library, part) else { return false };
+        rest.iter().filter_map(|other| shape(&self.library, *other)).any(|(kind, other)| {
             kind == EffectKind::Joint(axis)
                 && (other.centre_mm - own.centre_mm).abs() < other.width_mm + own.width_mm
         })
-    }
-
-    /// An effect and its non-linear numbers.
-    fn shape(&self, part: Part) -> Option<(EffectKind, Shape)> {
-        let column = *self.library.form(part).columns.first()?;
-        match self.library.terms[column] {
-            Term::Effect { kind, shape, .. } => Some((kind, shape)),
-            _ => None,
-        }
     }
 
     /// True where the last of `with` is small only because the others took its part over: it explains most of what they
@@ -337,5 +317,40 @@ impl State<'_, '_> {
                 _ => break,
             }
         }
+    }
+}
+
+/// An effect and its non-linear numbers.
+fn shape(library: &Library, part: Part) -> Option<(EffectKind, Shape)> {
+    match library.terms[*library.form(part).columns.first()?] {
+        Term::Effect { kind, shape, .. } => Some((kind, shape)),
+        _ => None,
+    }
+}
+
+/// Why a knock or a damage cannot be told: hardly a row lies on the other side of the one, hardly a place in the other.
+pub(crate) fn unsupported(library: &Library, part: Part, rows: &[Row]) -> Option<Why> {
+    match shape(library, part)? {
+        (EffectKind::Step(_), shape) => {
+            let times = || rows.iter().filter_map(|row| row.conditions.time_s);
+            let before = times().filter(|time| *time < shape.time_s).count();
+            let fewest = before.min(times().count() - before);
+            (fewest < STEP_ROWS).then_some([
+                "so few rows lie on one side of the knock that they could be blunders",
+                "по одну сторону скачка так мало строк, что это могут быть промахи",
+            ])
+        }
+        (EffectKind::Local(axis), shape) => {
+            let places = rows.iter().map(|row| row.command.linear_mm[axis]);
+            let mut inside: Vec<f64> =
+                places.filter(|q| (q - shape.centre_mm).abs() < 0.5 * shape.width_mm).collect();
+            inside.sort_by(f64::total_cmp);
+            inside.dedup();
+            (inside.len() < LOCAL_PLACES).then_some([
+                "so few places lie in the damage that they could be anything",
+                "в месте износа так мало измеренных точек, что это может быть что угодно",
+            ])
+        }
+        _ => None,
     }
 }

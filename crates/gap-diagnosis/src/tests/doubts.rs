@@ -88,34 +88,34 @@ fn blunders_get_no_cause() {
     assert!(expected.iter().all(|line| answer.outlier_lines.contains(line)), "{:?}", answer.outlier_lines);
 }
 
-/// 45 mm of Z, 250 mm and more from machine zero, seem to be 800 µm/m too short: written as a scale that would move every
-/// place measured by 0.2 mm. Over the whole axis the same scale may be written.
+/// 45 mm of Z, 250 mm and more from machine zero, are 800 µm/m too short: physics carries a scale over the whole axis as far as
+/// its number is known.
 #[test]
-fn a_scale_read_on_a_short_way_far_from_zero_is_not_written() {
-    let answer = |from_mm: f64, share: f64| {
+fn a_scale_is_carried_as_far_as_it_is_known() {
+    let volume = |high: f64| {
+        let range = |high| machine_model::Range { low: 0.0, high };
+        Some(machine_model::Volume([range(400.0), range(400.0), range(high)]))
+    };
+    let answer = |high: f64| {
         let mut data = measured(SILENT, nothing);
         let mut random = ChaCha8Rng::seed_from_u64(5);
         for row in &mut data.rows {
-            row.command.linear_mm.z = from_mm + share * row.command.linear_mm.z;
+            row.command.linear_mm.z = 250.0 + 0.1 * row.command.linear_mm.z;
             let dz = -0.8 * row.command.linear_mm.z;
-            row.reading = Reading::Displacement([0.0, 0.0, dz].map(|v| Some(v + 0.5 * normal(&mut random))));
+            let noisy = [0.0, 0.0, dz].map(|v| Some(v + 0.5 * normal(&mut random)));
+            row.reading = Reading::Displacement(noisy);
         }
-        diagnose(&data, None, &Options::default())
+        diagnose(&data, None, &Options { volume: volume(high), ..Options::default() })
     };
-    let near = answer(0.0, 1.0);
-    assert_eq!(names(&near), ["scale.Z"]);
-    assert!(near.corrects() && near.withheld.is_none());
-    let far = answer(250.0, 0.1);
-    assert_eq!(names(&far), ["scale.Z"]);
-    assert_eq!((near.verdict, far.verdict), (Verdict::Named, Verdict::Partial), "{}", far.sentence);
-    assert!(!far.corrects());
-    assert!(far.withheld.is_some_and(|words| words.english().contains("count from machine zero")));
-    assert!(far.causes[0].remedy.english().starts_with("Do not act on this"));
+    let known = answer(400.0);
+    assert_eq!(names(&known), ["scale.Z"]);
+    assert!(known.corrects() && known.within.is_none(), "{:?} {:?}", known.withheld, known.within);
 }
 
-/// What depends on place and direction at once is left beside the play, and has no name.
+/// What depends on place and direction at once is left beside the play, and has no name: the play is written, since runs that
+/// were kept back confirm it.
 #[test]
-fn what_leaves_a_part_open_is_not_written() {
+fn a_part_is_written_where_unseen_runs_confirm_it() {
     let rest = |row: &Row| {
         let [place, other] = [0, 1].map(|a| row.command.linear_mm[a] / 40.0);
         Vector::new(0.0, 0.0, 6.0 * units::math::sin(place * other) * f64::from(row.command.direction[0]))
@@ -124,8 +124,7 @@ fn what_leaves_a_part_open_is_not_written() {
     let part = diagnose(&measured(GOOD, |row| backlash_um(row) + rest(row)), None, &Options::default());
     assert_eq!((whole.verdict, part.verdict), (Verdict::Named, Verdict::Partial), "{}", part.sentence);
     assert_eq!((names(&whole), names(&part)), (vec!["backlash.X"], vec!["backlash.X"]));
-    assert!(whole.corrects() && !part.corrects());
-    assert!(part.causes[0].remedy.english().starts_with("Do not act on this"), "{}", part.causes[0].remedy);
+    assert!(whole.corrects() && part.corrects(), "{:?}", part.withheld);
 }
 
 /// Of 40 draws at a level of 3 % more than four are an alarm once in forty times.

@@ -21,8 +21,20 @@ const TRACKER: [&str; machine_model::effects::TRACKER.len()] = [
 
 /// What stands in the place of a remedy where the causes do not explain the gap, or unseen rows refute them.
 pub(crate) const DO_NOT_ACT: Text = Text::pair(
-    "Do not act on this: what is left of the gap has no name yet, or rows that were not fitted contradict it, or it would move more than was ever read.",
-    "Ничего по этому не делайте: у остатка расхождения ещё нет названия, или строки вне подгонки этому противоречат, или смещение вышло бы больше любого отсчёта.",
+    "Do not act on this: what is left of the gap has no name yet, or rows that were not fitted contradict it, or other explanations would be made worse by it.",
+    "Ничего по этому не делайте: у остатка расхождения ещё нет названия, или строки вне подгонки этому противоречат, или при других объяснениях станет хуже.",
+);
+
+/// Why nothing is written of causes that leave a part of the gap open.
+pub(crate) const NO_NAME_YET: Text = Text::pair(
+    "No correction is made of the causes: what is left of the gap has no name yet, and no rows that were not fitted confirm them.",
+    "По причинам ничего не исправляется: у остатка расхождения ещё нет названия, и строки вне подгонки их не подтверждают.",
+);
+
+/// Why nothing is written of a play below zero.
+pub(crate) const TURNED: Text = Text::pair(
+    "No correction is made of the causes: a play below zero is mostly a slip of the file. Is the direction of approach (dir_x, dir_y, dir_z) the wrong way round, or the sign of the readings (measured minus commanded)?",
+    "По причинам ничего не исправляется: отрицательный люфт — чаще всего ошибка файла. Не обратное ли направление подхода (dir_x, dir_y, dir_z) и не обратный ли знак показаний (измеренное минус заданное)?",
 );
 
 /// What stands there for play of the wrong sign.

@@ -8,7 +8,6 @@ use crate::equations::set_up::Clamping;
 use crate::judgement::answer::Cause;
 use crate::judgement::assembly::Assembly;
 use crate::judgement::structure::jerks;
-use crate::search::bounds::Harm;
 
 impl Assembly<'_> {
     pub(crate) fn notes(&self) -> Vec<Text> {
@@ -46,6 +45,16 @@ impl Assembly<'_> {
             ));
         }
         notes.extend(self.setup_notes());
+        let even = self.model.library.sampling.iter().zip(["X", "Y", "Z"]).filter(|(s, _)| s.hides_turns());
+        let even: Vec<Text> =
+            even.map(|(s, axis)| both!("{axis} {:.1} mm", "{axis} {:.1} мм", s.spacing_mm)).collect();
+        if !even.is_empty() {
+            notes.push(both!(
+                "Even steps ({}): an error within a turn of a screw shows as a slow curve there, or not at all; uneven ones show it (ISO 230-2 asks for them).",
+                "Шаги равны ({:#}): погрешность в пределах оборота винта выглядит медленной кривой или не видна вовсе; её покажут неравные (их требует ISO 230-2).",
+                Text::join(&even, ", ")
+            ));
+        }
         if let Some(ratio) = self.noise_ratio().filter(|r| !(1.0 / 1.6..=1.6).contains(r)) {
             notes.push(both!(
                 "The scatter of the rows is {ratio:.2} times what u_um says; the rows' own scatter was used.",
@@ -151,25 +160,5 @@ impl Assembly<'_> {
             ));
         }
         notes
-    }
-}
-
-impl Harm {
-    /// Why no correction may be made of the causes.
-    pub(crate) fn words(self) -> Text {
-        match self {
-            Self::Swings(moved_um, reading_um) => both!(
-                "No correction is made of the causes: between the places measured they would together move the tool by up to {moved_um:.0} um, and no reading is larger than {reading_um:.0} um. Measure more places between, and repeat each.",
-                "По причинам ничего не исправляется: между измеренными точками они вместе сместили бы инструмент до {moved_um:.0} мкм, а ни один отсчёт не больше {reading_um:.0} мкм. Измерьте больше промежуточных точек и каждую повторите."
-            ),
-            Self::Cancels(alone_um, gap_um) => both!(
-                "No correction is made of the causes: they cancel each other. With the first of them alone {alone_um:.1} um RMS are left, and {gap_um:.1} um without any; another cause with the shape of their difference is likelier.",
-                "По причинам ничего не исправляется: они гасят друг друга. С одной первой остаётся {alone_um:.1} мкм (СКЗ), без всех — {gap_um:.1} мкм; вероятнее другая причина, с формой их разности."
-            ),
-            Self::Shifts(moved_um, range_um) => both!(
-                "No correction is made of the causes: they count from machine zero and would move all of the places measured by up to {moved_um:.0} um, and the readings reach and range over no more than {range_um:.0} um: the way that was measured is too short, so far from zero. Measure over more of the axis.",
-                "По причинам ничего не исправляется: они отсчитываются от нуля станка и сместили бы все измеренные точки до {moved_um:.0} мкм, а отсчёты и их размах не больше {range_um:.0} мкм: измеренный путь слишком короток так далеко от нуля. Измерьте больший участок оси."
-            ),
-        }
     }
 }

@@ -1,7 +1,6 @@
 //! The whole answer, put together.
 
 use diagnostic::{Text, both};
-use machine_model::effects::EffectKind;
 
 use crate::equations::align::{rms, row_lengths};
 use crate::equations::observation::Measurements;
@@ -9,22 +8,14 @@ use crate::judgement::answer::{Cause, Diagnosis, Gap, Leftover, Verdict};
 use crate::judgement::assembly::Assembly;
 use crate::judgement::locate::places;
 use crate::judgement::next::{next_measurement, once_more};
+use crate::judgement::risk::Use;
 use crate::judgement::unseen::{gap_of_its_own, residuals};
 use crate::judgement::verdict::{Evidence, Unseen, verdict};
 use crate::options::Options;
-use crate::search::bounds::Harm;
 use crate::search::formula::formulas;
-use crate::words::cause::{DO_NOT_ACT, NO_PLAY};
+use crate::words::cause::{DO_NOT_ACT, NO_NAME_YET, NO_PLAY, TURNED};
 use crate::words::remedy::remedy;
 use crate::words::sentence::sentence;
-
-/// Causes of which the first leave more than there was: the others take off what they put on.
-fn cancelling(causes: &[Cause], gap_um: f64) -> Option<Harm> {
-    /// What two or three causes may leave on their way, by chance, as a factor of the gap.
-    const MORE: f64 = 1.1;
-    let most_um = causes.iter().map(|cause| cause.rms_after_um).fold(0.0, f64::max);
-    (most_um > MORE * gap_um).then_some(Harm::Cancels(most_um, gap_um))
-}
 
 /// What the rows that were fitted say, before others are asked.
 struct OnRows {
@@ -32,7 +23,7 @@ struct OnRows {
     leftover: Leftover,
     causes: Vec<Cause>,
     corner_um: f64,
-    harm: Option<Harm>,
+    used: Use,
     evidence: Evidence,
 }
 
@@ -46,11 +37,11 @@ impl Assembly<'_> {
         kept_back: impl FnOnce() -> Option<Unseen>,
     ) -> Diagnosis {
         let before = self.gap_after(0);
-        let OnRows { gap, leftover, causes, corner_um, harm, mut evidence } = self.on_rows(holdout, options);
+        let OnRows { gap, leftover, causes, corner_um, used, mut evidence } = self.on_rows(holdout, options);
         // Below the step of the control no correction is possible and no cause is worth a name.
         let fine = gap.rms_um * 12.0_f64.sqrt() < options.resolution_um;
         let held = holdout.map(|h| self.holdout(h));
-        let believed = matches!(verdict(&evidence), Verdict::Named | Verdict::Ambiguous);
+        let named = matches!(verdict(&evidence), Verdict::Named | Verdict::Ambiguous | Verdict::Partial);
         evidence.unseen = match (holdout, &held) {
             (Some(data), Some(held)) => {
                 let promised = causes.last().map(|c| c.shrink_predicted);
@@ -58,7 +49,7 @@ impl Assembly<'_> {
                 let open = !fine && causes.is_empty() && !pooled.shows_a_gap();
                 Some(Unseen { worse: held.worse, alone: open && gap_of_its_own(data, options), ..pooled })
             }
-            _ if believed => kept_back(),
+            _ if named => kept_back(),
             _ => None,
         };
         let mut causes = if fine { Vec::new() } else { causes };
@@ -70,50 +61,45 @@ impl Assembly<'_> {
         notes.extend(holdout.iter().flat_map(|h| self.forecast_notes(h, &causes)));
         notes.extend(formulas.iter().map(|f| both!("{} ({}).", "{:#} ({}).", f.words, f.text)));
         let unsure = verdict == Verdict::Underpowered && !causes.is_empty();
-        let sentence = if unsure {
+        if unsure {
             notes.extend(causes.iter().map(seen_but_unsure));
-            both!(
-                "These rows cannot carry a correction: what they show is uncertain by {corner_um:.1} um in the far corner, and the gap itself is {:.1} um RMS.",
-                "Исправлять по этим строкам нельзя: неопределённость того, что они показывают, в дальнем углу {corner_um:.1} мкм, а само расхождение — {:.1} мкм (СКЗ).",
-                gap.rms_um
-            )
-        } else {
-            let unseen = evidence.unseen;
-            let refuted = if fine {
-                None
-            } else if causes.is_empty() {
-                unseen.and_then(|u| u.gap_note())
-            } else {
-                unseen.and_then(|u| u.refutation(&holdout.unwrap_or(self.data).runs))
-            };
-            let mut said = sentence(verdict, &gap, &causes, &leftover);
-            if verdict == Verdict::Partial && evidence.shifts {
-                said.push(&Text::pair(
-                    " They count from machine zero, too far from what was measured to be written.",
-                    " Отсчёт идёт от нуля станка, слишком далеко от измеренного, чтобы это записывать.",
-                ));
-            }
-            said.push(&refuted.unwrap_or_default());
-            said
-        };
+        }
+        let runs = &holdout.unwrap_or(self.data).runs;
+        let seen = Seen { verdict, gap, leftover: &leftover, causes: &causes, evidence: &evidence };
+        let sentence = if fine { seen.sentence() } else { seen.headline(corner_um, runs) };
         if verdict == Verdict::Underpowered {
             causes.clear();
         }
-        let withheld = harm.filter(|_| !causes.is_empty()).map(|harm| harm.words());
+        let limits = used.words(&self.model.library).filter(|_| verdict != Verdict::Unknown);
+        let (within, limits) = match used {
+            Use::Within(volume, _) => {
+                notes.extend(limits);
+                (Some(volume), None)
+            }
+            _ => (None, limits),
+        };
+        let turned = || causes.iter().any(Cause::is_turned_play).then_some(TURNED);
+        let withheld = turned()
+            .or(limits)
+            .or_else(|| (verdict.leaves_open() && !evidence.confirmed()).then_some(NO_NAME_YET));
+        let withheld = withheld.filter(|_| !causes.is_empty());
         notes.extend(withheld.clone());
-        if nameless || withheld.is_some() {
-            causes.iter_mut().for_each(|c| c.remedy = DO_NOT_ACT);
+        if withheld.is_some() {
+            let others = causes.iter_mut().filter(|cause| !cause.is_turned_play());
+            others.for_each(|cause| cause.remedy = DO_NOT_ACT);
         }
+        let open = self.open().or_else(|| used.stand().map(|(place, rival)| (place, vec![rival])));
         let (data, scalars) = (self.data, &self.model.scalars);
         Diagnosis {
             verdict,
             sentence,
             gap,
             places: places(data, scalars, &before, self.noise_variance(), options.seed),
-            next_measurement: next_measurement(data, self.model, self.open(), self.noise_variance().sqrt())
+            next_measurement: next_measurement(data, self.model, open, self.noise_variance().sqrt())
                 .or_else(|| nameless.then(|| once_more(data)).flatten()),
             causes,
             withheld,
+            within,
             setup: self.setup(),
             leftover,
             holdout: held.filter(|_| !unsure),
@@ -131,9 +117,10 @@ impl Assembly<'_> {
         let leftover = self.leftover();
         let causes = self.causes(holdout, gap.rms_um);
         let corner_um = self.uncertainty_in_corners_um(options.volume);
-        let harm = cancelling(&causes, gap.rms_um).or_else(|| self.harm());
-        let evidence = self.evidence(&gap, &leftover, &causes, corner_um, harm);
-        OnRows { gap, leftover, causes, corner_um, harm, evidence }
+        let used = self.may_be_used(options.volume);
+        let mut evidence = self.evidence(&gap, &leftover, &causes, corner_um);
+        evidence.risks |= matches!(used, Use::Nowhere(_));
+        OnRows { gap, leftover, causes, corner_um, used, evidence }
     }
 
     /// The verdict of the rows that were fitted alone.
@@ -148,9 +135,7 @@ impl Assembly<'_> {
         for (index, ranked) in self.ordered.iter().enumerate() {
             let kind = self.model.library.kind(ranked.part);
             let rms_after_um = rms(&row_lengths(&self.model.scalars, &self.gap_after(index + 1)));
-            let half_width = self.own(ranked.place).first().map(|(_, value)| *value);
-            let no_play = matches!(kind, EffectKind::Backlash(_)) && half_width.is_some_and(|v| v < 0.0);
-            causes.push(Cause {
+            let mut cause = Cause {
                 term: self.term(ranked.place),
                 effect: kind.to_string(),
                 words: self.words(ranked.place),
@@ -163,11 +148,56 @@ impl Assembly<'_> {
                 rms_before_um,
                 rms_after_um,
                 shrink_predicted: self.shrink(index + 1, holdout),
-                remedy: if no_play { NO_PLAY } else { remedy(kind) },
-            });
+                remedy: remedy(kind),
+            };
+            if cause.is_turned_play() {
+                cause.remedy = NO_PLAY;
+            }
+            causes.push(cause);
             rms_before_um = rms_after_um;
         }
         causes
+    }
+}
+
+/// What the headline is made of.
+struct Seen<'a> {
+    verdict: Verdict,
+    gap: Gap,
+    leftover: &'a Leftover,
+    causes: &'a [Cause],
+    evidence: &'a Evidence,
+}
+
+impl Seen<'_> {
+    fn sentence(&self) -> Text {
+        sentence(self.verdict, &self.gap, self.causes, self.leftover)
+    }
+
+    /// The sentence with what unseen rows say against it; `runs`: theirs.
+    fn headline(&self, corner_um: f64, runs: &[String]) -> Text {
+        let rms_um = self.gap.rms_um;
+        match self.verdict {
+            Verdict::Underpowered if !self.causes.is_empty() => both!(
+                "These rows cannot carry a correction: what they show is uncertain by {corner_um:.1} um in the far corner, and the gap itself is {rms_um:.1} um RMS.",
+                "Исправлять по этим строкам нельзя: неопределённость того, что они показывают, в дальнем углу {corner_um:.1} мкм, а само расхождение — {rms_um:.1} мкм (СКЗ)."
+            ),
+            Verdict::Underpowered if self.evidence.guessed => both!(
+                "Rows and model differ by {rms_um:.1} µm RMS, and nothing says how much of it is noise: no command was read twice, and neighbouring rows lie far apart. Read twelve of the commands once more in the same run, or state u_um.",
+                "Строки и модель расходятся на {rms_um:.1} мкм (СКЗ), и ничто не говорит, сколько из этого шума: ни одна точка не измерена дважды, а соседние строки далеко друг от друга. Измерьте двенадцать точек ещё раз в той же серии или укажите u_um."
+            ),
+            _ => {
+                let unseen = self.evidence.unseen;
+                let refuted = if self.causes.is_empty() {
+                    unseen.and_then(|u| u.gap_note())
+                } else {
+                    unseen.and_then(|u| u.refutation(runs))
+                };
+                let mut said = self.sentence();
+                said.push(&refuted.unwrap_or_default());
+                said
+            }
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 //! readings. A slip has no number to be fitted, so that it explains more, and more simply, than any effect where it is one.
 
 use diagnostic::{Text, both};
-use gap_diagnosis::{Measurements, Reading, Row, gap_rms_um};
+use gap_diagnosis::{Measurements, Options, Reading, Row, diagnose, gap_rms_um};
 use machine_model::Vector;
 
 /// The gap must fall to less than this share of what it is: two effects of one machine do not cancel so by chance.
@@ -67,6 +67,14 @@ pub(super) fn slip<E>(
         }
     }
     best.or_else(|| if turns { None } else { offset_left_in(data, travel_mm, before_um, &predict) })
+}
+
+/// True where causes explain what a slip does, and better: two columns exchanged take a part of many a scale off.
+pub(super) fn is_caused(data: &Measurements, slip: &Slip) -> bool {
+    /// A slip has no number to be fitted: it stands where causes leave as much or hardly less.
+    const BETTER: f64 = 0.7;
+    let causes = diagnose(data, None, &Options::default()).causes;
+    causes.last().is_some_and(|last| last.rms_after_um < BETTER * slip.after_um)
 }
 
 /// A work offset that the profile does not know: the rows, moved by one vector, fit the model's curves.

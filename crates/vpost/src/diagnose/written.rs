@@ -4,6 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use diagnostic::{Code, both, of_toml};
 use gap_diagnosis::Diagnosis;
+use machine_model::Volume;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value};
 
 use crate::file;
@@ -14,7 +15,7 @@ use jobs::diagnose::json::{number, round};
 const UNREADABLE: Code = Code(301);
 
 /// Writes the profile `from` to `path` with the causes as `[[effect]]` and the frame as `[setup]`; comments and order stay. Where
-/// [`Diagnosis::corrects`] is false nothing is added.
+/// [`Diagnosis::corrects`] is false nothing is added; where it is true in a part of the volume alone, the axes end there.
 pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(), Failure> {
     let text = String::from_utf8_lossy(&file::read(from)?).into_owned();
     let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
@@ -34,6 +35,12 @@ pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(
                 entry.insert(name, Item::Value(decimal(value)));
             }
             effects.push(entry);
+        }
+    }
+    if let Some(Volume(part)) = diagnosis.within.filter(|_| diagnosis.corrects()) {
+        for (letter, range) in ["X", "Y", "Z"].into_iter().zip(part) {
+            document["axis"][letter]["travel_mm"] =
+                Item::Value([range.low, range.high].into_iter().map(decimal).collect::<Array>().into());
         }
     }
     if diagnosis.corrects() {

@@ -156,6 +156,19 @@ pub(super) fn alive(sheet: &Sheet) -> Result<(), Box<Refusal>> {
     Ok(())
 }
 
+/// True where the readings are so few different numbers that repeats coincide: a dial of 0.01 mm.
+fn is_coarse(sheet: &Sheet) -> bool {
+    /// Different readings, as a share of all.
+    const FEW: f64 = 0.3;
+    READINGS.into_iter().filter(|column| sheet.has(column)).all(|column| {
+        let mut read: Vec<Cow<'_, str>> = sheet.rows().map(|row| row.text(column)).collect();
+        let all = read.len() as f64;
+        read.sort_unstable();
+        read.dedup();
+        (read.len() as f64) < FEW * all
+    })
+}
+
 /// Rows that agree in every cell, reading included, were copied.
 pub(super) fn no_copies(sheet: &Sheet) -> Result<(), Box<Refusal>> {
     let mut seen: BTreeMap<Vec<Cow<'_, str>>, Row<'_>> = BTreeMap::new();
@@ -168,7 +181,7 @@ pub(super) fn no_copies(sheet: &Sheet) -> Result<(), Box<Refusal>> {
             seen.insert(cells, row);
         }
     }
-    if copies.len() < 3.max(sheet.rows().len() / 20) {
+    if copies.len() < 3.max(sheet.rows().len() / 20) || is_coarse(sheet) {
         return Ok(());
     }
     let (first, copy) = copies[0];

@@ -172,6 +172,7 @@ fn measured(
         instrument: None,
         station: None,
         artefact: None,
+        order: [0.0; 2],
         reading,
         line: row.line(),
     })

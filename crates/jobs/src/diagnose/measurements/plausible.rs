@@ -146,7 +146,8 @@ pub(in crate::diagnose) fn readings_against_model(sheet: &Sheet, data: &Measurem
         "no machine is that good: are the deviations in millimetres? The columns are micrometres",
         "таких точных станков нет: отклонения в миллиметрах? В столбцах микрометры"
     );
-    let sizes = sorted(readings(data).map(|(_, um)| um.abs()));
+    // Zeros are readings of a coarse dial, whatever the unit.
+    let sizes = sorted(readings(data).map(|(_, um)| um.abs()).filter(|um| *um > 0.0));
     let large = sizes.get(sizes.len() * 9 / 10).copied().unwrap_or(0.0);
     if large < PERFECT_UM {
         let message = both!(

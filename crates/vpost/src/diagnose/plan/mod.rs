@@ -164,6 +164,7 @@ pub(super) fn design(plan: &[Line], geometry: &EffectGeometry) -> Measurements {
                 instrument: None,
                 station: None,
                 artefact: None,
+                order: [0.0; 2],
                 reading: Reading::Displacement([Some(0.0); 3]),
                 line: 0,
             });
