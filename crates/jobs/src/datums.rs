@@ -8,7 +8,7 @@ use rewrite::{Aligned, Datum, Datums, Touch, TouchTool, Touches, Zero};
 
 use crate::message::Failure;
 use crate::options::{self, JobOptions};
-use crate::settings;
+use crate::setup;
 use crate::stored::Stored;
 
 /// What is known of the zeros.
@@ -80,7 +80,7 @@ impl FromZero {
         engine: &dyn Engine,
         name: Option<&str>,
     ) -> Result<Self, Failure> {
-        let setup = settings::setup(options, profile, &Stored::default())?;
+        let setup = setup::setup(options, profile, &Stored::default())?;
         let datums = of(options, profile, &setup, engine)?;
         let zero = match name {
             None => None,
@@ -128,7 +128,7 @@ pub fn of_offsets(
     profile: &Profile,
     engine: &dyn Engine,
 ) -> Result<Vec<(String, [f64; 3], Option<Vector>)>, Failure> {
-    let setup = settings::setup(options, profile, &Stored::default())?;
+    let setup = setup::setup(options, profile, &Stored::default())?;
     let datums = of(options, profile, &setup, engine)?;
     let offsets = setup.work_offsets.iter().map(|(name, zero_mm)| {
         let datum =

@@ -21,6 +21,7 @@ pub mod points;
 pub mod predict;
 pub mod profile;
 pub mod settings;
+mod setup;
 pub mod shown;
 pub mod solve;
 mod stored;
