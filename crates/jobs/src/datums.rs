@@ -118,6 +118,9 @@ impl FromZero {
     }
 }
 
+/// A work offset by its name, its machine coordinate, mm, and how far its zero lies from there, mm, where it was touched.
+pub type OffsetFound = (String, [f64; 3], Option<Vector>);
+
 /// How far the zeros of a profile lie from where it says, mm: what is in those that were touched of the machine's error; `None`
 /// for true ones.
 ///
@@ -127,7 +130,7 @@ pub fn of_offsets(
     options: &JobOptions,
     profile: &Profile,
     engine: &dyn Engine,
-) -> Result<Vec<(String, [f64; 3], Option<Vector>)>, Failure> {
+) -> Result<Vec<OffsetFound>, Failure> {
     let setup = setup::setup(options, profile, &Stored::default())?;
     let datums = of(options, profile, &setup, engine)?;
     let offsets = setup.work_offsets.iter().map(|(name, zero_mm)| {
