@@ -118,8 +118,8 @@ impl FromZero {
     }
 }
 
-/// A work offset by its name, its machine coordinate, mm, and how far its zero lies from there, mm, where it was touched.
-pub type OffsetFound = (String, [f64; 3], Option<Vector>);
+/// A work offset by its name, its machine coordinate, mm, and how far its zero lies from there, mm, where touched.
+pub type OffsetFound = (String, Vector, Option<Vector>);
 
 /// How far the zeros of a profile lie from where it says, mm: what is in those that were touched of the machine's error; `None`
 /// for true ones.
@@ -135,8 +135,8 @@ pub fn of_offsets(
     let datums = of(options, profile, &setup, engine)?;
     let offsets = setup.work_offsets.iter().map(|(name, zero_mm)| {
         let datum =
-            engine.path_model().and_then(|model| datums.of_zero(model, name.clone(), *zero_mm, &datums.tool));
-        (name.clone(), *zero_mm, datum.map(|datum| datum.error_mm.into()))
+            engine.path_model().and_then(|of| datums.of_zero(of, name.clone(), *zero_mm, &datums.tool));
+        (name.clone(), Vector::from(*zero_mm), datum.map(|datum| datum.error_mm.into()))
     });
     Ok(offsets.collect())
 }

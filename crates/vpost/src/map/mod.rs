@@ -48,13 +48,10 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
     conditions::doubts(&profile, id).iter().for_each(|report| messages.report(report));
     let grid_mm = asked.grid.axes().each_ref().map(|nodes| nodes.range_mm());
     outside(asked.part_box_mm.into_iter().chain([grid_mm]), model.volume(), shared, messages)?;
-    let offsets = jobs::datums::of_offsets(&shared.job, &profile, engine.as_ref())?;
-    let offsets = offsets.into_iter().map(|(name, zero_mm, touched_mm)| study::WorkOffset {
-        name,
-        zero_mm: zero_mm.into(),
-        touched_mm,
-    });
-    let study = study::Study::new(&profile, id, model, offsets.collect(), &asked)?;
+    let found = jobs::datums::of_offsets(&shared.job, &profile, engine.as_ref())?;
+    let offset = |(name, zero_mm, touched_mm)| study::WorkOffset { name, zero_mm, touched_mm };
+    let offsets = found.into_iter().map(offset).collect();
+    let study = study::Study::new(&profile, id, model, offsets, &asked)?;
     if let Some(path) = &arguments.csv {
         file::write(path, &export::csv(&study))?;
     }
