@@ -73,7 +73,7 @@ impl FromZero {
     /// * `name` – of its work offset; `None`: errors count from the measuring frame
     ///
     /// # Errors
-    /// The profile has no such zero; as [`of`].
+    /// The profile has no such zero; a tool that touched and has no length, a place outside the calibrated volume.
     pub fn of(
         options: &JobOptions,
         profile: &Profile,
@@ -125,7 +125,7 @@ pub type OffsetFound = (String, Vector, Option<Vector>);
 /// for true ones.
 ///
 /// # Errors
-/// As [`of`].
+/// A tool that touched and has no length, a place of touching outside the calibrated volume.
 pub fn of_offsets(
     options: &JobOptions,
     profile: &Profile,
