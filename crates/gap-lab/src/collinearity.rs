@@ -141,20 +141,6 @@ impl<'a> View<'a> {
                 None => found.push((*effect, correlation)),
             }
         }
-        // An angle seen through one lever is a curve of its axis with its slope.
-        if let Some(Effect::Angular(_, a)) = but {
-            let of_place = |effect: Effect| match effect {
-                Effect::Scale(axis) | Effect::Positioning(axis) | Effect::Straightness(_, axis) => axis == a,
-                _ => false,
-            };
-            let mut joint = Basis::default();
-            let curves = library.iter().filter(|(effect, ..)| of_place(*effect));
-            curves.flat_map(|(.., columns)| columns).for_each(|column| joint.add(column.clone()));
-            let correlation = joint.correlation(v);
-            if correlation >= SAME && found.iter().all(|(effect, _)| *effect != Effect::Positioning(a)) {
-                found.push((Effect::Positioning(a), correlation));
-            }
-        }
         found
     }
 
