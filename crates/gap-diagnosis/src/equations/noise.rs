@@ -370,7 +370,7 @@ fn lines(rows: &[Row], scalars: &[Scalar]) -> Lines {
 }
 
 /// No way at all stands for any: a direction of 2 is none.
-const fn anyhow((place, class, _): Returning) -> Returning {
+const fn reached_any_way((place, class, _): Returning) -> Returning {
     (place, class, [2; 3])
 }
 
@@ -393,7 +393,7 @@ impl<'a> Surroundings<'a> {
             let (place, returning) = (all.place_of(scalar), all.return_of(scalar));
             let entry = all.places.entry(place).or_default();
             *entry = (entry.0 + far, entry.1 + 1.0);
-            for way in [returning, anyhow(returning)] {
+            for way in [returning, reached_any_way(returning)] {
                 let entry = all.returns.entry(way).or_default();
                 *entry = (entry.0 + far, entry.1 + 1.0);
             }
@@ -441,7 +441,7 @@ impl<'a> Surroundings<'a> {
                 let scalar = &self.scalars[*index];
                 let returning = self.return_of(scalar);
                 let confirmed = says(self.places[&self.place_of(scalar)])
-                    || [returning, anyhow(returning)].iter().any(|way| says(self.returns[way]));
+                    || [returning, reached_any_way(returning)].iter().any(|way| says(self.returns[way]));
                 if alone && !confirmed {
                     found.push(scalar.row);
                 }

@@ -65,8 +65,8 @@ impl Assembly<'_> {
             notes.extend(causes.iter().map(seen_but_unsure));
         }
         let runs = &holdout.unwrap_or(self.data).runs;
-        let seen = Seen { verdict, gap, leftover: &leftover, causes: &causes, evidence: &evidence };
-        let sentence = if fine { seen.sentence() } else { seen.headline(corner_um, runs) };
+        let headline = Headline { verdict, gap, leftover: &leftover, causes: &causes, evidence: &evidence };
+        let sentence = if fine { headline.sentence() } else { headline.doubted(corner_um, runs) };
         if verdict == Verdict::Underpowered {
             causes.clear();
         }
@@ -161,7 +161,7 @@ impl Assembly<'_> {
 }
 
 /// What the headline is made of.
-struct Seen<'a> {
+struct Headline<'a> {
     verdict: Verdict,
     gap: Gap,
     leftover: &'a Leftover,
@@ -169,13 +169,13 @@ struct Seen<'a> {
     evidence: &'a Evidence,
 }
 
-impl Seen<'_> {
+impl Headline<'_> {
     fn sentence(&self) -> Text {
         sentence(self.verdict, &self.gap, self.causes, self.leftover)
     }
 
     /// The sentence with what unseen rows say against it; `runs`: theirs.
-    fn headline(&self, corner_um: f64, runs: &[String]) -> Text {
+    fn doubted(&self, corner_um: f64, runs: &[String]) -> Text {
         let rms_um = self.gap.rms_um;
         match self.verdict {
             Verdict::Underpowered if !self.causes.is_empty() => both!(

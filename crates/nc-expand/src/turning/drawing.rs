@@ -9,8 +9,7 @@
 
 use diagnostic::{Text, both};
 use nc_program::modal::{Modal, MotionMode};
-use nc_syntax::dialect::CornerForm;
-use nc_syntax::dialect::{Action, Turning};
+use nc_syntax::dialect::{Action, CornerForm, Turning};
 use nc_syntax::{Block, Item, ItemKind, Span, Value};
 use units::math;
 
