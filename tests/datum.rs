@@ -203,6 +203,10 @@ fn points_and_budgets_count_from_a_zero_that_is_named() {
     }
     let budget = said(&["budget", "--points", &points, "--datum", "G54"]);
     assert!(budget.contains("M = max |d| 20.00 at") && budget.contains("counted from G54"), "{budget}");
+    // Who counts from no zero is not asked how one was touched.
+    let unsaid = "G54 = { at = [0, 0, 0], touched_at = { tool = \"H7\" } }";
+    let unsaid = shop.write("unsaid.toml", &format!("{MACHINE}\n[work_offsets_mm]\n{unsaid}\n"));
+    assert!(run(&["predict", &points, "-m", &unsaid]).status.success());
     let ran = run(&["predict", &points, "-m", &machine, "--datum", "G57"]);
     assert!(
         ran.status.code() == Some(2) && messages(&ran).contains("the profile has no G57"),

@@ -1,10 +1,10 @@
 //! How a job's zeros came to be: what profile and command line say together.
 
 use diagnostic::{Text, both};
-use machine_model::{Engine, FromDatum, PathModel, Placement, Vector};
-use machine_profile::{Found, Profile, TouchPlace, TouchedBy, Way};
+use machine_model::{Engine, FromDatum, PathModel, Placement, Vector, Way};
+use machine_profile::{Found, Profile, TouchPlace, TouchedBy};
 use nc_program::{Setup, ToolLength};
-use rewrite::{Aligned, Datum, Datums, Touch, TouchTool, Touches, Zero};
+use rewrite::{Datum, Datums, Touch, TouchTool, Touches, Zero};
 
 use crate::message::Failure;
 use crate::options::{self, JobOptions};
@@ -44,7 +44,8 @@ pub(crate) fn of(
             Some(places) => touches(name, places, setup, engine)?,
         };
         let aligned = said.aligned.filter(|_| !is_other);
-        let touches = Touches { axes, aligned: aligned.map(|way| dialled(name, &way, engine)).transpose()? };
+        aligned.map_or(Ok(()), |way| inside(name, &way, engine))?;
+        let touches = Touches { axes, aligned };
         named.push((name.clone(), zero(said.found.unwrap_or(plain), touches)));
     }
     for given in &options.touched_at {
@@ -63,11 +64,7 @@ pub(crate) fn of(
 }
 
 /// From where errors count that count from a zero of a profile, where one is named.
-pub struct FromZero {
-    datums: Datums,
-    tool: TouchTool,
-    zero: Option<(String, [f64; 3])>,
-}
+pub struct FromZero(Option<(Datums, String, [f64; 3])>);
 
 impl FromZero {
     /// * `name` – of its work offset; `None`: errors count from the measuring frame
@@ -80,29 +77,23 @@ impl FromZero {
         engine: &dyn Engine,
         name: Option<&str>,
     ) -> Result<Self, Failure> {
+        let Some(name) = name else { return Ok(Self(None)) };
         let setup = setup::setup(options, profile, &Stored::default())?;
-        let datums = of(options, profile, &setup, engine)?;
-        let zero = match name {
-            None => None,
-            Some(name) => match setup.work_offsets.iter().find(|(known, _)| known == name) {
-                Some(zero) => Some(zero.clone()),
-                None => {
-                    return Err(Failure::option(
-                        both!("the profile has no {name}", "в профиле нет {name}"),
-                        both!(
-                            "`--datum` names one of [work_offsets_mm]: add `{name} = [x, y, z]` there, how it was touched beside it",
-                            "`--datum` — одно из [work_offsets_mm]: добавьте туда `{name} = [x, y, z]` и как его нашли"
-                        ),
-                    ));
-                }
-            },
+        let Some((_, zero_mm)) = setup.work_offsets.iter().find(|(known, _)| known == name) else {
+            return Err(Failure::option(
+                both!("the profile has no {name}", "в профиле нет {name}"),
+                both!(
+                    "`--datum` names one of [work_offsets_mm]: add `{name} = [x, y, z]` there, how it was touched beside it",
+                    "`--datum` — одно из [work_offsets_mm]: добавьте туда `{name} = [x, y, z]` и как его нашли"
+                ),
+            ));
         };
-        Ok(Self { tool: datums.tool, datums, zero })
+        Ok(Self(Some((of(options, profile, &setup, engine)?, name.to_owned(), *zero_mm))))
     }
 
     fn datum(&self, model: &dyn PathModel) -> Option<Datum> {
-        let (name, zero_mm) = self.zero.as_ref()?;
-        self.datums.of_zero(model, name.clone(), *zero_mm, &self.tool)
+        let (datums, name, zero_mm) = self.0.as_ref()?;
+        datums.of_zero(model, name.clone(), *zero_mm, &datums.tool)
     }
 
     /// [`machine_model::Command::datum`] on a machine, as it would have been touched on it.
@@ -156,8 +147,8 @@ fn touch_tool(setup: &Setup, length_mm: [f64; 3]) -> TouchTool {
     TouchTool { vector_mm: setup.tool_vector(&ToolLength::Written { applied_mm: length_mm }), length_mm }
 }
 
-/// The way that a workpiece was dialled parallel to.
-fn dialled(name: &str, way: &Way, engine: &dyn Engine) -> Result<Aligned, Failure> {
+/// Refuses a way of which the machine is not known.
+fn inside(name: &str, way: &Way, engine: &dyn Engine) -> Result<(), Failure> {
     let volume = engine.volume().0;
     let outside = way.ends_mm.iter().flat_map(|end| end.iter().zip(&volume));
     if let Some((place, range)) = outside
@@ -177,8 +168,7 @@ fn dialled(name: &str, way: &Way, engine: &dyn Engine) -> Result<Aligned, Failur
             ),
         ));
     }
-    let Way { along, ends_mm, faces } = *way;
-    Ok(Aligned { along, ends_mm, faces })
+    Ok(())
 }
 
 fn touches(

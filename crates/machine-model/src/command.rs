@@ -105,6 +105,17 @@ impl Placement {
     }
 }
 
+/// The real way of a linear axis, between two of its commands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    /// The axis: 0, 1, 2.
+    pub along: usize,
+    /// Axis commands of its ends, mm; `None`: as at the program's zero.
+    pub ends_mm: [[Option<f64>; 3]; 2],
+    /// Which faces of a workpiece a dial ran on along it: those across X, Y, Z.
+    pub faces: [bool; 3],
+}
+
 /// Where rotary axes stand in their play.
 ///
 /// ```

@@ -38,7 +38,7 @@ mod with_effects;
 pub use aside::Aside;
 pub use axis_tables::{AxisTables, Six, SixBounds};
 pub use chain::{Axis, Chain, ChainError};
-pub use command::{Command, Matrix, Move, Placement, Range, RotaryPlay, Turn, Vector, Volume};
+pub use command::{Command, Matrix, Move, Placement, Range, RotaryPlay, Turn, Vector, Volume, Way};
 pub use description::{Description, LinearAxis, RotaryAxis, Squareness, Tilt};
 pub use engine::{Engine, EngineId, LANES, Models, PathModel, Solution, SolveError};
 pub use everywhere::Everywhere;

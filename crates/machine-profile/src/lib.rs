@@ -30,4 +30,4 @@ pub use profile::{
 pub use show::{plus_turns, schema};
 pub use tables::ErrorRows;
 pub use write::{ProfileText, rename_tables};
-pub use zeros::{Found, TouchPlace, TouchedBy, Way, ZeroFound};
+pub use zeros::{Found, TouchPlace, TouchedBy, ZeroFound};

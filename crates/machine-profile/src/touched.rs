@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use diagnostic::{Diagnostic, Text, both};
+use machine_model::Way;
 use toml::Spanned;
 use toolpath::AXIS_NAMES;
 
@@ -11,7 +12,7 @@ use crate::load::Loader;
 use crate::number::{Finite, Length};
 use crate::zeros::{
     AlignedTo, End, Found, FoundOffset, OnePlace, Places, ToolThatTouched, TouchPlace, TouchedAt, TouchedBy,
-    Way, WorkOffset, ZeroFound,
+    WorkOffset, ZeroFound,
 };
 
 /// Of each work offset.

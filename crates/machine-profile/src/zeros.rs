@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use machine_model::Way;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -40,17 +41,6 @@ pub enum TouchedBy {
     Vector([f64; 3]),
 }
 
-/// The real way of a linear axis that a workpiece was dialled parallel to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Way {
-    /// The axis: 0, 1, 2.
-    pub along: usize,
-    /// Axis commands between which it was, mm; `None`: as at the program's zero.
-    pub ends_mm: [[Option<f64>; 3]; 2],
-    /// Which faces the dial ran on: those across X, Y, Z.
-    pub faces: [bool; 3],
-}
-
 /// What a profile says of one work offset besides its place.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ZeroFound {
@@ -58,7 +48,7 @@ pub struct ZeroFound {
     pub found: Option<Found>,
     /// Of X, Y, Z; `None`: at the program's zero.
     pub touched_at: Option<[TouchPlace; 3]>,
-    /// How the workpiece was turned; `None`: it lies as the measuring frame does.
+    /// The way that the workpiece was dialled parallel to; `None`: it lies as the measuring frame does.
     pub aligned: Option<Way>,
 }
 

@@ -1,6 +1,6 @@
 //! Where a program's zeros were touched, and what the machine's error there makes of its places. Equation (121).
 
-use machine_model::{Command, Models, PathModel, Placement, Vector};
+use machine_model::{Command, Models, PathModel, Placement, Vector, Way};
 use nc_program::{Context, WorkOffset, work_offset_name};
 use nc_syntax::Dialect;
 use toolpath::Motion;
@@ -27,24 +27,13 @@ pub struct TouchTool {
     pub length_mm: [f64; 3],
 }
 
-/// Parallel to what a workpiece was dialled: the real way of a linear axis, with correction off.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Aligned {
-    /// The axis: 0, 1, 2.
-    pub along: usize,
-    /// Axis commands between which it was, mm; `None`: as at the program's zero.
-    pub ends_mm: [[Option<f64>; 3]; 2],
-    /// Which of its faces the dial ran on: those across X, Y, Z.
-    pub faces: [bool; 3],
-}
-
 /// Where a zero was touched: X, Y and Z.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Touches {
     /// Each coordinate.
     pub axes: [Touch; 3],
-    /// How the workpiece was turned; `None`: it lies as the measuring frame does.
-    pub aligned: Option<Aligned>,
+    /// The way that the workpiece was dialled parallel to; `None`: it lies as the measuring frame does.
+    pub aligned: Option<Way>,
 }
 
 /// How a work offset came to be.
@@ -123,22 +112,16 @@ impl Touch {
     }
 }
 
-impl Aligned {
-    /// How the workpiece lies that was dialled so with a tool, its zero at the command `zero_mm`.
-    fn turned(&self, model: &dyn PathModel, tool: &TouchTool, zero_mm: [f64; 3]) -> Placement {
-        let [from, to] = self.ends_mm.map(|end| {
-            let place = Vector::from_fn(|axis, _| end[axis].unwrap_or(zero_mm[axis]));
-            let at = touched_at(&place, tool, [0.0; 3]);
-            (place, model.error_mm(&at))
-        });
-        let way = to.0 - from.0;
-        let aside = to.1 - from.1;
-        // Across a face that nothing was dialled on the workpiece lies as its support does.
-        Placement::turned(
-            &way,
-            &(way + Vector::from_fn(|axis, _| if self.faces[axis] { aside[axis] } else { 0.0 })),
-        )
-    }
+/// How the workpiece lies that was dialled along a way with a tool, its zero at the command `zero_mm`.
+fn dialled(way: &Way, model: &dyn PathModel, tool: &TouchTool, zero_mm: [f64; 3]) -> Placement {
+    let [from, to] = way.ends_mm.map(|end| {
+        let place = Vector::from_fn(|axis, _| end[axis].unwrap_or(zero_mm[axis]));
+        (place, model.error_mm(&touched_at(&place, tool, [0.0; 3])))
+    });
+    let (nominal, aside) = (to.0 - from.0, to.1 - from.1);
+    // Across a face that nothing was dialled on the workpiece lies as its support does.
+    let seen = Vector::from_fn(|axis, _| if way.faces[axis] { aside[axis] } else { 0.0 });
+    Placement::turned(&nominal, &(nominal + seen))
 }
 
 impl Datums {
@@ -180,10 +163,10 @@ impl Datums {
         let zero = self.named.iter().find(|(known, _)| *known == name).map_or(&self.others, |(_, zero)| zero);
         let Zero::Touched(touches) = zero else { return None };
         let at_zero = |tool: &TouchTool| (Vector::from(zero_mm) + Vector::from(tool.length_mm)).into();
-        let turned = touches.aligned.map_or_else(Placement::default, |aligned| {
-            let face = aligned.faces.iter().position(|dialled| *dialled).unwrap_or(0);
+        let turned = touches.aligned.map_or_else(Placement::default, |way| {
+            let face = way.faces.iter().position(|seen| *seen).unwrap_or(0);
             let tool = touches.axes[face].tool.unwrap_or(self.tool);
-            aligned.turned(model, &tool, at_zero(&tool))
+            dialled(&way, model, &tool, at_zero(&tool))
         });
         let [mut shift_mm, mut guessed_mm] = [Vector::zeros(); 2];
         let mut is_outside = false;

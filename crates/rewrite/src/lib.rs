@@ -58,7 +58,7 @@ mod whole;
 mod words;
 
 pub use check::{Checked, Unreadable, check, courses};
-pub use datum::{Aligned, Datum, Datums, Touch, TouchTool, Touches, Zero};
+pub use datum::{Datum, Datums, Touch, TouchTool, Touches, Zero};
 pub use job::*;
 pub use large::{Digest, Large, LargeEnd, Manner, Part, Source};
 pub use survey::all_refusals;
