@@ -16,6 +16,8 @@ use nc_syntax::Letters;
 
 /// Levels that differ by less are the same.
 const SAME_LEVEL_MM: f64 = 1e-6;
+/// Corrected levels differ by no more from the posted ones, mm.
+const CORRECTED_MM: f64 = 0.1;
 /// More holes than a control repeats in one block.
 const MOST_REPEATS: u32 = 9999;
 
@@ -170,8 +172,11 @@ pub(crate) fn holes(
     // Nothing but a motion code makes an unknown axis known again, and that ends the cycle: where the
     // first hole finds the axis known, the start of the series did.
     let began_mm = cycle.initial.known().unwrap_or(at.linear_mm[normal]);
-    // Controls end a cycle at the level further from the bottom.
+    // LinuxCNC ends a cycle at the level farther from the bottom.
     let initial_mm = if r_mm >= bottom_mm { began_mm.max(r_mm) } else { began_mm.min(r_mm) };
+    if initial_mm - began_mm > CORRECTED_MM && state.return_level != ReturnLevel::R {
+        begun_beyond_r(env, words)?;
+    }
     let parameters = Cycle {
         kind: kind(cycle.kind),
         peck_mm: cycle.peck_mm,
@@ -373,8 +378,8 @@ fn levels(
         CycleLevels::Held | CycleLevels::Unstated => {
             let depth = LINEAR[normal] as char;
             let message = both!(
-                "R and {depth} were written under another of G90 and G91, and controls differ in what they mean now",
-                "R и {depth} написаны при другой из G90 и G91; что они значат теперь, у стоек по-разному"
+                "{depth} counts from an earlier R, or was written under another of G90 and G91: controls differ in what it means now",
+                "{depth} отсчитано от прежнего R или написано при другой из G90 и G91; что оно значит теперь, у стоек по-разному"
             );
             Err(words
                 .refuse(
@@ -392,6 +397,25 @@ fn levels(
                 )))
         }
     }
+}
+
+/// A series of holes that begins between R and the bottom: G98 would lead back into the hole, or to R, as LinuxCNC does.
+fn begun_beyond_r(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<()> {
+    if env.dialect.cycle_levels == CycleLevels::Reread {
+        return Ok(());
+    }
+    let message = both!(
+        "under G98 a hole begins at a level below its R",
+        "при G98 отверстие начато с уровня ниже своего R"
+    );
+    let label = both!(
+        "controls return to that level, or to R: where the tool stands behind it is not certain",
+        "стойки возвращают на этот уровень или на R: где инструмент окажется, неясно"
+    );
+    Err(words.refuse(codes::CYCLE_WORDS, message, words.span(AXIS_LETTERS.or(R)), label).help(both!(
+        "write G99, or bring the tool above R before the cycle",
+        "напишите G99 или выведите инструмент выше R до цикла"
+    )))
 }
 
 /// Some controls drill downwards only, and stop where the bottom would lie above R.

@@ -148,8 +148,8 @@ fn parameters_are_modal_until_the_cycle_ends() {
     // P is kept, but G81 does not dwell.
     assert_eq!(holes[2].cycle.dwell, None);
     assert_eq!((holes[3].cycle.kind, holes[3].bottom_mm), (CycleKind::Synchronised, -6.0));
-    assert_eq!(refusal("fanuc", "G0 X0. Y0. Z0.\nG81 X1. Z-5. R2.\nG80\nG81 X2.\n"), (216, 4));
-    assert_eq!(refusal("fanuc", "G0 X0. Y0. Z0.\nG81 X1. Z-5. R2.\nG0 X2.\nG82 X2. R2.\n"), (216, 4));
+    assert_eq!(refusal("fanuc", "G0 X0. Y0. Z9.\nG81 X1. Z-5. R2.\nG80\nG81 X2.\n"), (216, 4));
+    assert_eq!(refusal("fanuc", "G0 X0. Y0. Z9.\nG81 X1. Z-5. R2.\nG0 X2.\nG82 X2. R2.\n"), (216, 4));
 }
 
 #[test]

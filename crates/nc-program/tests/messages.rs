@@ -165,7 +165,7 @@ fn cycles() {
       help: write Z on the block that starts the cycle
     "#);
     insta::assert_snapshot!(message("perspektiva", "G0 X0 Y0 Z5.\nG81 X1. R1. Z-1.\nG91 X1.\n"), @r#"
-    error[VP0217]: R and Z were written under another of G90 and G91, and controls differ in what they mean now
+    error[VP0217]: Z counts from an earlier R, or was written under another of G90 and G91: controls differ in what it means now
       3: `X1.` R and Z are taken from an earlier block
       help: write R and Z again in this block
     "#);

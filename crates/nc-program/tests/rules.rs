@@ -470,7 +470,7 @@ fn block_delete_that_sets_is_refused() {
     assert_eq!(refusal("fanuc", &after("G1 X5. /Y5.\n")), (222, 2));
     let holes = "/G99\n/G80\n/G0 X5.\nG0 X0 Y0 Z5.\nG81 X1. Y1. Z-1. R1.\n";
     assert_eq!(refusal("fanuc", &after(holes)), (222, 6));
-    assert_eq!(refusal("fanuc", &after("G81 X1. Y1. Z-1. R1.\n/G80\nX2.\n")), (222, 4));
+    assert_eq!(refusal("fanuc", &after("G99 G81 X1. Y1. Z-1. R1.\n/G80\nX2.\n")), (222, 4));
 }
 
 #[test]
