@@ -153,9 +153,9 @@ fn untransformed(
 
 /// G4 P beside a motion (LinuxCNC): first the dwell, then the motion. P must be the dwell's alone.
 fn dwell_beside(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
-    let arc = matches!(state.motion, MotionMode::Arc(..) | MotionMode::Curve(..))
-        && words.has(AXIS_LETTERS.or(ARC_LETTERS));
-    if state.cycle.is_some() || arc {
+    let takes_p =
+        state.cycle.is_some() || matches!(state.motion, MotionMode::Arc(..) | MotionMode::Curve(..));
+    if takes_p && words.has(AXIS_LETTERS.or(ARC_LETTERS)) {
         let span = words.span(Letters::of(b"P").or(AXIS_LETTERS));
         return Err(words
             .refuse(
