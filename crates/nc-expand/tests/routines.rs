@@ -192,7 +192,13 @@ fn program(dice: &mut Dice) -> String {
     let start = words(highest + dice.between(1.0, 4.0), dice.between(0.5, 3.0));
     let distance = if dice.of(2) == 0 { 0.0 } else { dice.between(0.05, 0.6) };
     let cycle = if code == "G70" {
-        format!("{code} Q100 {start} D{distance} E{} P{}", dice.between(0.0, 0.1), 1 + dice.of(3))
+        // From where it starts, or from where roughing has left the tool.
+        let before = if dice.of(2) == 0 {
+            format!("G70 Q100 {start}")
+        } else {
+            format!("G71.1 Q100 {start} I2\nG70 Q100")
+        };
+        format!("{before} D{distance} E{} P{}", dice.between(0.0, 0.1), 1 + dice.of(3))
     } else {
         format!("{code} Q100 {start} D{distance} I{} R{}", dice.between(0.4, 2.0), dice.between(0.1, 0.8))
     };

@@ -257,11 +257,14 @@ impl Profile {
     /// G70: `passes` times along the contour, first off by nearly `from`, last by `to`.
     pub(super) fn finish(mut self, from: f64, to: f64, passes: u32) -> Result<Vec<Stroke>, Misfit> {
         self.settle();
+        let start = self.layout.back(self.segments[0].start);
+        self.dive_straight();
         if !self.segments.iter().all(Segment::falls) {
             self.relay(QUARTER);
             self.settle();
+            self.dive_straight();
         }
-        let mut strokes = Vec::new();
+        let mut strokes = vec![Stroke::Rapid(self.layout.lay(start))];
         for pass in (0..passes).rev() {
             let mut path = self.clone();
             path.keep_off(f64::from(pass) * (from - to) / f64::from(passes) + to)?;
@@ -270,6 +273,12 @@ impl Profile {
             strokes.extend(rest.iter().map(Segment::stroke));
         }
         Ok(self.told(strokes))
+    }
+
+    /// A way to the contour that would begin on the side of the workpiece goes along to above its place first, then down.
+    fn dive_straight(&mut self) {
+        let first = &mut self.segments[0];
+        first.start[0] = first.start[0].max(first.end[0]);
     }
 
     /// G71, and G72 where `facing`: passes of a depth down to `distance` off the contour.
@@ -286,9 +295,8 @@ impl Profile {
         }
         self.keep_off(distance)?;
         self.settle();
-        let first = &mut self.segments[0];
-        // A dive on the wrong side becomes one straight down.
-        first.start[0] = first.start[0].max(first.end[0]);
+        self.dive_straight();
+        let first = &self.segments[0];
         if first.start[1] <= first.end[1] {
             return Err(Misfit::WrongSide);
         }
