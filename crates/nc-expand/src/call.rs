@@ -285,7 +285,13 @@ impl<'a> Run<'a, '_> {
         let behind = |file: usize, source: &Source<'_>, at: u32| match source.statements.get(at as usize) {
             // What stands beside its number is executed too, and would be passed over here.
             Some(statement) if statement.flags.words => Err(words_beside(&written)),
-            _ => Ok(Place { file, statement: at + 1 }),
+            Some(_) => Ok(Place { file, statement: at + 1 }),
+            None => Err(say(
+                codes::PROGRAM_MISSING,
+                both!("{written} stands twice in one file", "{written} стоит в файле дважды"),
+                both!("which of the two is called?", "какая из двух вызвана?"),
+                both!("give one of them another number", "дайте одной из них другой номер"),
+            )),
         };
         if let Some(statement) = source.programs.get(&program) {
             return behind(file, source, *statement);

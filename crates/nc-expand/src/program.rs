@@ -12,6 +12,9 @@ use crate::o_word::{Label, OStatement, OWord};
 use crate::statement::{Compiler, Control, Direction, Flags, Kind, Statement};
 use crate::value::{NameId, Names, Program};
 
+/// In place of where a program starts whose name stands twice.
+const TWICE: u32 = u32::MAX;
+
 /// A file.
 #[derive(Clone, Debug)]
 pub(crate) struct Source<'a> {
@@ -87,7 +90,7 @@ impl<'a> Source<'a> {
                 if let Some(program) = starts {
                     flags.starts = true;
                     section += 1;
-                    programs.entry(program).or_insert(at);
+                    programs.entry(program).and_modify(|at| *at = TWICE).or_insert(at);
                 }
                 if flags.number.is_some()
                     && dialect.flow.macros == Macros::Fanuc
