@@ -58,7 +58,7 @@ impl<'a> Came<'a> {
 pub(crate) struct Held {
     bytes: Vec<u8>,
     items: Vec<Item>,
-    from: From,
+    pub(crate) from: From,
 }
 
 impl Held {

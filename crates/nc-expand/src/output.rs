@@ -30,6 +30,10 @@ pub(crate) struct From {
     pub(crate) exact: bool,
     /// It is a block of a cycle's contour.
     pub(crate) contour: bool,
+    /// N of the source, where the block is reached again, or called, and has lost it.
+    pub(crate) number: Option<u32>,
+    /// So many values had been assigned before it was read.
+    pub(crate) assigned: u32,
 }
 
 impl From {
@@ -42,6 +46,8 @@ impl From {
             line: u32::try_from(block.line).unwrap_or(u32::MAX),
             exact: true,
             contour: false,
+            number: None,
+            assigned: 0,
         }
     }
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use diagnostic::{Text, both};
+use nc_syntax::Span;
 use nc_syntax::dialect::{Action, Dialect, Macros};
 
 use crate::evaluate::{Rules, Variables, number};
@@ -44,6 +45,8 @@ pub(crate) struct Run<'a, 'e> {
     pub(crate) at: Place,
     pub(crate) previous: Option<Place>,
     steps: u64,
+    /// Values that were assigned.
+    assigned: u32,
     most_bytes: u64,
     pub(crate) inch: bool,
     pub(crate) cycle: bool,
@@ -96,6 +99,7 @@ pub(crate) fn run<'a, 'e>(
         at: Place { file: 0, statement: 0 },
         previous: None,
         steps: 0,
+        assigned: 0,
         most_bytes: environment.limits.output_bytes.saturating_add(3 * text.len() as u64),
         inch,
         cycle: false,
@@ -270,6 +274,8 @@ impl<'a> Run<'a, '_> {
             line: statement.line,
             exact: true,
             contour: self.in_routine(),
+            number: None,
+            assigned: self.assigned,
         }
     }
 
@@ -315,7 +321,7 @@ impl<'a> Run<'a, '_> {
             None => self.out.text(bytes, from),
             Some(number) => {
                 let rest = [&bytes[..number.start as usize], &bytes[number.end as usize..]].concat();
-                self.out.write(&rest, from);
+                self.out.write(&rest, From { number: lost_number(bytes, number), ..from });
             }
         }
     }
@@ -370,10 +376,13 @@ impl<'a> Run<'a, '_> {
         let shown = shown.strip_suffix(b";").unwrap_or(shown);
         if complex.has_words {
             let base: &[u8] = complex.residual.as_deref().unwrap_or(bytes);
-            let text = self.edited(statement, complex, base, again || !self.frames.is_empty())?;
+            let stripped = again || !self.frames.is_empty();
+            let text = self.edited(statement, complex, base, stripped)?;
+            let number =
+                statement.flags.number.filter(|_| stripped).and_then(|number| lost_number(bytes, number));
             self.join(place);
             self.out.comment(shown, from);
-            self.out.write(&text, from);
+            self.out.write(&text, From { number, ..from });
         } else if !again {
             self.join(place);
             self.out.comment(shown, from);
@@ -551,6 +560,7 @@ impl<'a> Run<'a, '_> {
                 v,
             )));
         }
+        self.assigned = self.assigned.saturating_add(1);
         // A variable that does not exist is found out by reading it.
         self.store.value(variable).map_err(Stop::Fault)?;
         if let Variable::Named(id) = variable
@@ -637,4 +647,9 @@ impl<'a> Run<'a, '_> {
         self.store.learn(&self.names);
         self.sources.len() - 1
     }
+}
+
+/// The number of an N word that is left out.
+fn lost_number(bytes: &[u8], word: Span) -> Option<u32> {
+    std::str::from_utf8(bytes.get(word.start as usize + 1..word.end as usize)?).ok()?.trim().parse().ok()
 }

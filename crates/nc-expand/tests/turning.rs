@@ -147,6 +147,29 @@ fn roughing_goes_down_to_the_contour_and_finishing_makes_it() {
     assert_eq!(lines(&dialect("C"), &program), wanted);
 }
 
+/// A contour that is reached more than once: each cycle takes the one of its own turn.
+#[test]
+fn a_contour_in_a_loop_is_that_of_the_turn() {
+    let lathe = dialect("A");
+    let turn = |x: &str| {
+        format!(
+            "G0 X60. Z2.\nG71 U8. R1.\nG71 P10 Q20 U0.4 W0.2 F0.3\nN10 G0 X{x}\nG1 Z-10. F0.1\nX40.\nN20 Z-30.\n\
+             G70 P10 Q20\n"
+        )
+    };
+    let once = |x: &str| lines(&lathe, &turn(x));
+    let looped = format!("#1=0\nWHILE[#1LT2]DO1\n{}#1=#1+1\nEND1\n", turn("[20.+#1*4.]"));
+    let moves =
+        |lines: Vec<String>| lines.into_iter().filter(|line| line.contains(['X', 'Z'])).collect::<Vec<_>>();
+    let turns = [once("20."), once("24.")].concat();
+    let bare = |lines: Vec<String>| {
+        moves(lines).into_iter().map(|line| line.replace("N10 ", "").replace("N20 ", ""))
+    };
+    assert_eq!(bare(lines(&lathe, &looped)).collect::<Vec<_>>(), bare(turns).collect::<Vec<_>>());
+    let called = format!("M98 P1000\nM30\nO1000\n{}M99\n", turn("20."));
+    assert_eq!(bare(lines(&lathe, &called)).collect::<Vec<_>>(), bare(once("20.")).collect::<Vec<_>>());
+}
+
 /// Programs of schools and shops: a work offset in the block of the start, the block of P names both axes, the nose is
 /// compensated in the contour, which ends with rapids; eight decimals.
 #[test]
@@ -175,6 +198,13 @@ fn a_contour_as_it_is_posted_is_roughed_and_finished() {
         "G40 Z2.",
     ];
     assert_eq!(lines(&lathe, &program), wanted);
+    // Finishing would read the contour once more, with the value of then.
+    let anew = contour.replace("X20. ", "X#2 ");
+    let anew = format!(
+        "#2=20.\nG55 G0 X60. Z2.\nG71 U20. R1.\nG71 P10 Q20 U0.4 W0.2 F0.3\n{anew}#2=19.\nG70 P10 Q20\n"
+    );
+    assert!(refused(&lathe, &anew).1.contains("assigned anew"));
+    assert_eq!(lines(&lathe, &anew.replace("#2=19.\n", "")).len(), wanted.len());
     // A finishing that never comes, or one that leaves compensation in force.
     let unfinished = program.replace("G70 P10 Q20\n", "");
     assert_eq!(refused(&lathe, &unfinished).0, 144);

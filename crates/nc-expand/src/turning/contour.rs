@@ -3,14 +3,14 @@
 use std::ops::RangeInclusive;
 
 use diagnostic::{Text, both};
-use nc_syntax::dialect::Action;
+use nc_syntax::dialect::{Action, TurningCycle};
 use nc_syntax::{ItemKind, Span, Value};
 use units::math;
 
 use super::drawing::{self, Drawing};
 use super::emit::Code;
 use super::place::may_stand_beside;
-use super::{Spot, Writer};
+use super::{Spot, Writer, cycle_of};
 use crate::codes;
 use crate::lowering::{Came, Fault, Held};
 use crate::shorthand::Words;
@@ -185,10 +185,11 @@ impl Way {
 }
 
 impl Writer<'_, '_, '_> {
-    /// Reads the contour between the blocks that P and Q of a cycle name, from where the tool stands.
-    pub(super) fn contour(&mut self, words: &Words<'_, '_>, start: Spot) -> Result<Contour, Fault> {
-        let first = self.numbered(words, b'P')?;
-        let last = self.numbered(words, b'Q')?;
+    /// Reads the contour between the blocks that P and Q of the cycle in a block name, from where the tool stands.
+    pub(super) fn contour(&mut self, cycle: usize, start: Spot) -> Result<Contour, Fault> {
+        let words = &self.words(cycle);
+        let first = self.numbered(cycle, b'P')?;
+        let last = self.numbered(cycle, b'Q')?;
         if last < first {
             let span = words.number(b'Q').map_or_else(|| words.whole(), |(_, span)| span);
             return Err(words.contour_fault(
@@ -321,9 +322,9 @@ impl Writer<'_, '_, '_> {
         Ok(drawn)
     }
 
-    /// The only block whose N is the number of P or Q.
-    pub(super) fn numbered(&self, words: &Words<'_, '_>, letter: u8) -> Result<usize, Fault> {
-        let name = letter as char;
+    /// The block whose N is the number of P or Q of the cycle in a block: the only one of the source.
+    pub(super) fn numbered(&self, cycle: usize, letter: u8) -> Result<usize, Fault> {
+        let (words, name) = (&self.words(cycle), letter as char);
         let Some((number, span)) = words.number(letter) else {
             let message = both!("a cycle without {name}", "цикл без {name}");
             return Err(words.contour_fault(
@@ -333,13 +334,23 @@ impl Writer<'_, '_, '_> {
             ));
         };
         let is_it = |index: &usize| {
-            let n = self.words(*index).number(b'N');
-            n.is_some_and(|(n, _)| n.integer() == number.integer() && number.integer().is_some())
+            let block = self.words(*index);
+            let n = block.number(b'N').map_or(block.from.number.map(i64::from), |(n, _)| n.integer());
+            n.is_some() && n == number.integer()
         };
-        let mut found = (0..self.blocks.len()).filter(is_it);
-        match (found.next(), found.next()) {
-            (Some(only), None) => Ok(only),
-            (None, _) => {
+        let found: Vec<usize> = (0..self.blocks.len()).filter(is_it).collect();
+        let place = |index: usize| (self.blocks[index].from.file, self.blocks[index].from.offset);
+        let one_place = found.windows(2).all(|pair| place(pair[0]) == place(pair[1]));
+        let finishes = cycle_of(words).is_some_and(|(cycle, _)| cycle == TurningCycle::Finish);
+        // Of a block that is reached more than once roughing means the next time, finishing the last one.
+        let nearest = if finishes {
+            found.iter().rfind(|index| **index < cycle).or(found.first())
+        } else {
+            found.iter().find(|index| **index > cycle).or(found.last())
+        };
+        match (nearest.filter(|_| one_place), found.first()) {
+            (Some(nearest), _) => Ok(*nearest),
+            (None, None) => {
                 let message = both!(
                     "no block N{} for {name} of the cycle",
                     "нет кадра N{} для {name} цикла",
@@ -351,7 +362,7 @@ impl Writer<'_, '_, '_> {
                     both!("this program has none", "в этой программе его нет"),
                 ))
             }
-            (Some(_), Some(_)) => {
+            (None, Some(_)) => {
                 let message = both!(
                     "two blocks N{} for {name} of the cycle",
                     "два кадра N{} для {name} цикла",

@@ -19,7 +19,7 @@ use nc_syntax::{ItemKind, Span};
 use super::contour::{Axis, Contour, Piece, Point};
 use super::emit::{Code, Moves};
 use super::{MILLION, Spot, Writer, cycle_of};
-use crate::lowering::Fault;
+use crate::lowering::{Fault, Held};
 use crate::shorthand::{Words, shown};
 
 /// Passes of one cycle; more are a wrong depth.
@@ -74,7 +74,7 @@ impl Writer<'_, '_, '_> {
             return Ok(at + 1);
         }
         let start = self.standing(&words, span)?;
-        let contour = self.contour(&words, start)?;
+        let contour = self.contour(at, start)?;
         let between = at + 1..contour.first;
         if contour.first < at || between.into_iter().any(|index| self.words(index).block.acts()) {
             return Err(words.contour_fault(
@@ -128,7 +128,7 @@ impl Writer<'_, '_, '_> {
         (contour.last + 1..self.blocks.len()).any(|index| {
             let words = self.words(index);
             let is_finish = cycle_of(&words).is_some_and(|(cycle, _)| cycle == TurningCycle::Finish);
-            is_finish && self.numbered(&words, b'P').is_ok_and(|first| first == contour.first)
+            is_finish && self.numbered(index, b'P').is_ok_and(|first| first == contour.first)
         })
     }
 
@@ -380,7 +380,7 @@ impl Writer<'_, '_, '_> {
     pub(super) fn finish(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
         let start = self.standing(&words, span)?;
-        let contour = self.contour(&words, start)?;
+        let contour = self.contour(at, start)?;
         let next = (at + 1..self.blocks.len()).find(|index| self.words(*index).block.acts());
         if (contour.first..=contour.last).contains(&at) || next == Some(contour.first) {
             return Err(words.contour_fault(
@@ -392,6 +392,19 @@ impl Writer<'_, '_, '_> {
                 both!(
                     "whether the control makes it once more is not certain",
                     "пройдёт ли стойка его ещё раз, неясно"
+                ),
+            ));
+        }
+        let stale = |held: &&Held| !held.from.exact && held.from.assigned != words.from.assigned;
+        if let Some(held) = contour.blocks.iter().find(stale) {
+            let came = held.came();
+            let block = Words::of(&came, self.dialect);
+            return Err(block.contour_fault(
+                block.whole(),
+                both!("a contour with values that are assigned anew", "контур, значения которого присвоены заново"),
+                both!(
+                    "finishing reads it once more, with the values of then: here it stands with those of before",
+                    "чистовая обработка прочтёт его ещё раз, с новыми значениями; здесь стоят прежние"
                 ),
             ));
         }
