@@ -5,7 +5,7 @@ use crate::common::{messages, run};
 /// X too long by 200 µm a metre, Z leaning, a table whose axis stands 203.5 µm off.
 const MACHINE: &str = r#"format = 1
 name = "shop"
-control = "fanuc"
+control = { dialect = "fanuc", blending = { mode = "exact-stop" } }
 chain = "[w C b X Y Z t]"
 axis.X = { travel_mm = [-500, 500], errors = "x.csv" }
 axis.Y = { travel_mm = [-500, 500] }

@@ -65,6 +65,7 @@ mod one_block;
 mod options;
 mod orientation;
 mod pairs;
+mod path_control;
 mod points;
 mod profile_new;
 mod real_machines;

@@ -222,6 +222,7 @@ fn budget_page(options: &Options) -> anyhow::Result<String> {
             orientation_rad: profile.correction.orientation_urad * 1e-6,
             orientation: correction::Orientation::Tip,
         },
+        blending_mm: None,
         decimals_mm: [3; 3],
         force: false,
         provenance: "BENCHMARK",

@@ -158,6 +158,7 @@ fn corrected(
             orientation_rad: profile.correction.orientation_urad * 1e-6,
             orientation: correction::Orientation::Tip,
         },
+        blending_mm: None,
         decimals_mm: [3; 3],
         force: false,
         provenance: "",

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::message::Failure;
 use crate::settings::Settings;
-use crate::summary::{DatumUsed, json, um};
+use crate::summary::{DatumUsed, control_um, json, um};
 use crate::{datums, expand};
 
 /// The JSON of `vpost check --json`.
@@ -37,6 +37,8 @@ pub struct Outcome {
     pub deviation_after_um: f64,
     /// Where.
     pub deviation_after_line: u64,
+    /// How far the control leaves the corrected path at corners; `null`: not known.
+    pub control_um: Option<f64>,
     /// How far the tool leans at most, on a machine that turns it, by the program as posted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tilt_before_urad: Option<f64>,
@@ -57,7 +59,7 @@ pub struct Outcome {
     pub accepted_lines: Option<usize>,
     /// The same in words.
     #[serde(skip)]
-    pub counted_from: Vec<Text>,
+    pub said: Vec<Text>,
     /// What is wrong.
     #[serde(serialize_with = "in_english")]
     pub findings: Vec<Text>,
@@ -67,7 +69,7 @@ impl Outcome {
     /// What a comparison says.
     #[must_use]
     pub fn new(settings: &Settings, checked: &Checked) -> Self {
-        let Checked { comparison, datums, accepted, findings } = checked;
+        let Checked { comparison, datums, accepted, control, findings } = checked;
         let [before, after] = [comparison.leans_before, comparison.leans_after];
         let leans = before.largest_rad > 0.0 || after.largest_rad > 0.0;
         let urad = |lean: Lean| leans.then(|| (lean.largest_rad * 1e9).round() / 1e3);
@@ -88,7 +90,8 @@ impl Outcome {
             deviation_after_um: um(comparison.after.largest_mm),
             deviation_after_line: comparison.after.line,
             accepted_lines: Some(*accepted).filter(|lines| *lines > 0),
-            counted_from: datums::said(datums),
+            control_um: control_um(control),
+            said: datums::said(datums).into_iter().chain(control.said()).collect(),
             datums: DatumUsed::all(datums),
             findings: findings.clone(),
         }
@@ -129,7 +132,7 @@ impl Outcome {
                 self.tolerance_um
             ));
         }
-        for sentence in &self.counted_from {
+        for sentence in &self.said {
             text.push(&both!("{sentence}\n", "{sentence:#}\n"));
         }
         for finding in &self.findings {

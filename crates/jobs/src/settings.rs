@@ -216,6 +216,7 @@ impl Settings {
             force,
             provenance,
             guards: self.guards,
+            blending_mm: self.profile.blending_mm,
         })
     }
 }

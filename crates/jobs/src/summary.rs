@@ -3,7 +3,7 @@
 use diagnostic::{Text, both};
 use serde::Serialize;
 
-use rewrite::{Datum, Digest, Figures};
+use rewrite::{ControlPart, Datum, Digest, Figures};
 
 use crate::correct::Program;
 use crate::datums;
@@ -31,6 +31,7 @@ pub struct Summary<'a> {
     deviation_before_line: u64,
     deviation_after_um: f64,
     deviation_after_line: u64,
+    control_um: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     tilt_urad: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -122,6 +123,12 @@ pub fn um(mm: f64) -> f64 {
     (mm * 1e6).round() / 1e3
 }
 
+/// How far the control leaves the path at corners; `None`: not known.
+#[must_use]
+pub fn control_um(control: &ControlPart) -> Option<f64> {
+    Some(um(control.off_mm().unwrap_or_default())).filter(|um| um.is_finite())
+}
+
 /// Plain values as JSON text, one trailing line end.
 #[must_use]
 pub fn json(values: &impl Serialize) -> Vec<u8> {
@@ -179,6 +186,7 @@ impl<'a> Summary<'a> {
             deviation_before_line: figures.before.1,
             deviation_after_um: um(figures.after.0),
             deviation_after_line: figures.after.1,
+            control_um: control_um(&figures.control),
             tilt_urad: tilt(figures).map(|(rad, _)| urad(rad)),
             tilt_line: tilt(figures).map(|(_, line)| line),
             orientation: settings
@@ -237,7 +245,7 @@ impl<'a> Summary<'a> {
             }
         });
         let mut rest = tilt;
-        for sentence in datums::said(&figures.datums) {
+        for sentence in datums::said(&figures.datums).into_iter().chain(figures.control.said()) {
             rest.push(&both!("; {sentence}", "; {sentence:#}"));
         }
         both!(

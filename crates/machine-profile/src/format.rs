@@ -18,9 +18,9 @@ pub(crate) struct Document {
     pub(crate) format: Spanned<i64>,
     /// Name of the machine.
     pub(crate) name: String,
-    /// The control's dialect: a file in grammars/.
-    #[schemars(with = "Option<String>")]
-    pub(crate) control: Option<Spanned<String>>,
+    /// The control's dialect: a file in grammars/; or that and what the control adds to the path.
+    #[schemars(with = "Option<Control>")]
+    pub(crate) control: Option<Spanned<Control>>,
     /// Axes from workpiece to tool, like "[w X Y b Z t]"; of a lathe, S its spindle, like "[w S b Z X t]".
     #[schemars(with = "String")]
     pub(crate) chain: Spanned<String>,
@@ -85,6 +85,42 @@ pub(crate) struct Document {
     /// The measuring frame against the machine frame.
     #[serde(default)]
     pub(crate) setup: Setup,
+}
+
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(
+    untagged,
+    expecting = "expected a dialect like \"fanuc\", or { dialect = \"fanuc\", blending = { mode = \"tolerance\", tolerance_mm = 0.005 } } with the mode \"exact-stop\", \"tolerance\" or \"unlimited\""
+)]
+pub(crate) enum Control {
+    Dialect(String),
+    More(ControlRules),
+}
+
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ControlRules {
+    /// The control's dialect: a file in grammars/.
+    pub(crate) dialect: Option<String>,
+    /// What the control does at corners where the program does not say how near it keeps to the path.
+    pub(crate) blending: Option<Blending>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Blending {
+    pub(crate) mode: BlendingMode,
+    /// Largest distance from the path under "tolerance", mm.
+    pub(crate) tolerance_mm: Option<Finite>,
+}
+
+/// It stops at each, or keeps within a tolerance, or nobody knows.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum BlendingMode {
+    ExactStop,
+    Tolerance,
+    Unlimited,
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]

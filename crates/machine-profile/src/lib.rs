@@ -3,6 +3,7 @@
 //! The format is the contract's `format = 1`. Files are read by a function the caller gives; errors know
 //! the file and the bytes they speak of. What a column or key means is said where it is read: [`load`].
 
+mod control;
 mod doubts;
 mod effects;
 mod error;

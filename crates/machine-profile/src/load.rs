@@ -118,6 +118,7 @@ impl Loader<'_> {
             InterpolationName::Linear => Interpolation::Linear,
             InterpolationName::Monotone => Interpolation::Monotone,
         };
+        let control = self.control(document.control.as_ref());
         let calibrated = document.calibrated.as_ref().map(|c| self.calibrated(c));
         let mut rows: [Option<ErrorRows>; 3] = [None, None, None];
         let mut resolution_mm = [0.001; 3];
@@ -187,7 +188,8 @@ impl Loader<'_> {
         Some(Profile {
             name: document.name,
             control_at: document.control.as_ref().map(|control| span(&control.span())),
-            control: document.control.map(Spanned::into_inner),
+            control: control.dialect,
+            blending_mm: control.blending_mm,
             calibrated,
             description,
             resolution_mm,

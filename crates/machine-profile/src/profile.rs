@@ -238,6 +238,8 @@ pub struct Profile {
     pub name: String,
     /// The control's dialect.
     pub control: Option<String>,
+    /// How far the control leaves the path at corners where a program does not say, mm: 0 where it stops at each; `None`: not known.
+    pub blending_mm: Option<f64>,
     /// The bytes of the profile that say it.
     pub control_at: Option<std::ops::Range<u64>>,
     /// Calibration record.

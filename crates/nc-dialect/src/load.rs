@@ -10,6 +10,7 @@ use nc_syntax::dialect::{
     Macros, Numbers, OffsetL20, Output, Paren, PointFree, RotaryFeed, Semicolon, System, Turning,
     TurningParameters,
 };
+use nc_syntax::path_control::{Keeps, PathCode, PathKey};
 use toml::Spanned;
 
 use crate::action::{ACTION_NAMES, action_named, nearest};
@@ -54,6 +55,7 @@ pub fn load(name: &str, text: &str) -> Result<Dialect, Vec<Diagnostic>> {
     let codes = g_codes(&grammar.codes, &mut wrong);
     let m_codes = unique(m_codes, |entry| entry.number, &mut wrong);
     let commands = unique(commands, |entry| entry.name.clone(), &mut wrong);
+    let path_control = path_control(&grammar.path_control, &mut wrong);
     let lathe = grammar.lathe.iter().filter_map(|row| lathe(row, &mut wrong)).collect();
     let initial = checks::start_codes(&grammar.start.codes, &codes, &mut wrong);
     let turning = grammar.turning.as_ref().map(|rules| turning(rules, &codes, &initial, &mut wrong));
@@ -63,7 +65,7 @@ pub fn load(name: &str, text: &str) -> Result<Dialect, Vec<Diagnostic>> {
         wrong.sort_by_key(|diagnostic| diagnostic.span.as_ref().map_or(0, |span| span.start));
         return Err(wrong);
     }
-    let rows = Rows { codes, m_codes, commands, lathe, turning };
+    let rows = Rows { codes, m_codes, commands, path_control, lathe, turning };
     Ok(dialect(name, grammar, rows, initial))
 }
 
@@ -82,6 +84,44 @@ fn g_codes(table: &BTreeMap<Spanned<String>, CodeRow>, wrong: &mut Vec<Diagnosti
         }
     }
     unique(codes, |entry| entry.code, wrong)
+}
+
+/// How near the control keeps to the path.
+fn path_control(
+    table: &BTreeMap<Spanned<String>, Spanned<String>>,
+    wrong: &mut Vec<Diagnostic>,
+) -> Vec<PathCode> {
+    let mut rows = Vec::new();
+    for (key, value) in table {
+        let key = match number_behind(key.get_ref(), 'G').and_then(tenths) {
+            Some(code) => PathKey::Code(GCode(code)),
+            None => PathKey::Command(key.get_ref().clone()),
+        };
+        let keeps = match (value.get_ref().as_str(), value.get_ref().as_bytes()) {
+            ("exact", _) => Keeps::Exact,
+            ("unstated", _) => Keeps::Unstated,
+            ("argument", _) => Keeps::Argument,
+            (_, [first, ..]) if value.get_ref().len() <= 2 && first.is_ascii_uppercase() => {
+                Keeps::Words(value.get_ref().as_bytes().to_vec())
+            }
+            (other, _) => {
+                let message =
+                    both!("`{other}` says nothing of the path", "`{other}` ничего не говорит о траектории");
+                let expected = both!(
+                    "expected \"exact\", \"unstated\", \"argument\", or the letter of the word that says how far, like \"P\"",
+                    "ожидалось \"exact\", \"unstated\", \"argument\" или буква слова, которое задаёт отклонение, например \"P\""
+                );
+                let help = both!(
+                    "docs/dialects.md lists every field of a grammar",
+                    "все поля таблицы диалекта описаны в docs/dialects.md"
+                );
+                wrong.push(Diagnostic::error(Code(804), message).at(wide(value.span()), expected).help(help));
+                continue;
+            }
+        };
+        rows.push(PathCode { key, keeps });
+    }
+    rows
 }
 
 /// What a lathe's programs have; the table's own codes are a system too, where it has a name.
@@ -135,6 +175,7 @@ struct Rows {
     codes: Vec<CodeEntry>,
     m_codes: Vec<MCode>,
     commands: Vec<Command>,
+    path_control: Vec<PathCode>,
     lathe: Vec<LatheSign>,
     turning: Option<Turning>,
 }
@@ -155,7 +196,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
         start,
         ..
     } = grammar;
-    let Rows { codes, m_codes, commands, lathe, turning } = rows;
+    let Rows { codes, m_codes, commands, path_control, lathe, turning } = rows;
     let mut letters = text.letters.into_inner().into_bytes();
     letters.sort_unstable();
     let called = commands.iter().any(|command| matches!(command.action, Some(Action::Called(_))));
@@ -202,6 +243,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
         m_codes,
         commands,
         initial,
+        path_control,
         unit_is_kept: start.unit == StartUnit::Kept,
         lathe,
         turning,

@@ -29,6 +29,9 @@ pub(crate) struct Grammar {
     pub(crate) m_codes: BTreeMap<Spanned<String>, MRow>,
     #[serde(default)]
     pub(crate) commands: BTreeMap<Spanned<String>, CommandRow>,
+    /// Codes and commands that say how near the control keeps to the path.
+    #[serde(default)]
+    pub(crate) path_control: BTreeMap<Spanned<String>, Spanned<String>>,
     #[serde(default)]
     pub(crate) lathe: Vec<LatheRow>,
     pub(crate) turning: Option<TurningRules>,

@@ -62,6 +62,7 @@ pub(crate) fn merge(words: &Words<'_, '_, '_>, aside: &Aside, executed: &Modal) 
     both.speed_limited = executed.speed_limited && skipped.speed_limited;
     both.edge_unsaid = executed.edge_unsaid || skipped.edge_unsaid;
     both.last_feed = executed.last_feed.either(skipped.last_feed);
+    both.path_control = executed.path_control.either(skipped.path_control);
     both.feed = executed.feed.filter(|feed| skipped.feed == Some(*feed));
     if executed.curve_leaves_mm != skipped.curve_leaves_mm {
         both.curve_leaves_mm = None;

@@ -18,6 +18,7 @@ use crate::modal::{
 use crate::motion::{self, Moved};
 use crate::naming;
 use crate::offset::{self, Offset};
+use crate::path_control;
 use crate::plain::Plain;
 use crate::settings::{self, Environment, Owner};
 use crate::setup::{AfterChange, Setup};
@@ -138,6 +139,7 @@ impl<'d> Interpreter<'d> {
             arc_centres: ArcCentres::Incremental,
             compensation: Compensation::Off,
             offset: Offset::default(),
+            path_control: path_control::at_start(dialect),
             return_level: if dialect.codes.iter().any(|entry| entry.action == Action::ReturnR) {
                 ReturnLevel::Unsaid
             } else {

@@ -177,6 +177,22 @@ impl Compensation {
     }
 }
 
+/// How far the control may leave the path by itself, and which block said so.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathControl {
+    /// At most so far, mm; infinite where parameters, speed and acceleration decide.
+    pub off_mm: f64,
+    /// Line of the block; `None`: as the control starts.
+    pub line: Option<u64>,
+}
+
+impl PathControl {
+    /// The looser of both.
+    pub(crate) fn either(self, other: Self) -> Self {
+        if other.off_mm > self.off_mm { other } else { self }
+    }
+}
+
 /// Where a drilling cycle ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReturnLevel {
@@ -484,6 +500,8 @@ pub struct Modal {
     pub compensation: Compensation,
     /// How far cutter compensation is with its motions.
     pub offset: Offset,
+    /// G61 G64.
+    pub path_control: PathControl,
     /// G98 G99.
     pub return_level: ReturnLevel,
     /// G43 G44 G49.

@@ -13,7 +13,7 @@ use crate::modal::{
 use crate::setup::Setup;
 use crate::tool_length::{self, Length};
 use crate::words::{LINEAR_LETTERS, Outcome, Words};
-use crate::{frames, swivel, tilted, tip, transform::Transform};
+use crate::{frames, path_control, swivel, tilted, tip, transform::Transform};
 use nc_syntax::Letters;
 
 /// What a program is read against.
@@ -224,6 +224,9 @@ pub(crate) fn apply<'d>(
                 .refuse(codes::REFUSED_CODE, message, span, both!("not understood", "не исполняется"))
                 .help(help.clone()));
         }
+    }
+    if let Some(said) = path_control::said(env.dialect, words, state.units) {
+        state.path_control = said;
     }
     // T, H and D are arguments of what is called.
     if words.codes.iter().any(|row| row.entry.action == Action::Call) {

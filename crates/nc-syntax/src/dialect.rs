@@ -6,6 +6,7 @@ use diagnostic::Text;
 use units::decimal::Decimal;
 
 pub use crate::code::{GCode, MOTION_GROUP};
+use crate::path_control::PathCode;
 use crate::{Letters, Number};
 
 /// What `( )` means.
@@ -1132,6 +1133,8 @@ pub struct Dialect {
     pub commands: Vec<Command>,
     /// State at the start of a program: codes as if they stood in a first block.
     pub initial: Vec<GCode>,
+    /// Modes by which the control keeps near the path, or leaves it.
+    pub path_control: Vec<PathCode>,
     /// The unit of the program before may still be in force at the start: one that states none is doubtful.
     pub unit_is_kept: bool,
     /// Blocks by which a program of a lathe is known.

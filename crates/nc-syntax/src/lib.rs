@@ -17,6 +17,7 @@ mod invalid;
 mod letters;
 mod lexer;
 mod number;
+pub mod path_control;
 mod plain;
 mod reader;
 mod value;

@@ -13,6 +13,7 @@ use nc_expand::Expanded;
 use nc_program::Context;
 use path_comparison::{Comparison, Course, Mismatch, Traces, What, compare};
 
+use crate::control::ControlPart;
 use crate::datum::Datum;
 use crate::job::{Corrected, Guards, Job};
 use crate::whole::pass;
@@ -28,6 +29,8 @@ pub struct Checked {
     pub datums: Vec<Datum>,
     /// Lines that cannot be held within the tolerance, and were held against what the correction proves of them instead.
     pub accepted: usize,
+    /// What the control adds to the path of the second program.
+    pub control: ControlPart,
     /// What differs, a sentence each; none where the program passes.
     pub findings: Vec<Text>,
 }
@@ -102,11 +105,11 @@ fn check_within(
             }
         }
         let may_skip = steps.iter().any(|program| program.may_skip);
-        let [Program { datums, unsaid: here, .. }, Program { unsaid: there, .. }] = steps;
-        Ok((comparison, numbers.into_inner(), datums, may_skip, there.beside(&here)))
+        let [Program { datums, unsaid: here, .. }, Program { unsaid: there, control, .. }] = steps;
+        Ok((comparison, numbers.into_inner(), datums, control, may_skip, there.beside(&here)))
     };
     let compared = |optional: Optional, traces: Traces| {
-        let (mut comparison, mut numbers, datums, may_skip, unsaid) = run(optional, traces, 1.0)?;
+        let (mut comparison, mut numbers, datums, control, may_skip, unsaid) = run(optional, traces, 1.0)?;
         for wider in WIDER.into_iter().take_while(|_| strays(&comparison)) {
             let kept = if traces == Traces::Forgotten { Traces::Kept } else { traces };
             let (measured, named, ..) = run(optional, kept, wider)?;
@@ -117,7 +120,7 @@ fn check_within(
         }
         let mut findings = findings::of(&comparison, &numbers);
         findings.extend(unsaid);
-        Ok((Checked { comparison, datums, accepted: accepted.len(), findings }, may_skip))
+        Ok((Checked { comparison, datums, accepted: accepted.len(), control, findings }, may_skip))
     };
     let (mut executed, may_skip) = compared(Optional::Executed, traces)?;
     if may_skip {

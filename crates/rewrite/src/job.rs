@@ -6,6 +6,7 @@ use machine_model::{Models, PathModel};
 use nc_program::{Evidence, Setup};
 use nc_syntax::Dialect;
 
+use crate::control::ControlPart;
 use crate::datum::{Datum, Datums};
 
 /// Feed motion, or what would correct it, lies outside the calibrated volume.
@@ -56,6 +57,8 @@ pub const TOUCHED_OUTSIDE: Code = Code(522);
 pub const TOUCHED_BY_GUESS: Code = Code(523);
 /// Motions that cannot be held within the tolerance, and are written all the same.
 pub const ACCEPTED: Code = Code(528);
+/// The control may leave the path by more than the tolerance, or by an unknown amount.
+pub const CONTROL_LEAVES: Code = Code(529);
 /// Tools cut without a length in force.
 pub const WITHOUT_LENGTH: Code = Code(527);
 /// Lost motion moves the tool sideways where an axis turns, by more than can be hidden.
@@ -93,6 +96,8 @@ pub struct Job<'a> {
     pub provenance: &'a str,
     /// Whether the output asks the control for what it was corrected for.
     pub guards: Guards,
+    /// How far the control leaves the path where a program does not say, mm; `None`: not known.
+    pub blending_mm: Option<f64>,
 }
 
 impl<'a> Job<'a> {
@@ -127,6 +132,8 @@ pub struct Figures {
     pub approaches: u64,
     /// Motions that cannot be held within the tolerance: line, and what is proven instead, mm.
     pub accepted: Vec<(u64, f64)>,
+    /// What the control adds to the path.
+    pub control: ControlPart,
     /// Touched zeros that were used, in the order of the program; one whose tools differ comes once with each.
     pub datums: Vec<Datum>,
     /// What the user should know.

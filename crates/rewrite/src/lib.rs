@@ -28,6 +28,7 @@
 //!     force: false,
 //!     provenance: "AN EXAMPLE",
 //!     guards: Guards::None,
+//!     blending_mm: Some(0.0),
 //! };
 //! let posted = b"G21 G90 G54\nG0 X10. Y10. Z30.\nG1 X90. F500.\nM30\n";
 //! let corrected = correct::<Vec<diagnostic::Diagnostic>>(posted, &job, |_| Ok(())).expect("inside the volume");
@@ -37,6 +38,7 @@
 
 mod check;
 mod chunks;
+mod control;
 mod curves;
 mod cutter;
 mod datum;
@@ -58,6 +60,7 @@ mod whole;
 mod words;
 
 pub use check::{Checked, Unreadable, check, courses};
+pub use control::ControlPart;
 pub use datum::{Datum, Datums, Touch, TouchTool, Touches, Zero};
 pub use job::*;
 pub use large::{Digest, Large, LargeEnd, Manner, Part, Source};

@@ -370,6 +370,9 @@ impl Pass<'_> {
         if cuts {
             self.tally.lengthless.cut(self.job, self.state.interpreter.modal(), &span, line);
         }
+        if motions.iter().any(|motion| matches!(motion, Motion::Feed(_))) {
+            self.tally.figures.control.cut(self.job, self.state.interpreter.modal(), (&span, line));
+        }
         let Tally { figures, notices, .. } = &mut self.tally;
         for (motion, correction) in motions.iter().zip(corrections) {
             figures.raise(correction, line);

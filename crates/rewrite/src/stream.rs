@@ -413,9 +413,8 @@ mod tests {
             Err(_) => panic!("neither corrected nor refused"),
         };
         sink.finish(|| Ok(text)).unwrap();
-        let mut figures = tally.figures;
-        figures.warnings =
-            tally.notices.warnings(&figures.held).into_iter().map(|(warning, _)| warning).collect();
+        let warnings = tally.warnings(job).into_iter().map(|(warning, _)| warning).collect();
+        let figures = Figures { warnings, ..tally.figures };
         Ok((out, figures))
     }
 
@@ -447,6 +446,7 @@ mod tests {
                 models: machine_model::Models { axes: &engine, tip: None },
                 datums: &crate::datum::Datums::touched(Default::default()),
                 options: Options { tolerance_mm: 1e-3, accept_mm: 0.0, outside: Outside::Clamp, minimum_segment_mm: 0.0, orientation_rad: 5e-5, orientation: correction::Orientation::Tip },
+                blending_mm: None,
                 decimals_mm: [3; 3],
                 rotary_steps: [(3, 1); 3],
                 force: true,

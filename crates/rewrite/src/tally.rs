@@ -34,6 +34,7 @@ impl Tally {
         raise(&mut figures.tilt, more.tilt);
         raise(&mut figures.tilt_before, more.tilt_before);
         figures.held.add(&more.held);
+        figures.control.add(&more.control);
         figures.accepted.extend(&more.accepted);
         more.datums.iter().for_each(|datum| figures.see(datum));
         self.notices.add(&later.notices);
@@ -47,6 +48,7 @@ impl Tally {
     pub(crate) fn warnings(&self, job: &Job<'_>) -> Vec<Warning> {
         let mut warnings = self.notices.warnings(&self.figures.held);
         warnings.extend(self.lengthless.warning(job));
+        warnings.extend(self.figures.control.warning(job));
         warnings
     }
 

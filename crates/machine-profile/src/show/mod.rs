@@ -45,6 +45,16 @@ impl Profile {
         if let Some(control) = &self.control {
             tell!(out, language, "control      {control}", "ЧПУ          {control}")?;
         }
+        match self.blending_mm {
+            None => {}
+            Some(0.0) => tell!(out, language, "corners      exact stop", "углы         точный останов")?,
+            Some(mm) => tell!(
+                out,
+                language,
+                "corners      the control keeps within {mm} mm of the path",
+                "углы         стойка держит траекторию в пределах {mm} мм"
+            )?,
+        }
         self.write_chain(out, language)?;
         self.write_calibration(out, language)?;
         self.write_linear_axes(out, language)?;

@@ -30,6 +30,7 @@ pub(crate) fn dialect() -> Dialect {
         m_codes: Vec::new(),
         commands: Vec::new(),
         initial: Vec::new(),
+        path_control: Vec::new(),
         unit_is_kept: false,
         lathe: Vec::new(),
         turning: None,

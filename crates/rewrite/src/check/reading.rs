@@ -15,6 +15,7 @@ use smallvec::SmallVec;
 use toolpath::{CycleKind, Division, Feed, FeedRate, Motion, Position, Shape};
 
 use super::unsaid::Unsaid;
+use crate::control::ControlPart;
 use crate::datum::{Datum, LastDatum, going_on};
 use crate::feed::minutes;
 use crate::job::Job;
@@ -91,6 +92,8 @@ pub(super) struct Program<'a, 'n> {
     placed: Option<Placement>,
     /// Touched zeros in which something was cut.
     pub(super) datums: Vec<Datum>,
+    /// What the control adds to the path.
+    pub(super) control: ControlPart,
     /// So many times its limits are taken.
     pub(super) wider: f64,
     /// Of lines that cannot be held within the tolerance, how far they may be off, mm.
@@ -165,6 +168,7 @@ impl<'a, 'n> Program<'a, 'n> {
             datum: LastDatum::default(),
             placed: None,
             datums: Vec::new(),
+            control: ControlPart::default(),
             touched: None,
             accepted: None,
             wider: 1.0,
@@ -263,6 +267,9 @@ impl<'a, 'n> Program<'a, 'n> {
             let (tool_mm, kinematics) = (context.tool_mm, context.kinematics);
             let datum = self.datum.placement(self.job.datums, self.job.machine(), context);
             let cuts = matches!(motion, Motion::Feed(_) | Motion::Hole(_));
+            if matches!(motion, Motion::Feed(_)) {
+                self.control.cut(self.job, self.interpreter.modal(), (&block.file_range(), line));
+            }
             if let Some(datum) = cuts.then(|| self.datum.newly_used()).flatten()
                 && !self.datums.iter().any(|known| known.is(datum))
             {

@@ -101,16 +101,22 @@ fn text(arguments: &New, machine: &Answers, language: Language) -> Result<String
         "From workpiece to tool, b the bed: what stands before it carries the workpiece.",
         "От детали к инструменту, b — станина: что стоит до неё, несёт деталь."
     );
+    let control = string(&machine.control);
+    let corners = say!(
+        language,
+        "how far it leaves the path at corners, or mode = \"exact-stop\"",
+        "насколько она сходит с траектории на углах, или mode = \"exact-stop\""
+    );
     let mut text = format!(
         "# {keys}\n\
          format  = 1\n\
          name    = {}\n\
-         control = {}\n\
+         control = {control}\n\
+         # control = {{ dialect = {control}, blending = {{ mode = \"tolerance\", tolerance_mm = 0.005 }} }}   # {corners}\n\
          # {order}\n\
          chain   = {}\n\
          # calibrated = {{ date = \"2026-01-31\", temperature_c = 20.0, instrument = \"interferometer\" }}\n",
         string(&machine.name),
-        string(&machine.control),
         string(&chain.to_string()),
     );
     for (axis, range_mm) in [Axis::X, Axis::Y, Axis::Z].into_iter().zip(machine.travels_mm) {
