@@ -299,6 +299,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             arc_turns: frames.arc_turns,
             rotation_about_tool: frames.rotation_about_tool,
             machine_words_stand_alone: frames.machine_words_stand_alone,
+            increments_carry_shift: frames.increments_carry_shift,
         },
         output: Output {
             decimals_inch: output.decimals_inch.into_inner(),

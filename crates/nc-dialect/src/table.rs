@@ -313,6 +313,7 @@ pub(crate) struct Frames {
     pub(crate) arc_turns: bool,
     pub(crate) rotation_about_tool: bool,
     pub(crate) machine_words_stand_alone: bool,
+    pub(crate) increments_carry_shift: bool,
 }
 
 impl Default for Frames {
@@ -325,6 +326,7 @@ impl Default for Frames {
             arc_turns: false,
             rotation_about_tool: false,
             machine_words_stand_alone: false,
+            increments_carry_shift: false,
         }
     }
 }

@@ -5,7 +5,7 @@ use nc_syntax::Span;
 use nc_syntax::dialect::Action;
 use toolpath::{AXIS_NAMES, Frame, Position};
 
-use crate::modal::{Axes, Axis, Distance, Lost, Modal, MotionMode, Units, Why};
+use crate::modal::{Axes, Axis, Distance, Lost, Modal, MotionMode, Naming, Units, Why};
 use crate::settings::{BASE_FRAME, Environment, missing_offset};
 use crate::words::{AXIS_LETTERS, LINEAR, Outcome, ROTARY, ROTARY_LETTERS, Words};
 use crate::{codes, frames};
@@ -120,7 +120,7 @@ pub(crate) fn end(words: &Words<'_, '_, '_>, state: &Modal, frame: &Frame) -> Ou
             let value_mm = value * unit_mm;
             let incremental = words.by_increment[i] || state.distance == Distance::Incremental;
             end.linear[i] = Axis::At(if incremental {
-                increment_base(words, state.axes.linear[i], i)? + value_mm
+                linear_base(words, state, i)? + value_mm
             } else {
                 value_mm + shift_mm[i]
             });
@@ -204,7 +204,7 @@ fn turned_end(words: &Words<'_, '_, '_>, state: &Modal, frame: &Frame) -> Outcom
         for axis in 0..3 {
             if (0..3).any(|i| value[i].is_some() && reaches(axis, i)) {
                 let step: f64 = (0..3).map(|i| matrix[axis][i] * value[i].unwrap_or(0.0)).sum();
-                end[axis] = Axis::At(increment_base(words, state.axes.linear[axis], axis)? + step);
+                end[axis] = Axis::At(linear_base(words, state, axis)? + step);
             }
         }
         return Ok(end);
@@ -225,6 +225,21 @@ fn turned_end(words: &Words<'_, '_, '_>, state: &Modal, frame: &Frame) -> Outcom
         end[axis] = Axis::At(target[axis]);
     }
     Ok(end)
+}
+
+/// Where an increment of X, Y or Z starts.
+fn linear_base(words: &Words<'_, '_, '_>, state: &Modal, axis: usize) -> Outcome<f64> {
+    match state.named[axis] {
+        Naming::Since(lost) if lost.why == Why::Frame && words.dialect.frames.increments_carry_shift => {
+            let what = both!(
+                "an increment behind a change of the zero: a setting of the control says whether it travels the change too",
+                "приращение после смены нуля: проходит ли оно и эту смену, решает настройка стойки"
+            );
+            let name = AXIS_NAMES[axis];
+            Err(unknown(words, what, words.span(Letters::of(&[name as u8])), &[(name, lost)]))
+        }
+        _ => increment_base(words, state.axes.linear[axis], axis),
+    }
 }
 
 /// Where an increment starts.

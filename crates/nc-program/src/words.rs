@@ -44,7 +44,7 @@ pub(crate) struct Words<'b, 'a, 'd> {
     pub(crate) by_increment: [bool; 3],
     /// X words are diameters: half of them is meant.
     pub(crate) diameters: bool,
-    dialect: &'d Dialect,
+    pub(crate) dialect: &'d Dialect,
     /// 1 + index of the item, by letter.
     at: [u32; 26],
 }

@@ -635,6 +635,8 @@ pub struct FrameRules {
     pub machine_words_stand_alone: bool,
     /// P of an arc counts its turns (LinuxCNC).
     pub arc_turns: bool,
+    /// An axis' first increment behind a change of its zero may travel that change too (Sinumerik).
+    pub increments_carry_shift: bool,
 }
 
 /// One row of the dialect's code table.

@@ -55,6 +55,7 @@ pub(crate) fn dialect() -> Dialect {
             arc_turns: false,
             rotation_about_tool: false,
             machine_words_stand_alone: false,
+            increments_carry_shift: false,
         },
         output: Output {
             decimals_inch: 4,
