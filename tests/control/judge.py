@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""Judge of the control's part: corrected programs run by LinuxCNC's motion controller, on machines that are crooked in ways
+written here; is the tip where vpost says that it will be?
+
+    judge.py --vpost target/release/vpost --machines 20 [--seed 1] [--programs 6] [--keep DIR]
+
+The tip is the recorded command of the axes and the machine's error there; distances are those from the programmed path. What
+may be: the tolerance, half an output step of each axis, and what vpost says that the control adds (`control_um` of its
+summary). Where it says that this is not known nothing is promised, and the distance is in the table alone. Exit status 1
+where a tip is farther off than was said, or a program is refused. What is modelled stands in README.md.
+"""
+
+import argparse
+import json
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+import programs
+import rig
+from machine import Machine
+
+TOLERANCE_MM = 1e-3
+HALF_STEP_MM = 0.5e-3 * 3**0.5
+SLACK_MM = 2e-5  # the axes' commands are written with six decimals, arcs are compared as chords
+MODES = ["", "G64", "G64 P0.05", "G64 P0.05 Q0.002", "G64 P0.002", "G61", "G61.1"]
+
+
+def distances(points, path):
+    """How far each point is from a path of straight pieces, mm."""
+    start, way = path[:-1], path[1:] - path[:-1]
+    length2 = np.maximum((way**2).sum(1), 1e-18)
+    found = []
+    for part in np.array_split(points, max(1, len(points) * len(start) // 2_000_000)):
+        to = part[:, None, :] - start[None, :, :]
+        share = np.clip((to * way).sum(2) / length2, 0.0, 1.0)
+        off = to - share[:, :, None] * way
+        found.append(np.sqrt((off**2).sum(2).min(1)))
+    return np.concatenate(found)
+
+
+def farthest(recorded, lines, machine, path):
+    """The largest distance of the tip from its path while it feeds, mm. A feed behind a rapid may first lead from where that
+    has left the tip to the corrected start, in the air: the path counts from there."""
+    rows = recorded[np.isin(recorded[:, 3].astype(int), sorted(lines))]
+    off = distances(rows[:, :3] + machine.error_mm(rows[:, :3]), path)
+    feeds = np.isin(recorded[:, 3].astype(int), sorted(lines))
+    begins = np.flatnonzero(feeds & ~np.r_[False, feeds[:-1]])
+    counted = np.ones(len(off), dtype=bool)
+    for begin in begins:
+        at = int(feeds[:begin].sum())
+        while at + 1 < len(off) and off[at + 1] < off[at]:
+            counted[at] = False
+            at += 1
+    return float(off[counted].max())
+
+
+def feed_lines(text):
+    """Numbers of lines that feed."""
+    found, feeds = set(), False
+    for number, line in enumerate(text.decode().splitlines(), 1):
+        words = line.split("(")[0].replace(";", " ").split()
+        for word in words:
+            if word in ("G0", "G1", "G2", "G3"):
+                feeds = word != "G0"
+        if feeds and any(word[0] in "XYZ" for word in words):
+            found.add(number)
+    return found
+
+
+def correct(vpost, profile, text, folder):
+    """The corrected program and the summary."""
+    given, made, summary = folder / "in.ngc", folder / "out.ngc", folder / "summary.json"
+    given.write_bytes(text)
+    ran = subprocess.run(
+        [vpost, given, "-m", profile, "-o", made, "--summary", summary], capture_output=True, text=True
+    )
+    if ran.returncode:
+        return None, ran.stderr
+    return made.read_bytes(), json.loads(summary.read_text())
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("--vpost", required=True)
+    arguments.add_argument("--machines", type=int, default=1)
+    arguments.add_argument("--programs", type=int, default=len(programs.KINDS))
+    arguments.add_argument("--seed", type=int, default=1)
+    arguments.add_argument("--keep", type=pathlib.Path)
+    given = arguments.parse_args()
+    wrong, table = [], {}
+    for number in range(given.machines):
+        chance = random.Random(f"{given.seed} {number}")
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = pathlib.Path(temporary)
+            machine = Machine(chance)
+            profile = machine.write(folder)
+            texts, paths, said = {}, {}, {}
+            for kind in chance.sample(sorted(programs.KINDS), given.programs):
+                mode = chance.choice(MODES)
+                name = f"m{number}_{kind}"
+                text, paths[name] = programs.make(kind, mode, chance)
+                corrected, summary = correct(given.vpost, profile, text, folder)
+                if corrected is None:
+                    wrong.append(f"{name} {mode}: refused\n{summary}")
+                    continue
+                texts[f"{name}_posted"], texts[name] = text, corrected
+                said[name] = (mode, summary)
+            recorded = rig.run(texts, machine.zero_mm)
+            for name, (mode, summary) in said.items():
+                off = []
+                for of in (f"{name}_posted", name):
+                    path = paths[name] + machine.zero_mm
+                    off.append(farthest(recorded[of], feed_lines(texts[of]), machine, path))
+                control_um = summary["control_um"]
+                may = np.inf if control_um is None else TOLERANCE_MM + HALF_STEP_MM + SLACK_MM + control_um * 1e-3
+                line = table.setdefault(mode or "as it starts", [0, 0.0, 0.0, control_um])
+                line[0] += 1
+                line[1:3] = [max(line[1], off[0]), max(line[2], off[1])]
+                if off[1] > may:
+                    wrong.append(f"{name} {mode}: {off[1] * 1e3:.2f} um, said are {may * 1e3:.2f}")
+                if given.keep and off[1] > may:
+                    given.keep.mkdir(parents=True, exist_ok=True)
+                    (given.keep / f"{name}.ngc").write_bytes(texts[f"{name}_posted"])
+                    (given.keep / f"{name}_corrected.ngc").write_bytes(texts[name])
+                    machine.write(given.keep)
+        print(f"machine {number}: {len(said)} programs", flush=True)
+    print(f"{'mode':20} runs  before um  after um  said of the control um")
+    for mode in sorted(table):
+        runs, before, after, control_um = table[mode]
+        print(f"{mode:20} {runs:4} {before * 1e3:10.2f} {after * 1e3:9.2f}  {'not known' if control_um is None else control_um}")
+    print("\n".join(wrong) if wrong else "none is farther off than was said")
+    return 1 if wrong else 0
+
+
+sys.exit(main())
