@@ -108,3 +108,21 @@ fn half_a_turn_under_compensation_stays_one_block() {
     let checked = run(&[&["check", &program, &out], &options[..]].concat());
     assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));
 }
+
+/// A table that says neither form: an arc stays as it is written, or becomes lines.
+#[test]
+fn arcs_become_lines_where_no_form_may_be_written() {
+    let place = Place::new();
+    let arcs = "%A G71 *\nN10 T1 *\nN20 G00 X+0 Y+0 Z+60 *\nN30 G01 Z+50 F200 *\nN40 G02 X+40 Y+40 R+40 *\nN50 G03 X+80 Y+80 I+40 J+80 *\nN60 M30 *\nN99999999 %A G71 *\n";
+    let program = place.write("part.i", arcs);
+    let ran = run(&[&program, "-m", CROOKED, "-d", "heidenhain-iso"]);
+    assert!(ran.status.success(), "{}", messages(&ran));
+    let out = String::from_utf8_lossy(&ran.stdout).into_owned();
+    assert!(!out.contains("G02") && !out.contains("G03") && out.lines().count() > 40, "{out}");
+    assert!(out.lines().filter(|line| line.contains('X')).all(|line| line.ends_with('*')), "{out}");
+    let perfect = ["-m", "machine-profiles/perfect.toml", "--zero", "true"];
+    let given = ["--work-offset", "G247=0,0,0", "--tool", "H1=100"];
+    let ran = run(&[&[program.as_str(), "-d", "heidenhain-iso"][..], &perfect, &given].concat());
+    assert!(ran.status.success(), "{}", messages(&ran));
+    assert_eq!(String::from_utf8_lossy(&ran.stdout), arcs);
+}

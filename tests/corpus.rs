@@ -3,19 +3,6 @@
 
 use crate::common::{files, have_interpreter, messages, referee, root, run};
 
-const DIALECTS: [&str; 11] = [
-    "fanuc",
-    "haas",
-    "mitsubishi",
-    "okuma",
-    "mach",
-    "grbl",
-    "perspektiva",
-    "linuxcnc",
-    "balt-system",
-    "sinumerik",
-    "centroid",
-];
 /// Crooked in everything a 3-axis machine can be, with offsets and tools for every program of the corpus.
 const PROFILE: &str = "tests/profiles/corpus.toml";
 const ENDINGS: [&str; 2] = ["nc", "ngc"];
@@ -27,7 +14,7 @@ fn accepted_programs_follow_their_path() {
     let out = out.to_str().expect("a plain path");
     let mut failed = Vec::new();
     let mut count = 0;
-    for dialect in DIALECTS {
+    for dialect in nc_dialect::builtin_names() {
         for path in files(&root().join("tests/corpus").join(dialect).join("accept"), &ENDINGS) {
             count += 1;
             let program = path.to_str().expect("a plain path");
@@ -51,7 +38,7 @@ fn accepted_programs_follow_their_path() {
 fn rejected_programs_are_refused_for_their_reason() {
     let mut failed = Vec::new();
     let mut count = 0;
-    for dialect in DIALECTS {
+    for dialect in nc_dialect::builtin_names() {
         for path in files(&root().join("tests/corpus").join(dialect).join("reject"), &ENDINGS) {
             count += 1;
             let program = path.to_str().expect("a plain path");

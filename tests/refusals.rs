@@ -286,7 +286,7 @@ fn options_that_cannot_be() {
     insta::assert_snapshot!(trial.refused_path(&good, &["--dialect", "fanux"]), @"
     exit status 2
     error[VP0002]: there is no dialect `fanux`
-    help: did you mean fanuc? one of: balt-system, centroid, fanuc, fanuc-lathe, grbl, haas, linuxcnc, linuxcnc-lathe, mach, mitsubishi, okuma, perspektiva, sinumerik, sinumerik-turn; or the path of a grammar file ending in .toml
+    help: did you mean fanuc? one of: balt-system, centroid, fagor, fanuc, fanuc-lathe, grbl, haas, heidenhain-iso, linuxcnc, linuxcnc-lathe, mach, mitsubishi, okuma, perspektiva, sinumerik, sinumerik-turn; or the path of a grammar file ending in .toml
     ");
     insta::assert_snapshot!(trial.refused_path(&good, &["--work-offset", "G54=1,2"]), @"
     exit status 2

@@ -12,7 +12,7 @@ use crate::deviation::{Enclosed, Machine, Pair, Solved, Verdict};
 use crate::error::CorrectionError;
 use crate::follow::Follow;
 use crate::play::{Creep, Tried};
-use crate::{Piece, PieceKind};
+use crate::{Goal, Piece, PieceKind};
 
 /// Below this chord, in output steps, rounding decides where an arc's centre lies: lines serve better.
 const SHORTEST_CHORD_STEPS: f64 = 30.0;
@@ -40,6 +40,9 @@ impl<'m> Corrector<'m> {
             return Err(self.not_to_be_split(follow, distance_mm));
         }
         follow.alone = false;
+        if follow.block.arcs_become_lines && !follow.whole.division.is_offset() {
+            return self.follow_line(follow, part);
+        }
         let step = follow.block.step_mm(u).max(follow.block.step_mm(v));
         if part.length_mm() < SHORTEST_CHORD_STEPS * step
             || part.length_mm() < 2.0 * self.options.minimum_segment_mm
@@ -98,7 +101,8 @@ impl<'m> Corrector<'m> {
             // Through frame and back a place can change its last bit; it is the same place.
             (to[u], to[v]) = (from[u], from[v]);
         }
-        if !may_be_one_arc(part, from, to) {
+        let moved = axes.iter().any(|word| matches!(word, Goal::Steps(_)));
+        if !may_be_one_arc(part, from, to) || (follow.block.arcs_become_lines && moved) {
             self.standing = before;
             return Ok(Tried::Beyond { distance_mm: f64::INFINITY, s: 0.5 });
         }

@@ -197,6 +197,7 @@ impl Search<'_> {
             if let Some((missed_mm, radii_apart)) = told
                 && radii_apart <= allowed
                 && missed_mm <= self.farthest_mm
+                && (is_kept(&words) || !block.arcs_become_lines)
             {
                 let cost_mm = if is_kept(&words) { f64::NEG_INFINITY } else { radii_apart + missed_mm };
                 found.0.push(Candidate { words, centre, cost_mm });

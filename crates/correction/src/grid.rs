@@ -71,6 +71,8 @@ pub struct Block {
     pub offset: Option<Plane>,
     /// The dialect writes arcs by centre words; else by R.
     pub centre_words: bool,
+    /// An arc whose words would change is written as lines.
+    pub arcs_become_lines: bool,
     /// Largest difference of an arc's two radii that the control takes, mm.
     pub arc_radius_tolerance_mm: f64,
     /// How far a peck that is written as moves goes back.
@@ -104,6 +106,7 @@ impl Default for Block {
             datum: Placement::default(),
             offset: None,
             centre_words: true,
+            arcs_become_lines: false,
             arc_radius_tolerance_mm: 0.02,
             retreats: PeckRetreats { clearance_mm: 0.5, chip_mm: 0.5 },
             reserved_mm: 0.0,

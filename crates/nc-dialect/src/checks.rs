@@ -203,24 +203,22 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
             both!("expected 9999 or more", "ожидалось 9999 или больше"),
         );
     }
-    if !output.centre_words.get_ref() && !output.radius_word {
-        report(
-            output.centre_words.span(),
-            both!("no form of arc is left", "не остаётся ни одного вида дуги"),
-            both!("expected centre_words or radius_word", "ожидалось centre_words или radius_word"),
-        );
-    }
-    if let Some(mark) = &grammar.text.block_delete
-        && !mark.get_ref().is_ascii_punctuation()
-    {
+    for (mark, example) in [(&grammar.text.block_delete, '/'), (&grammar.text.end_of_block, ';')] {
+        let Some(mark) = mark.as_ref().filter(|mark| !mark.get_ref().is_ascii_punctuation()) else {
+            continue;
+        };
         report(
             mark.span(),
-            both!(
-                "`{}` cannot mark a deleted block",
-                "`{}` не может быть знаком пропуска кадра",
-                mark.get_ref()
-            ),
-            both!("expected a mark like \"/\"", "ожидался знак вроде \"/\""),
+            both!("`{}` cannot mark a block", "`{}` не может быть знаком при кадре", mark.get_ref()),
+            both!("expected a mark like \"{example}\"", "ожидался знак вроде \"{example}\""),
+        );
+    }
+    let levels = grammar.cycles.written_out.iter().flat_map(|rule| [&rule.level, &rule.bottom]);
+    for letter in levels.filter(|letter| !letter.get_ref().is_ascii_uppercase()) {
+        report(
+            letter.span(),
+            both!("`{}` is no letter of a word", "`{}` — не буква слова", letter.get_ref()),
+            both!("expected a capital letter like \"R\"", "ожидалась прописная буква вроде \"R\""),
         );
     }
 }

@@ -1,7 +1,9 @@
 //! The code-by-code list of a dialect, for people.
 
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{Action, CurveCode, CycleCode, FramePart, GCode, LengthAfter, MCode, Macros};
+use nc_syntax::dialect::{
+    Action, CurveCode, CycleBack, CycleCode, FramePart, GCode, LengthAfter, MCode, Macros,
+};
 
 use crate::action_name;
 
@@ -104,8 +106,11 @@ pub fn rows(dialect: &Dialect) -> Rows {
             } else {
                 note(&entry.action)
             };
-            let written_out =
-                dialect.flow.return_by_m && matches!(entry.action, Action::Cycle(_) | Action::CycleCancel);
+            let written_out = dialect.flow.written_cycles.is_some_and(|rule| match entry.action {
+                Action::Cycle(_) | Action::CycleCancel => true,
+                Action::ReturnInitial | Action::ReturnR => rule.back == CycleBack::ByG,
+                _ => false,
+            });
             if written_out {
                 (Treatment::Executed, "written out as moves".to_owned())
             } else {

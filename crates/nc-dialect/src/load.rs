@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use diagnostic::{Code, Diagnostic, Text, both};
-use nc_syntax::Dialect;
 use nc_syntax::dialect::{
-    Action, CodeEntry, Colon, Command, CycleLevels, Flow, FrameRules, GCode, LatheSign, LengthAfter, MCode,
-    Macros, Numbers, OffsetL20, Output, Paren, PointFree, RotaryFeed, Semicolon, System, Turning,
-    TurningParameters,
+    Action, CodeEntry, Colon, Command, CycleBack, CycleLevels, Flow, FrameRules, GCode, LatheSign,
+    LengthAfter, LengthAtChange, MCode, Macros, Numbers, OffsetL20, Output, Paren, PointFree, RefusedWord,
+    RotaryFeed, Semicolon, System, TWord, Turning, TurningParameters, WrittenCycles,
 };
 use nc_syntax::path_control::{Keeps, PathCode, PathKey};
+use nc_syntax::{Dialect, Letters};
 use toml::Spanned;
 
 use crate::action::{ACTION_NAMES, action_named, nearest};
@@ -18,9 +18,9 @@ use crate::checks::{self, wide};
 use crate::inherited;
 use crate::russian;
 use crate::table::{
-    Alone, CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, LeadName, Levels, MRow, MacroLanguage,
-    RotaryFeedName, RoundBrackets, SemicolonRule, StartUnit, TWord, TurningRules, UnderG40, UnderG49,
-    WithoutH, WithoutPoint, ZeroRepeats,
+    self, Alone, AtChange, BackRule, CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, LeadName,
+    Levels, MRow, MacroLanguage, PercentRule, RotaryFeedName, RoundBrackets, SemicolonRule, StartUnit,
+    TurningRules, UnderG40, UnderG49, WithoutH, WithoutPoint, ZeroRepeats,
 };
 
 /// Reads a grammar.
@@ -57,6 +57,9 @@ pub fn load(name: &str, text: &str) -> Result<Dialect, Vec<Diagnostic>> {
     let commands = unique(commands, |entry| entry.name.clone(), &mut wrong);
     let path_control = path_control(&grammar.path_control, &mut wrong);
     let lathe = grammar.lathe.iter().filter_map(|row| lathe(row, &mut wrong)).collect();
+    let words = refused_words(&grammar.words, &mut wrong);
+    let time = grammar.numbers.dwell_time.as_ref();
+    let dwell_time = time.map(|letters| checks::set_of_letters(Some(letters), &mut wrong));
     let initial = checks::start_codes(&grammar.start.codes, &codes, &mut wrong);
     let turning = grammar.turning.as_ref().map(|rules| turning(rules, &codes, &initial, &mut wrong));
     checks::letters(&grammar.text.letters, &mut wrong);
@@ -65,7 +68,7 @@ pub fn load(name: &str, text: &str) -> Result<Dialect, Vec<Diagnostic>> {
         wrong.sort_by_key(|diagnostic| diagnostic.span.as_ref().map_or(0, |span| span.start));
         return Err(wrong);
     }
-    let rows = Rows { codes, m_codes, commands, path_control, lathe, turning };
+    let rows = Rows { words, dwell_time, codes, m_codes, commands, path_control, lathe, turning };
     Ok(dialect(name, grammar, rows, initial))
 }
 
@@ -172,6 +175,8 @@ fn turning(
 
 /// Rows that were read.
 struct Rows {
+    words: Vec<RefusedWord>,
+    dwell_time: Option<Letters>,
     codes: Vec<CodeEntry>,
     m_codes: Vec<MCode>,
     commands: Vec<Command>,
@@ -196,7 +201,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
         start,
         ..
     } = grammar;
-    let Rows { codes, m_codes, commands, path_control, lathe, turning } = rows;
+    let Rows { words, dwell_time, codes, m_codes, commands, path_control, lathe, turning } = rows;
     let mut letters = text.letters.into_inner().into_bytes();
     letters.sort_unstable();
     let called = commands.iter().any(|command| matches!(command.action, Some(Action::Called(_))));
@@ -218,9 +223,10 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
         semicolon: match text.semicolon {
             SemicolonRule::None => Semicolon::None,
             SemicolonRule::Comment => Semicolon::Comment,
-            SemicolonRule::EndOfBlock => Semicolon::EndOfBlock,
         },
-        skip: text.block_delete.and_then(|mark| u8::try_from(mark.into_inner()).ok()),
+        end_of_block: text.end_of_block.and_then(byte),
+        percent_words: text.percent == PercentRule::NameAndWords,
+        skip: text.block_delete.and_then(byte),
         colon: match text.colon {
             ColonRule::None => Colon::None,
             ColonRule::Number => Colon::Number,
@@ -230,6 +236,8 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
         labels: text.labels,
         equals_words: text.equals_words,
         letters,
+        refused_words: words,
+        dwell_time,
         numbers: Numbers {
             point_free: match numbers.without_point {
                 WithoutPoint::Unit => PointFree::Unit,
@@ -260,7 +268,13 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             corner_words: flow.corner_words,
             local_calls: flow.local_calls,
             one_value_atan: flow.one_value_atan,
-            return_by_m: flow.return_by_m,
+            written_cycles: cycles.written_out.map(|rule| WrittenCycles {
+                levels: [rule.level, rule.bottom].map(|letter| letter.into_inner() as u8),
+                back: match rule.back {
+                    BackRule::ByM => CycleBack::ByM,
+                    BackRule::ByG => CycleBack::ByG,
+                },
+            }),
             control_programs: flow.control_programs,
             polar_words,
             called,
@@ -284,7 +298,16 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             UnderG49::Unstated => LengthAfter::Unstated,
         },
         length_shifts: tool_length.alone == Alone::Shifts,
-        t_may_change_tool: tool_length.t_word == TWord::MayChange,
+        t_word: match tool_length.t_word {
+            table::TWord::Selects => TWord::Selects,
+            table::TWord::MayChange => TWord::MayChange,
+            table::TWord::Changes => TWord::Changes,
+        },
+        length_at_change: match tool_length.at_change {
+            AtChange::Stays => LengthAtChange::Stays,
+            AtChange::LoadedTool => LengthAtChange::LoadedTool,
+            AtChange::Unsaid => LengthAtChange::Unsaid,
+        },
         writes_lengths: tool_length.writes_lengths,
         edge_in_d: tool_length.edge_in_d,
         calls: Vec::new(),
@@ -307,7 +330,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             max_block_bytes: output.max_block_bytes,
             number_inserted_blocks: output.number_inserted_blocks,
             max_block_number: output.max_block_number.into_inner(),
-            centre_words: output.centre_words.into_inner(),
+            centre_words: output.centre_words,
             radius_word: output.radius_word,
             arc_radius_tolerance_mm: output.arc_radius_tolerance_mm.into_inner(),
             arc_radius_tolerance_inch: output.arc_radius_tolerance_inch.map(Spanned::into_inner),
@@ -321,6 +344,30 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             chip_retreat_mm: cycles.chip_retreat_mm.into_inner(),
         },
     }
+}
+
+/// A mark of the table, which [`checks::numbers`] has found to be ASCII.
+fn byte(mark: Spanned<char>) -> Option<u8> {
+    u8::try_from(mark.into_inner()).ok()
+}
+
+/// The letters whose words are refused.
+fn refused_words(
+    table: &BTreeMap<Spanned<String>, table::WordRow>,
+    wrong: &mut Vec<Diagnostic>,
+) -> Vec<RefusedWord> {
+    let row = |(key, row): (&Spanned<String>, &table::WordRow)| match key.get_ref().as_bytes() {
+        [letter @ b'A'..=b'Z'] => Some(RefusedWord {
+            letter: *letter,
+            reason: russian::text(&row.refuse),
+            help: russian::text(&row.help),
+        }),
+        _ => {
+            wrong.push(no_code(key, "Q"));
+            None
+        }
+    };
+    table.iter().filter_map(row).collect()
 }
 
 /// What every control reads of an F of G93: Mitsubishi's and Hurco's manuals and some posts say a digit more.

@@ -24,6 +24,8 @@ pub(crate) struct Grammar {
     #[serde(default)]
     pub(crate) frames: Frames,
     pub(crate) output: OutputRules,
+    #[serde(default)]
+    pub(crate) words: BTreeMap<Spanned<String>, WordRow>,
     pub(crate) codes: BTreeMap<Spanned<String>, CodeRow>,
     #[serde(default)]
     pub(crate) m_codes: BTreeMap<Spanned<String>, MRow>,
@@ -43,7 +45,10 @@ pub(crate) struct Grammar {
 pub(crate) struct Text {
     pub(crate) round_brackets: RoundBrackets,
     pub(crate) semicolon: SemicolonRule,
+    pub(crate) end_of_block: Option<Spanned<char>>,
     pub(crate) block_delete: Option<Spanned<char>>,
+    #[serde(default)]
+    pub(crate) percent: PercentRule,
     #[serde(default)]
     pub(crate) colon: ColonRule,
     #[serde(default)]
@@ -70,7 +75,15 @@ pub(crate) enum RoundBrackets {
 pub(crate) enum SemicolonRule {
     None,
     Comment,
-    EndOfBlock,
+}
+
+/// What stands behind `%`.
+#[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum PercentRule {
+    #[default]
+    Name,
+    NameAndWords,
 }
 
 #[derive(Clone, Copy, Default, Deserialize)]
@@ -98,6 +111,7 @@ pub(crate) struct NumberRules {
     pub(crate) least_increment_decimals_inch: Spanned<u8>,
     #[serde(default)]
     pub(crate) spaces_inside: bool,
+    pub(crate) dwell_time: Option<Spanned<String>>,
 }
 
 /// State at the start of a program.
@@ -189,9 +203,6 @@ pub(crate) struct FlowRules {
     /// ATAN takes one value.
     #[serde(default)]
     pub(crate) one_value_atan: bool,
-    /// Cycles return where M53 and M54 say.
-    #[serde(default)]
-    pub(crate) return_by_m: bool,
     /// First and last number of programs that are the control's own.
     pub(crate) control_programs: Option<(u32, u32)>,
 }
@@ -219,8 +230,26 @@ pub(crate) struct Cycles {
     pub(crate) zero_repeats: ZeroRepeats,
     #[serde(default)]
     pub(crate) bottom_lies_below_r: bool,
+    pub(crate) written_out: Option<WrittenOut>,
     pub(crate) peck_clearance_mm: Spanned<f64>,
     pub(crate) chip_retreat_mm: Spanned<f64>,
+}
+
+/// Cycles that are written out as moves: letters of the level where the feed begins and of the bottom, and what says where
+/// they return to.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct WrittenOut {
+    pub(crate) level: Spanned<char>,
+    pub(crate) bottom: Spanned<char>,
+    pub(crate) back: BackRule,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum BackRule {
+    ByM,
+    ByG,
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
@@ -252,6 +281,8 @@ pub(crate) struct ToolLength {
     pub(crate) alone: Alone,
     #[serde(default)]
     pub(crate) t_word: TWord,
+    #[serde(default)]
+    pub(crate) at_change: AtChange,
     #[serde(default)]
     pub(crate) writes_lengths: bool,
     #[serde(default)]
@@ -293,6 +324,19 @@ pub(crate) enum TWord {
     Selects,
     /// T may bring it in at once.
     MayChange,
+    /// T brings it in.
+    Changes,
+}
+
+/// The tool length behind a tool change.
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum AtChange {
+    /// The one before.
+    #[default]
+    Stays,
+    LoadedTool,
+    Unsaid,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -347,7 +391,7 @@ pub(crate) struct OutputRules {
     pub(crate) max_block_bytes: u32,
     pub(crate) number_inserted_blocks: bool,
     pub(crate) max_block_number: Spanned<u32>,
-    pub(crate) centre_words: Spanned<bool>,
+    pub(crate) centre_words: bool,
     pub(crate) radius_word: bool,
     pub(crate) arc_radius_tolerance_mm: Spanned<f64>,
     pub(crate) arc_radius_tolerance_inch: Option<Spanned<f64>>,
@@ -373,6 +417,14 @@ pub(crate) struct CodeRow {
     pub(crate) offset: Option<String>,
     pub(crate) refuse: Option<String>,
     pub(crate) help: Option<String>,
+}
+
+/// A letter whose words are refused.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct WordRow {
+    pub(crate) refuse: String,
+    pub(crate) help: String,
 }
 
 /// One M code that is more than text.

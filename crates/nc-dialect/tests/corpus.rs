@@ -58,7 +58,13 @@ fn verdict(text: &[u8], dialect: &Dialect) -> Option<u16> {
     let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
     while reader.next(&mut block) {
         for item in &block.items {
+            let first = block.text(item.span).first().map_or(0, u8::to_ascii_uppercase);
             let found = match item.kind {
+                ItemKind::Word { .. } | ItemKind::Invalid(_)
+                    if dialect.refused_words.iter().any(|row| row.letter == first) =>
+                {
+                    Some(208)
+                }
                 ItemKind::Invalid(why) => Some(block.unreadable_at(why, item.span).code.0),
                 ItemKind::Flow | ItemKind::Word { value: Value::Expression, .. } => Some(202),
                 ItemKind::BracketCommand => {

@@ -83,7 +83,7 @@ fn refused_without_a_way_out() {
 #[test]
 fn an_unknown_field() {
     insta::assert_snapshot!(changed("spaces_inside  ", "space_inside  "), @r#"
-    error[VP0801]: the grammar cannot be read: unknown field `space_inside`, expected one of `without_point`, `least_increment_decimals_mm`, `least_increment_decimals_inch`, `spaces_inside`
+    error[VP0801]: the grammar cannot be read: unknown field `space_inside`, expected one of `without_point`, `least_increment_decimals_mm`, `least_increment_decimals_inch`, `spaces_inside`, `dwell_time`
       at `space_inside`: here
       help: docs/dialects.md lists every field of a grammar
     "#);

@@ -1,7 +1,7 @@
 //! Blocks out: passed as they are, or rewritten.
 
 use diagnostic::{Code, Diagnostic, both};
-use nc_syntax::dialect::{GCode, Semicolon};
+use nc_syntax::dialect::GCode;
 use nc_syntax::{Block, Dialect, Item, ItemKind, PlainLine, Value};
 
 use crate::edit::{Piece, WordEdit};
@@ -330,11 +330,11 @@ impl<'d> Emitter<'d> {
     /// The block without what ends it, and what ends it.
     fn split_end<'a>(&self, block: &Block<'a>) -> (&'a [u8], &'a [u8]) {
         let mut at = block.bytes.len() - line_end(block.bytes).len();
-        if self.dialect.semicolon == Semicolon::EndOfBlock
-            && let Some(semicolon) = block.bytes[..at].trim_ascii_end().strip_suffix(b";")
-            && block.items.last().is_none_or(|item| item.span.end as usize <= semicolon.len())
+        if let Some(mark) = self.dialect.end_of_block
+            && let Some(before) = block.bytes[..at].trim_ascii_end().strip_suffix(&[mark])
+            && block.items.last().is_none_or(|item| item.span.end as usize <= before.len())
         {
-            at = semicolon.len();
+            at = before.len();
         }
         block.bytes.split_at(at)
     }

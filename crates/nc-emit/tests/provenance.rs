@@ -20,7 +20,7 @@ fn the_comment_is_safe_in_every_control() {
     assert_eq!(provenance_comment(&dialect, text), b"(CORRECTED BY VPOST)");
     dialect.paren = Paren::Command;
     assert_eq!(provenance_comment(&dialect, ""), b"; CORRECTED BY VPOST");
-    dialect.semicolon = Semicolon::EndOfBlock;
+    dialect.semicolon = Semicolon::None;
     assert_eq!(provenance_comment(&dialect, text), b"");
 }
 

@@ -4,7 +4,6 @@ mod common;
 
 use common::{dialect, piece, read, rewritten};
 use nc_emit::{BlockNumbers, Emitter, Piece};
-use nc_syntax::dialect::Semicolon;
 
 #[test]
 fn later_pieces_are_new_blocks() {
@@ -60,13 +59,17 @@ fn inserted_numbers_occur_nowhere_else() {
 }
 
 #[test]
-fn a_semicolon_that_ends_a_block_ends_every_piece() {
-    let mut dialect = dialect();
-    dialect.semicolon = Semicolon::EndOfBlock;
-    let blocks = read(&dialect, "G1 X10.;\n");
-    let mut out = Vec::new();
-    Emitter::new(&dialect).rewrite(&blocks[0], &[piece("G1 X5.0"), piece("G1 X10.0")], &mut out).unwrap();
-    assert_eq!(String::from_utf8(out).unwrap(), "G1 X5.;\nX10.;\n");
+fn the_mark_that_ends_a_block_ends_every_piece() {
+    for (mark, block, pieces) in
+        [(b';', "G1 X10.;\n", "G1 X5.;\nX10.;\n"), (b'*', "G1 X10. *\n", "G1 X5. *\nX10.*\n")]
+    {
+        let mut dialect = dialect();
+        dialect.end_of_block = Some(mark);
+        let blocks = read(&dialect, block);
+        let mut out = Vec::new();
+        Emitter::new(&dialect).rewrite(&blocks[0], &[piece("G1 X5.0"), piece("G1 X10.0")], &mut out).unwrap();
+        assert_eq!(String::from_utf8(out).unwrap(), pieces);
+    }
 }
 
 /// Rewrites the lines named, passes the others.

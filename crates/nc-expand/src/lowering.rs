@@ -129,8 +129,8 @@ impl<'d> Driver<'d> {
         let out = Rewriting::new(dialect, setup, marks);
         let room: Box<dyn Lower<'d> + 'd> = if let Some(turning) = &dialect.turning {
             Box::new(turning::Lathe::new(out, turning))
-        } else if dialect.flow.return_by_m {
-            Box::new(returns::Writer::new(out))
+        } else if let Some(rule) = dialect.flow.written_cycles {
+            Box::new(returns::Writer::new(out, rule))
         } else {
             Box::new(called::Writer::new(out))
         };

@@ -1,15 +1,19 @@
-//! Drilling cycles whose way back an M code says (Okuma), written out as plain moves.
+//! Drilling cycles of controls that say their levels by words and codes of their own, written out as plain moves; the
+//! table says which ([`WrittenCycles`]).
 //!
-//! `G71 Z50.` says a level, `G81 X Y Z R F M53` drills and returns to it, with M54 to R; every block behind it that names
-//! X or Y drills again, until G80 or a motion code. A control keeps the level in mind, and no word of the cycle's block
-//! names it: so the moves are written, each with its height.
+//! Okuma: `G71 Z50.` says a level, `G81 X Y Z R F M53` drills and returns to it, with M54 to R; every block behind it that
+//! names X or Y drills again, until G80 or a motion code. A control keeps the level in mind, and no word of the cycle's
+//! block names it: so the moves are written, each with its height. Fagor: `G98 G81 X Y Z I F`, where Z is the level where
+//! the feed begins and I the bottom, returns to where the tool stood before, with G99 to Z.
 //!
 //! Source: Okuma OSP-P200M/P20M Programming Manual, fixed cycles: G81, G82 and G83, the return level command. With R the
 //! level where the feed begins, Z the bottom, Q a peck: rapid across, rapid to R, feed to Z (G83: by Q, rapid to R and
-//! back to what is drilled less a clearance), rapid to the level. The numbers written have 6 decimals.
+//! back to what is drilled less a clearance), rapid to the level. Fagor CNC 8055 M Programming Manual, chapter 9, G81. The
+//! numbers written have 6 decimals.
 
 use diagnostic::{Text, both};
-use nc_syntax::dialect::{Action, CycleCode};
+use nc_program::modal::ReturnLevel;
+use nc_syntax::dialect::{Action, CycleBack, CycleCode, WrittenCycles};
 use nc_syntax::{Block, Dialect, ItemKind, Letters, Span, Value};
 use toolpath::{MOST_PECKS, Plane, Retreat, Stroke, peck_depths, strokes, whole_pecks};
 
@@ -18,12 +22,13 @@ use crate::known::Rewriting;
 use crate::lowering::{Came, Fault, Lower};
 use crate::shorthand::{AXES, Words, actions, add, line_of, number, shown};
 
-/// Words that a block of a cycle may have.
-const TAKEN: Letters = Letters::of(b"FGMNPQRXYZ");
+/// Words that a block of a cycle may have beside those of its levels.
+const TAKEN: Letters = Letters::of(b"FGMNPQXY");
 
 /// True where the block has a cycle that this dialect writes out.
 pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
-    dialect.flow.return_by_m && actions(block, dialect).any(|(action, _)| matches!(action, Action::Cycle(_)))
+    dialect.flow.written_cycles.is_some()
+        && actions(block, dialect).any(|(action, _)| matches!(action, Action::Cycle(_)))
 }
 
 /// A cycle in force.
@@ -40,6 +45,7 @@ struct Cycle {
 /// Writes cycles out, block by block.
 pub(crate) struct Writer<'d> {
     dialect: &'d Dialect,
+    rule: WrittenCycles,
     out: Rewriting<'d>,
     /// G71.
     level: Option<f64>,
@@ -60,7 +66,7 @@ impl<'d> Lower<'d> for Writer<'d> {
                 Action::Rapid | Action::Line | Action::ArcClockwise | Action::ArcCounterClockwise
             )
         });
-        let ends = cancels || codes;
+        let ends = cancels || (codes && self.rule.back == CycleBack::ByM);
         if begins {
             self.out.wake();
             return self.begin(came);
@@ -118,8 +124,8 @@ impl<'d> Lower<'d> for Writer<'d> {
 }
 
 impl<'d> Writer<'d> {
-    pub(crate) const fn new(out: Rewriting<'d>) -> Self {
-        Self { dialect: out.dialect, out, level: None, cycle: None, open: false }
+    pub(crate) const fn new(out: Rewriting<'d>, rule: WrittenCycles) -> Self {
+        Self { dialect: out.dialect, rule, out, level: None, cycle: None, open: false }
     }
 
     fn length(&self, words: &Words<'_, '_>, letter: u8) -> Option<f64> {
@@ -158,6 +164,7 @@ impl<'d> Writer<'d> {
             match action {
                 Action::Cycle(cycle) => kind = Some((*cycle, span)),
                 Action::Absolute | Action::Plane(_) => {}
+                Action::ReturnInitial | Action::ReturnR if self.rule.back == CycleBack::ByG => {}
                 _ => {
                     return refuse(
                         span,
@@ -187,15 +194,29 @@ impl<'d> Writer<'d> {
                 ),
             );
         }
-        let back = self.back(words, span)?;
-        let (bottom, near) = match (self.length(words, b'Z'), self.length(words, b'R')) {
+        let back = match self.rule.back {
+            CycleBack::ByM => self.back(words, span)?,
+            CycleBack::ByG => self.back_by_code(words, span, here.return_level)?,
+        };
+        let [level, depth] = self.rule.levels;
+        let (bottom, near) = match (self.length(words, depth), self.length(words, level)) {
             (Some(bottom), Some(near)) if bottom < near => (bottom, near),
             _ => {
                 return refuse(
                     span,
                     both!("a cycle without its levels", "цикл без своих уровней"),
-                    both!("Z below R was expected in this block", "в этом кадре ожидалось Z ниже R"),
-                    both!("write Z and R beside the cycle", "напишите рядом с циклом Z и R"),
+                    both!(
+                        "{} below {} was expected in this block",
+                        "в этом кадре ожидалось {} ниже {}",
+                        depth as char,
+                        level as char
+                    ),
+                    both!(
+                        "write {} and {} beside the cycle",
+                        "напишите рядом с циклом {} и {}",
+                        depth as char,
+                        level as char
+                    ),
                 );
             }
         };
@@ -223,13 +244,17 @@ impl<'d> Writer<'d> {
         };
         let back = match back {
             Back::R => near,
-            Back::Level(level) if level >= near => level,
+            Back::Level(back) if back >= near => back,
             Back::Level(_) => {
                 return refuse(
                     span,
-                    both!("a return level below R", "плоскость отвода ниже R"),
-                    both!("the level of G71", "уровень из G71"),
-                    both!("write G71 with a level above R", "напишите G71 с уровнем выше R"),
+                    both!("a return level below {}", "плоскость отвода ниже {}", level as char),
+                    both!("the tool would not return", "инструмент не отошёл бы"),
+                    both!(
+                        "write a return level above {}, or go there before the cycle",
+                        "напишите плоскость отвода выше {} или отойдите туда до цикла",
+                        level as char
+                    ),
                 );
             }
         };
@@ -238,9 +263,8 @@ impl<'d> Writer<'d> {
         self.cycle = Some(Cycle { bottom, near, peck, back });
         self.out.comment(shown(block), words.from);
         let mut head = b"G0".to_vec();
-        for (_, span) in
-            words.actions().filter(|(action, _)| matches!(action, Action::Absolute | Action::Plane(_)))
-        {
+        // What the codes beside the cycle set stays so behind it.
+        for (_, span) in words.actions().filter(|(action, _)| !matches!(action, Action::Cycle(_))) {
             add(&mut head, block.text(span));
         }
         self.hole(words, head)
@@ -338,15 +362,42 @@ impl<'d> Writer<'d> {
         }
     }
 
+    /// G98 or G99, in this block or before it.
+    fn back_by_code(&self, words: &Words<'_, '_>, span: Span, level: ReturnLevel) -> Result<Back, Fault> {
+        match (level, self.out.known.modal().places()[2]) {
+            (ReturnLevel::R, _) => Ok(Back::R),
+            (ReturnLevel::Initial, Some(stands)) => Ok(Back::Level(stands)),
+            (ReturnLevel::Initial, None) => Err(self.refuse(
+                words,
+                span,
+                both!("a cycle that returns to nobody knows where", "цикл отводится неизвестно куда"),
+                both!("no word says where Z stands", "ни одно слово не говорит, где стоит Z"),
+                both!("write the level with Z before the cycle", "напишите уровень словом Z до цикла"),
+            )),
+            (ReturnLevel::Unsaid | ReturnLevel::Undecided { .. }, _) => Err(self.refuse(
+                words,
+                span,
+                both!("a cycle that does not say where it returns", "цикл не говорит, куда отводится"),
+                both!("G98 or G99 was expected", "ожидалась G98 или G99"),
+                both!("write G98 or G99 in this block", "напишите G98 или G99 в этом кадре"),
+            )),
+        }
+    }
+
     /// Refuses words whose meaning in a cycle is not certain.
     fn only_known(&self, words: &Words<'_, '_>) -> Result<(), Fault> {
         for item in &words.block.items {
             let known = match item.kind {
                 ItemKind::Word { letter: b'M', value: Value::Number(number) } => {
-                    matches!(number.integer(), Some(53 | 54))
+                    self.rule.back == CycleBack::ByM && matches!(number.integer(), Some(53 | 54))
                 }
-                ItemKind::Word { letter: b'P', value: Value::Number(number) } => number.decimal.mantissa == 0,
-                ItemKind::Word { letter, value: Value::Number(_) } => TAKEN.any(Letters::of(&[letter])),
+                // A dwell.
+                ItemKind::Word { letter: b'P' | b'K', value: Value::Number(number) } => {
+                    number.decimal.mantissa == 0
+                }
+                ItemKind::Word { letter, value: Value::Number(_) } => {
+                    TAKEN.any(Letters::of(&[letter])) || self.rule.levels.contains(&letter)
+                }
                 ItemKind::Comment | ItemKind::Name => true,
                 _ => false,
             };

@@ -70,7 +70,7 @@ impl Sure {
     }
 }
 
-const CONTROLS: [Control; 6] = [
+const CONTROLS: [Control; 7] = [
     Control {
         name: "Heidenhain",
         dialects: &[],
@@ -80,7 +80,6 @@ const CONTROLS: [Control; 6] = [
             Sign::Has("TOOL CALL"),
             Sign::Has("CYCL DEF"),
             Sign::Has("R0 FMAX"),
-            Sign::Ends("*"),
         ],
     },
     Control {
@@ -145,6 +144,7 @@ const CONTROLS: [Control; 6] = [
         ],
     },
     Control { name: "Haas", dialects: &["haas"], signs: &[Sign::Numbered("M97 P", "")] },
+    Control { name: "Heidenhain DIN/ISO", dialects: &["heidenhain-iso"], signs: &[Sign::Ends("*")] },
 ];
 
 /// Names the control that a program looks written for: VP0246, where its dialect is none of that control's.
@@ -279,7 +279,7 @@ mod tests {
         says("fanuc", "%_N_PART_MPF\nG0 X0\nCYCLE81(10,0,2,-5)\n", "Sinumerik");
         says("linuxcnc", "R1=5\nG1 X=R1\n", "Sinumerik");
         says("fanuc", "0 BEGIN PGM TEST MM\n1 L X+10 R0 FMAX\n", "Heidenhain");
-        says("sinumerik", "%TEST G71 *\nN10 G01 X+5 F100 *\n", "Heidenhain");
+        says("sinumerik", "%TEST G71 *\nN10 G01 X+5 F100 *\n", "Heidenhain DIN/ISO");
         says("fanuc", "o100 sub\nG1 X#<_x>\no100 endsub\n", "LinuxCNC");
         says("sinumerik", "O1000\n#100=5\nM98 P2000\n", "Fanuc");
         says("okuma", "#100=5\n", "Fanuc");

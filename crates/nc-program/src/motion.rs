@@ -59,7 +59,7 @@ pub(crate) fn execute(
             direction::check(env, words, state, moved.direction)?;
             known_axes(env, words)?;
             if words.has(AXIS_LETTERS.or(ARC_LETTERS)) {
-                tool_length::edge_is_said(words, state)?;
+                tool_length::edge_is_said(env, words, state)?;
             }
             by_mode(env, words, before, state, moved)?;
         }
@@ -70,7 +70,7 @@ pub(crate) fn execute(
         }
         Owner::Frame => moved.states_position = frames::execute(env, words, demand, before, state)?,
         Owner::Length => tool_length::from_words(env, words, demand, before, state)?,
-        Owner::Dwell => dwell(words, demand)?,
+        Owner::Dwell => dwell(env, words, demand)?,
         Owner::DwellBySetting => dwell_by_setting(words, demand)?,
         Owner::Arguments => {
             if let (Some(motion), true) = (demand.written_motion, words.has(AXIS_LETTERS.or(ARC_LETTERS))) {
@@ -409,14 +409,34 @@ pub(crate) fn own_feed(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> 
 }
 
 /// G4: X, U, P (and whatever F or S the control reads there) are a time.
-fn dwell(words: &Words<'_, '_, '_>, demand: &Demand<'_>) -> Outcome<()> {
-    const TIME: Letters = Letters::of(b"XU");
-    let times = TIME.or(Letters::of(b"P"));
-    let others = AXIS_LETTERS.or(ARC_LETTERS).or(SECONDARY_LETTERS).without(TIME);
+fn dwell(env: &Environment<'_>, words: &Words<'_, '_, '_>, demand: &Demand<'_>) -> Outcome<()> {
+    let own = env.dialect.dwell_time;
+    let waits = |own: Letters| {
+        (b'A'..=b'Z').any(|l| own.contains(l) && words.plain(l).is_some_and(|time| time > 0.0))
+    };
+    if let (Some(own), Some(span)) = (own.filter(|own| !waits(*own)), demand.owner_span) {
+        let message = both!("{} without a time", "{} без времени", words.text(span));
+        let help = both!(
+            "write its time as {}, or delete it",
+            "напишите её время словом {} или удалите её",
+            own.names()
+        );
+        return Err(words
+            .refuse(
+                codes::REFUSED_CODE,
+                message,
+                span,
+                both!("is no dwell on this control", "на этой стойке это не выдержка"),
+            )
+            .help(help));
+    }
+    let time = own.unwrap_or(Letters::of(b"XU"));
+    let times = time.or(Letters::of(b"P"));
+    let others = AXIS_LETTERS.or(ARC_LETTERS).or(SECONDARY_LETTERS).without(time);
     let unclear = words.has(others)
-        || (words.has(TIME) && (demand.written_motion.is_some() || words.letters.and(times).count() > 1));
+        || (words.has(time) && (demand.written_motion.is_some() || words.letters.and(times).count() > 1));
     if unclear {
-        let span = words.span(others.or(TIME));
+        let span = words.span(others.or(time));
         return Err(words
             .refuse(
                 codes::WORDS_OF_TWO,

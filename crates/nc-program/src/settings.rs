@@ -219,10 +219,7 @@ pub(crate) fn apply<'d>(
             return Err(words.refuse(codes::COMMAND, message, span, label).help(help));
         }
         if let Action::Refuse { reason, help } = action {
-            let message = both!("{} is refused: {reason}", "{} не принимается: {reason:#}", words.text(span));
-            return Err(words
-                .refuse(codes::REFUSED_CODE, message, span, both!("not understood", "не исполняется"))
-                .help(help.clone()));
+            return Err(words.refused_code(span, reason, help));
         }
     }
     if let Some(said) = path_control::said(env.dialect, words, state.units) {
@@ -243,6 +240,8 @@ pub(crate) fn apply<'d>(
     }
     // H has chosen the work offset, and no length.
     if !matches!(wanted.offset, Some((_, Some(BY_H), _))) {
+        // A code that says the length says that it holds or not.
+        state.edge_unsaid &= wanted.length.is_none() || env.dialect.edge_in_d;
         tool_length::length(env, words, state, wanted.length)?;
     }
     tip::switch(env, words, before, state)?;

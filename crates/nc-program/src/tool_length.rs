@@ -2,11 +2,11 @@
 
 use diagnostic::{Entry, Text, both};
 use nc_syntax::Span;
-use nc_syntax::dialect::LengthAfter;
+use nc_syntax::dialect::{LengthAfter, LengthAtChange, TWord};
 
 use crate::codes;
 use crate::frames;
-use crate::modal::{Distance, Modal, ToolLength, Units, WrittenLength};
+use crate::modal::{Distance, Modal, MotionMode, ToolLength, Units, WrittenLength};
 use crate::motion::compensated;
 use crate::settings::{Demand, Environment};
 use crate::words::{
@@ -34,7 +34,7 @@ pub(crate) fn tool(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut
         return edge_of_loaded(env, words, state);
     }
     if words.has(T) {
-        if env.dialect.t_may_change_tool {
+        if env.dialect.t_word == TWord::MayChange {
             let message = both!(
                 "{} may change the tool at once",
                 "{} может сразу сменить инструмент",
@@ -53,11 +53,29 @@ pub(crate) fn tool(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut
     }
     if let Some((_, span)) = env.tool_change(words) {
         state.tool_loaded = state.tool_selected;
-        if let (true, Some(tool)) = (env.setup.t_means_h, state.tool_loaded) {
-            return take(env, words, span, tool, state);
+        let at_change = env.dialect.length_at_change;
+        match (env.setup.t_means_h || at_change == LengthAtChange::LoadedTool, state.tool_loaded) {
+            (true, Some(tool)) => return take(env, words, span, tool, state),
+            (true, None) if at_change == LengthAtChange::LoadedTool => return Err(no_tool(words, span)),
+            _ => state.edge_unsaid |= at_change == LengthAtChange::Unsaid,
         }
     }
     Ok(())
+}
+
+/// The tool that comes in has no number.
+fn no_tool(words: &Words<'_, '_, '_>, span: Span) -> Box<diagnostic::Diagnostic> {
+    words
+        .refuse(
+            codes::TOOL_LENGTH,
+            both!(
+                "a tool change, and no tool was called before",
+                "смена инструмента, а до неё ни один инструмент не вызван"
+            ),
+            span,
+            both!("which tool?", "какой инструмент?"),
+        )
+        .help(both!("write T and the tool's number before it", "напишите перед ним T и номер инструмента"))
 }
 
 /// T of a turret: tool and offset in one number, `T0101`; offset 00 is none.
@@ -144,17 +162,7 @@ fn edge_of_loaded(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut 
     let changed = env.tool_change(words).map(|(_, span)| span);
     if let Some(span) = changed {
         if state.tool_selected.is_none() {
-            return Err(words
-                .refuse(
-                    codes::TOOL_LENGTH,
-                    both!(
-                        "a tool change, and no tool was called before",
-                        "смена инструмента, а до неё ни один инструмент не вызван"
-                    ),
-                    span,
-                    both!("which tool?", "какой инструмент?"),
-                )
-                .help(both!("write T before it", "напишите перед ним T")));
+            return Err(no_tool(words, span));
         }
         state.tool_loaded = state.tool_selected;
         state.edge_unsaid = true;
@@ -207,9 +215,12 @@ fn named(env: &Environment<'_>, words: &Words<'_, '_, '_>, span: Span, name: &st
 
 /// Refuses a motion in program coordinates while nobody has said which edge of the tool counts.
 #[inline]
-pub(crate) fn edge_is_said(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
+pub(crate) fn edge_is_said(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
     if !state.edge_unsaid {
         return Ok(());
+    }
+    if !env.dialect.edge_in_d {
+        return length_is_said(words, state);
     }
     Err(words
         .refuse(
@@ -219,6 +230,31 @@ pub(crate) fn edge_is_said(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<
             both!("moves by a tool length that a parameter chooses (MD20270 CUTTING_EDGE_DEFAULT)", "идёт с длиной, которую выбирает параметр MD20270 CUTTING_EDGE_DEFAULT"),
         )
         .help(both!("write T, M6 and D1 before it; or, where D alone is missing, `edge_at_change = 1` under `[program]` in the profile, where MD20270 is 1", "напишите перед ним T, M6 и D1; если нет только D, а MD20270 равен 1, впишите `edge_at_change = 1` в раздел `[program]` профиля")))
+}
+
+/// The same where a code says whether the length of the tool that came in holds: a rapid beside its axis needs none.
+fn length_is_said(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
+    let along = Letters::of(&[LINEAR[state.plane.axes()[2]]]);
+    if matches!(state.motion, MotionMode::Rapid(_)) && state.cycle.is_none() && !words.has(along) {
+        return Ok(());
+    }
+    Err(words
+        .refuse(
+            codes::TOOL_LENGTH,
+            both!(
+                "whether the length of the tool that came in holds is not said",
+                "не сказано, действует ли длина вошедшего инструмента"
+            ),
+            words.span(AXIS_LETTERS.or(ARC_LETTERS)),
+            both!(
+                "with its length on some controls, without it on others",
+                "на одних стойках с его длиной, на других без неё"
+            ),
+        )
+        .help(both!(
+            "write G43 behind the tool change, in this block or before it",
+            "напишите G43 после смены инструмента, в этом кадре или раньше"
+        )))
 }
 
 /// Brings in the offset of a number; 0 is none.

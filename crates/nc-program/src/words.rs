@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use diagnostic::{Code, Diagnostic, Entry, Text, both};
-use nc_syntax::dialect::{Action, CodeEntry, GCode};
+use nc_syntax::dialect::{Action, CodeEntry, GCode, MCode, TWord};
 use nc_syntax::{Block, Dialect, Invalid, ItemKind, Letters, Number, Span, Value};
 use smallvec::SmallVec;
 
@@ -158,13 +158,30 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                 ItemKind::Flow => {
                     return Err(words.not_static(item.span, &both!("this", "это")));
                 }
-                ItemKind::Invalid(reason) => return Err(Box::new(block.unreadable_at(reason, item.span))),
+                ItemKind::Invalid(reason) => {
+                    // `L1,3`
+                    let letter = block.text(item.span).first().map_or(0, u8::to_ascii_uppercase);
+                    let refused = words.refused_word(letter, item.span);
+                    return Err(refused.unwrap_or_else(|| Box::new(block.unreadable_at(reason, item.span))));
+                }
             }
         }
         if words.dialect.turning.as_ref().is_some_and(|turning| turning.increments) {
             words.increments()?;
         }
+        if words.dialect.t_word == TWord::Changes && words.has(Letters::of(b"T")) {
+            words.change_tool();
+        }
         Ok(())
+    }
+
+    /// T is the M code that changes the tool, where that does not stand beside it.
+    fn change_tool(&mut self) {
+        let changes = |row: &&MCode| row.changes_tool;
+        let Some(row) = self.dialect.m_codes.iter().find(changes) else { return };
+        if self.m_codes.iter().all(|(number, _)| *number != row.number) {
+            self.m_codes.push((row.number, self.span(Letters::of(b"T"))));
+        }
     }
 
     /// U and W stand for X and Z.
@@ -330,6 +347,22 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
     }
 
     fn letter(&mut self, letter: u8, index: usize, span: Span) -> Outcome<()> {
+        if let Some(refused) = self.refused_word(letter, span) {
+            return Err(refused);
+        }
+        if letter == b'N' && self.repeats_by_n() {
+            return Err(self
+                .refuse(
+                    codes::CYCLE_WORDS,
+                    both!("{} behind the words of its block", "{} после слов своего кадра", self.text(span)),
+                    span,
+                    both!("repeats the block so many times", "повторяет кадр столько раз"),
+                )
+                .help(both!(
+                    "write each repeat as a block of its own, and a block's number in front of its words",
+                    "напишите каждое повторение отдельным кадром, а номер кадра перед его словами"
+                )));
+        }
         let bit = Letters::of(&[letter]);
         if self.letters.any(bit) {
             let first = self.number(letter).map_or_else(String::new, |(_, first)| self.text(first));
@@ -351,6 +384,31 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
         self.letters = self.letters.or(bit);
         self.at[usize::from(letter - b'A')] = index as u32 + 1;
         Ok(())
+    }
+
+    /// The refusal of a word whose letter the table refuses; of its block's code, where that is refused.
+    #[inline]
+    fn refused_word(&self, letter: u8, span: Span) -> Option<Box<Diagnostic>> {
+        let row = self.dialect.refused_words.iter().find(|row| row.letter == letter)?;
+        let code = self.codes.iter().find_map(|code| match &code.entry.action {
+            Action::Refuse { reason, help } => Some((code.span, reason, help)),
+            _ => None,
+        });
+        let (span, reason, help) = code.unwrap_or((span, &row.reason, &row.help));
+        Some(self.refused_code(span, reason, help))
+    }
+
+    /// The refusal of a code or a letter by its row of the table.
+    pub(crate) fn refused_code(&self, span: Span, reason: &Text, help: &Text) -> Box<Diagnostic> {
+        let message = both!("{} is refused: {reason}", "{} не принимается: {reason:#}", self.text(span));
+        self.refuse(codes::REFUSED_CODE, message, span, both!("not understood", "не исполняется"))
+            .help(help.clone())
+    }
+
+    /// An N here would repeat the block.
+    fn repeats_by_n(&self) -> bool {
+        let begun = !self.codes.is_empty() || !self.letters.without(Letters::of(b"O")).is_empty();
+        begun && self.dialect.cycle_repeats.contains(&b'N')
     }
 
     fn preparatory(&mut self, number: Number, span: Span) -> Outcome<()> {
@@ -405,11 +463,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                     )));
             }
             if let Some((reason, help)) = row.and_then(|row| row.refuse.as_ref()) {
-                let message =
-                    both!("{} is refused: {reason}", "{} не принимается: {reason:#}", self.text(span));
-                return Err(self
-                    .refuse(codes::REFUSED_CODE, message, span, both!("not understood", "не исполняется"))
-                    .help(help.clone()));
+                return Err(self.refused_code(span, reason, help));
             }
             self.m_codes.push((value, span));
         }

@@ -1,6 +1,8 @@
 //! One test for each rule of reading, named by the trap it guards against.
 
 mod common;
+#[path = "rules/controls.rs"]
+mod controls;
 
 use common::{dialect, end, feed, motions, refusal, run, run_with, setup, uncorrected};
 use nc_program::modal::{MotionMode, Progress};

@@ -37,7 +37,7 @@ pub enum Paren {
     Command,
 }
 
-/// What `;` means.
+/// What `;` means where it ends no block ([`Dialect::end_of_block`]).
 ///
 /// ```
 /// # use nc_syntax::{Block, Reader};
@@ -57,8 +57,6 @@ pub enum Semicolon {
     None,
     /// The rest of the line is a comment.
     Comment,
-    /// End of block; what follows on the line is a new block.
-    EndOfBlock,
 }
 
 /// What `:` means.
@@ -929,6 +927,32 @@ impl Macros {
     }
 }
 
+/// Drilling cycles that are written out as moves.
+///
+/// ```
+/// let written = |dialect| nc_dialect::builtin(dialect).unwrap().flow.written_cycles.unwrap();
+/// // R and Z are the levels of a hole on one control, Z and I on the other.
+/// assert_eq!(written("okuma").levels, *b"RZ");
+/// assert_eq!(written("fagor").levels, *b"ZI");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WrittenCycles {
+    /// Letters of the level where the feed begins and of the bottom.
+    pub levels: [u8; 2],
+    /// What says where the tool returns to.
+    pub back: CycleBack,
+}
+
+/// What says to which level a written-out cycle returns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CycleBack {
+    /// M53: to the level of [`Action::ReturnLevel`]; M54: to where the feed begins. A motion code ends the cycle.
+    ByM,
+    /// [`Action::ReturnInitial`]: to where the tool stood when the cycle began; [`Action::ReturnR`]: to where the feed
+    /// begins. [`Action::CycleCancel`] alone ends the cycle.
+    ByG,
+}
+
 /// Variables, program flow and subprograms.
 ///
 /// ```
@@ -951,8 +975,8 @@ pub struct Flow {
     pub local_calls: bool,
     /// ATAN takes one value: `ATAN[y]/[x]` divides an angle, and is refused.
     pub one_value_atan: bool,
-    /// Drilling cycles return where M53 and M54 say (Okuma), and are written out.
-    pub return_by_m: bool,
+    /// Drilling cycles are written out as moves.
+    pub written_cycles: Option<WrittenCycles>,
     /// First and last number of the programs that builders and makers of probes keep in the control: called where no
     /// file has them, they are left alone.
     pub control_programs: Option<(u32, u32)>,
@@ -1086,6 +1110,39 @@ pub struct System {
     pub initial: Vec<GCode>,
 }
 
+/// A letter whose words are refused.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RefusedWord {
+    /// Upper case.
+    pub letter: u8,
+    /// Why.
+    pub reason: Text,
+    /// The way out.
+    pub help: Text,
+}
+
+/// What a T word does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TWord {
+    /// It selects what the M code that changes the tool brings in.
+    Selects,
+    /// It may bring in the tool, and its length, at once.
+    MayChange,
+    /// It is a tool change itself: what the M code of the table that changes the tool does, it does.
+    Changes,
+}
+
+/// Which tool length holds behind a tool change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LengthAtChange {
+    /// The one in force before, until a code says another.
+    Stays,
+    /// That of the tool which came in.
+    LoadedTool,
+    /// Controls differ: until a code says one, nothing may move along the tool.
+    Unsaid,
+}
+
 /// Everything that differs between controls.
 ///
 /// ```
@@ -1113,6 +1170,10 @@ pub struct Dialect {
     pub paren: Paren,
     /// What `;` means.
     pub semicolon: Semicolon,
+    /// The mark that ends a block; what follows on its line is a new one.
+    pub end_of_block: Option<u8>,
+    /// Behind `%` stand a name without blanks and words (`%4100 G71`), and a block's `%` need not be its first.
+    pub percent_words: bool,
     /// Character of block delete, if any.
     pub skip: Option<u8>,
     /// What `:` means.
@@ -1125,6 +1186,10 @@ pub struct Dialect {
     pub equals_words: bool,
     /// Letters of words, upper case; others are invalid.
     pub letters: Vec<u8>,
+    /// Letters whose words are refused.
+    pub refused_words: Vec<RefusedWord>,
+    /// Letters of a dwell's time; `None`: X, U, P, F and S, which may be left out.
+    pub dwell_time: Option<Letters>,
     /// Numbers.
     pub numbers: Numbers,
     /// Known G codes.
@@ -1163,8 +1228,10 @@ pub struct Dialect {
     /// A code of the tool length moves no axis: from there on the same place has other words (LinuxCNC). Where false some
     /// controls move the axis at once.
     pub length_shifts: bool,
-    /// A T word may bring in the tool, and its length, at once.
-    pub t_may_change_tool: bool,
+    /// What a T word does.
+    pub t_word: TWord,
+    /// Which tool length holds behind a tool change.
+    pub length_at_change: LengthAtChange,
     /// G10 L10 and L11 write the two parts of a tool length, L12 and L13 those of a radius (Fanuc).
     pub writes_lengths: bool,
     /// D1 is the offset of the tool that M6 brought in, D0 none (Sinumerik).

@@ -12,6 +12,8 @@ use crate::{Dialect, Invalid, Item, ItemKind, Number, Span, Value};
 pub(crate) struct Lexer<'d> {
     pub(crate) paren: Paren,
     pub(crate) semicolon: Semicolon,
+    end_of_block: Option<u8>,
+    percent_words: bool,
     skip: Option<u8>,
     colon: Colon,
     equals_words: bool,
@@ -68,6 +70,8 @@ impl<'d> Lexer<'d> {
         Self {
             paren: dialect.paren,
             semicolon: dialect.semicolon,
+            end_of_block: dialect.end_of_block,
+            percent_words: dialect.percent_words,
             skip: dialect.skip,
             colon: dialect.colon,
             equals_words: dialect.equals_words,
@@ -77,7 +81,9 @@ impl<'d> Lexer<'d> {
             long_words: &dialect.long_words,
             commands: &dialect.commands,
             m_codes: &dialect.m_codes,
-            copies_blocks: dialect.turning.is_none() && !dialect.flow.called && !dialect.flow.return_by_m,
+            copies_blocks: dialect.turning.is_none()
+                && !dialect.flow.called
+                && dialect.flow.written_cycles.is_none(),
             siemens: dialect.flow.macros == Macros::Siemens,
             okuma: dialect.flow.macros == Macros::Okuma,
             fanuc: dialect.flow.macros == Macros::Fanuc,
@@ -86,16 +92,12 @@ impl<'d> Lexer<'d> {
 
     /// Reads the items of `line` (without its end) from `at` on; returns where the block ends.
     ///
-    /// That is the line's end, or one past the `;` that ends the block. With `name_line` a first item that
+    /// That is the line's end, or one past the mark that ends the block. With `name_line` a first item that
     /// reads as prose is the program's name.
     pub(crate) fn block(&self, line: &[u8], mut at: usize, name_line: bool, items: &mut Vec<Item>) -> usize {
         let first = skip_blanks(line, at);
         if line.get(first) == Some(&b'%') {
-            push(items, ItemKind::Percent, first, first + 1);
-            at = skip_blanks(line, first + 1);
-            if line.get(at).is_some_and(|byte| !self.starts_comment(*byte)) {
-                at = self.push_name(line, at, items);
-            }
+            at = self.percent(line, first, items);
         } else if name_line && self.reads_as_prose(&line[first..]) {
             at = self.push_name(line, first, items);
         }
@@ -104,8 +106,12 @@ impl<'d> Lexer<'d> {
             let Some(&byte) = line.get(at) else {
                 return line.len();
             };
-            if byte == b';' && self.semicolon == Semicolon::EndOfBlock {
+            if Some(byte) == self.end_of_block {
                 return at + 1;
+            }
+            if byte == b'%' && self.percent_words {
+                at = self.percent(line, at, items);
+                continue;
             }
             // A letter and a plain number: what nearly every item is. O may start a statement.
             let letter = byte.to_ascii_uppercase();
@@ -124,9 +130,25 @@ impl<'d> Lexer<'d> {
         }
     }
 
-    const fn starts_comment(&self, byte: u8) -> bool {
-        (byte == b'(' && !matches!(self.paren, Paren::None))
-            || (byte == b';' && !matches!(self.semicolon, Semicolon::None))
+    fn starts_comment(&self, byte: u8) -> bool {
+        (byte == b'(' && self.paren != Paren::None)
+            || (byte == b';' && self.semicolon != Semicolon::None)
+            || Some(byte) == self.end_of_block
+    }
+
+    /// A `%` and the name beside it; returns where that ends.
+    fn percent(&self, line: &[u8], at: usize, items: &mut Vec<Item>) -> usize {
+        push(items, ItemKind::Percent, at, at + 1);
+        let name = skip_blanks(line, at + 1);
+        if line.get(name).is_none_or(|byte| self.starts_comment(*byte)) {
+            return name;
+        }
+        if !self.percent_words {
+            return self.push_name(line, name, items);
+        }
+        let end = self.end_of_text(line, name);
+        push(items, ItemKind::Name, name, end);
+        end
     }
 
     const fn has_letter(&self, letter: u8) -> bool {
@@ -166,7 +188,7 @@ impl<'d> Lexer<'d> {
         stop
     }
 
-    /// Where the next comment or the `;` of the block's end stands, else the end of the line.
+    /// Where the next comment or the mark of the block's end stands, else the end of the line.
     fn before_comment(&self, line: &[u8], at: usize) -> usize {
         line[at..].iter().position(|byte| self.starts_comment(*byte)).map_or(line.len(), |length| at + length)
     }

@@ -54,6 +54,15 @@ fn words_need_no_spaces_between_them() {
 }
 
 #[test]
+fn a_mark_ends_a_block_and_a_name_ends_at_a_blank() {
+    let dialect = Dialect { paren: Paren::None, end_of_block: Some(b'*'), percent_words: true, ..dialect() };
+    assert_eq!(
+        shown(b"%41-A G71*\nN10 G1 X+5 * ;far *\nN99 %41-A G71 *\n", &dialect),
+        ["Percent<%> Name<41-A> G71", "N10 G1 X5", "comment", "N99 Percent<%> Name<41-A> G71"]
+    );
+}
+
+#[test]
 fn a_number_keeps_how_it_was_written() {
     let (dialect, mut block) = (dialect(), Block::default());
     assert!(Reader::new(b"X+.50", &dialect).next(&mut block));
@@ -357,10 +366,12 @@ fn every_dialect() -> impl Strategy<Value = Dialect> {
         any::<bool>().prop_map(|nested| Paren::Comment { nested }),
         Just(Paren::Command)
     ];
-    let semicolon = prop_oneof![Just(Semicolon::None), Just(Semicolon::Comment), Just(Semicolon::EndOfBlock)];
-    (paren, semicolon, any::<bool>(), any::<bool>()).prop_map(
-        |(paren, semicolon, equals_words, spaces_inside)| {
-            let mut dialect = Dialect { paren, semicolon, equals_words, ..dialect() };
+    let semicolon = prop_oneof![Just(Semicolon::None), Just(Semicolon::Comment)];
+    let end_of_block = prop_oneof![Just(None), Just(Some(b';')), Just(Some(b'*'))];
+    (paren, semicolon, end_of_block, any::<[bool; 3]>()).prop_map(
+        |(paren, semicolon, end_of_block, [equals_words, spaces_inside, percent_words])| {
+            let mut dialect =
+                Dialect { paren, semicolon, end_of_block, percent_words, equals_words, ..dialect() };
             dialect.numbers.spaces_inside = spaces_inside;
             dialect
         },

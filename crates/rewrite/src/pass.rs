@@ -460,6 +460,7 @@ pub(crate) fn info(
         datum,
         offset: context.offset,
         centre_words: output.centre_words,
+        arcs_become_lines: !output.centre_words && !output.radius_word,
         arc_radius_tolerance_mm: output.arc_tolerance_mm(context.unit_mm),
         retreats: retreats(job.dialect),
         ..correction::Block::default()

@@ -2,7 +2,8 @@
 
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{
-    Colon, CycleLevels, FrameRules, LengthAfter, Numbers, OffsetL20, Output, Paren, PointFree, Semicolon,
+    Colon, CycleLevels, FrameRules, LengthAfter, LengthAtChange, Numbers, OffsetL20, Output, Paren,
+    PointFree, Semicolon, TWord,
 };
 
 /// A dialect without codes: reading needs none.
@@ -14,12 +15,16 @@ pub(crate) fn dialect() -> Dialect {
         assumptions: Vec::new(),
         paren: Paren::Comment { nested: false },
         semicolon: Semicolon::Comment,
+        end_of_block: None,
+        percent_words: false,
         skip: Some(b'/'),
         colon: Colon::Number,
         long_words: Vec::new(),
         labels: false,
         equals_words: false,
         letters: (b'A'..=b'Z').collect(),
+        refused_words: Vec::new(),
+        dwell_time: None,
         numbers: Numbers {
             point_free: PointFree::Unit,
             least_increment_decimals_mm: 3,
@@ -40,7 +45,8 @@ pub(crate) fn dialect() -> Dialect {
         length_under_g40: LengthAfter::Stays,
         length_under_g49: LengthAfter::Ends,
         length_shifts: false,
-        t_may_change_tool: false,
+        t_word: TWord::Selects,
+        length_at_change: LengthAtChange::Stays,
         writes_lengths: false,
         edge_in_d: false,
         cycle_levels: CycleLevels::Unstated,
@@ -79,7 +85,8 @@ pub(crate) fn dialect() -> Dialect {
 /// The same, of the conventional type: `;` ends blocks, no spaces in numbers.
 pub(crate) fn conventional() -> Dialect {
     let mut dialect = dialect();
-    dialect.semicolon = Semicolon::EndOfBlock;
+    dialect.semicolon = Semicolon::None;
+    dialect.end_of_block = Some(b';');
     dialect.numbers.spaces_inside = false;
     dialect
 }

@@ -1,0 +1,13 @@
+%HOLES,MX--,
+; Z is the plane where the feed begins, I the bottom; back to where the tool stood
+N10 G17 G71 G90 G54
+N20 T4 M06
+N30 S1800 M03
+N40 G00 X20 Y20
+N50 G43 Z40 M08
+N60 G98 G81 X20 Y20 Z2 I-18 F120
+N70 X60
+N80 X60 Y70
+N90 G80
+N100 G00 Z80 M09
+N110 M30

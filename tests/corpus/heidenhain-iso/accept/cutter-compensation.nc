@@ -1,0 +1,18 @@
+%SIDE G71 *
+N10 ;the path is the tool's radius off on the control *
+N20 T2 G17 S2200 *
+N30 G00 G40 G90 Z+10 M03 *
+N40 X-20 Y-20 *
+N50 G01 Z-5 F200 *
+N60 G41 X+0 Y+0 F300 *
+N70 Y+60 *
+N80 X+80 *
+N90 Y+0 *
+N100 X-20 *
+N110 G40 Y-20 *
+N120 G42 X+0 Y+0 *
+N130 X+80 *
+N140 G40 Y-20 *
+N150 G00 Z+50 *
+N160 M30 *
+N99999999 %SIDE G71 *

@@ -1,0 +1,8 @@
+%HOLE G71 *
+N10 ;expect VP0208: the levels are in Q parameters of another block *
+N20 T4 G17 S1800 *
+N30 G00 G40 G90 Z+50 M03 *
+N40 G200 Q200=+2 Q201=-18 Q206=+120 Q202=+5 Q210=+0 Q203=+0 Q204=+50 Q211=+0 *
+N50 X+20 Y+20 M99 *
+N60 M30 *
+N99999999 %HOLE G71 *

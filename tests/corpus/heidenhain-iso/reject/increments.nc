@@ -1,0 +1,6 @@
+%STEPS G71 *
+N10 ;expect VP0208: G91 holds for Y alone here *
+N20 G00 G40 G90 X+0 Y+0 Z+50 *
+N30 G01 X+10 G91 Y+5 F200 *
+N40 M30 *
+N99999999 %STEPS G71 *
