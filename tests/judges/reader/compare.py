@@ -37,7 +37,15 @@ class Machine:
 
 
 SHIFTED = Machine("shifted", (0.004, -0.003, 0.002), [[0.0] * 3] * 3, 0.0011)
-SLOPED = Machine("sloped", (0.004, -0.003, 0.002), [[5e-5, 0.0, 0.0], [3e-5, -4e-5, 0.0], [0.0, 2e-5, 7e-5]], 0.003)
+SLOPED = Machine("sloped", (0.004, -0.003, 0.002), [[5e-5, 0.0, 0.0], [3e-5, -4e-5, 0.0], [0.0, 2e-5, 7e-5]], 0.004)
+TURN_SHIFTED = Machine("turn_shifted", (0.004, 0.0, 0.002), [[0.0] * 3] * 3, 0.0011)
+TURN_SLOPED = Machine("turn_sloped", (0.004, 0.0, 0.002), [[5e-5, 0.0, 3e-5], [0.0] * 3, [2e-5, 0.0, 7e-5]], 0.004)
+
+
+def machines(turning):
+    return (TURN_SHIFTED, TURN_SLOPED) if turning else (SHIFTED, SLOPED)
+
+
 INCH = 0.003                                # four decimals of an inch instead of three of a millimetre
 
 

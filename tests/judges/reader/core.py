@@ -95,6 +95,9 @@ def inverse(a):
     return [row[3:] for row in m]
 
 
+IDENTITY = identity()
+
+
 class Frame:
     """axis = a w + b (offsets apart)."""
 
@@ -133,6 +136,8 @@ class Control:
     def words(self):
         """Where the axes stand, as words; None where not known."""
         off = self.offset()
+        if self.frame.a == IDENTITY:
+            return [None if p is None else p - o - b for p, o, b in zip(self.pos, off, self.frame.b)]
         v = [None if self.pos[i] is None else self.pos[i] - off[i] - self.frame.b[i] for i in range(3)]
         inv, found = inverse(self.frame.a), [None] * 3
         for i in range(3):

@@ -76,6 +76,8 @@ class FanucFlow:
             if text.startswith("#") or re.match(r"(IF|WH|DO|EN|GO)", text):
                 continue
             ended = self.block(text, depth)
+            if getattr(self, "jump_to", None):
+                pc, self.jump_to = self.jump_to, None        # behind the contour of a lathe's cycle
             if ended:
                 return ended == "all"
         return True

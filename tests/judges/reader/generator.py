@@ -9,20 +9,20 @@ class Mill:
     """Writes programs of one dialect."""
 
     ALL = {
-        "fanuc": "moves arcs cycles corners polar rotation mirror scaling shift preset offsets write sub macro loop jump "
+        "fanuc": "flowholes stairs turns_off moves arcs cycles corners polar rotation mirror scaling shift preset offsets write sub macro loop jump "
                  "home machine units misc",
-        "haas": "moves arcs cycles corners polar rotation mirror scaling shift preset offsets write sub local macro loop "
+        "haas": "flowholes stairs turns_off moves arcs cycles corners polar rotation mirror scaling shift preset offsets write sub local macro loop "
                 "jump home machine units misc",
-        "mitsubishi": "moves arcs cycles corners polar rotation mirror scaling preset offsets write sub macro loop jump "
+        "mitsubishi": "flowholes stairs turns_off moves arcs cycles corners polar rotation mirror scaling preset offsets write sub macro loop jump "
                       "home machine units misc",
-        "linuxcnc": "moves arcs cycles shift preset offsets write osub oloop oif home machine units misc centres turns",
-        "grbl": "moves arcs cycles shift preset offsets write osub oloop oif home machine units misc centres turns",
-        "mach": "moves arcs cycles rotation shift preset offsets oloop msub home machine units misc centres",
+        "linuxcnc": "flowholes turns_off moves arcs cycles shift preset offsets write osub oloop oif home machine units misc centres turns",
+        "grbl": "flowholes turns_off moves arcs cycles shift preset offsets write osub oloop oif home machine units misc centres turns",
+        "mach": "flowholes moves arcs cycles rotation shift preset offsets oloop msub home machine units misc centres",
         "centroid": "moves arcs cycles offsets home machine units misc",
         "perspektiva": "moves arcs cycles offsets home units misc centres",
         "balt-system": "moves units machine misc",
     }
-    WEIGHTS = {"moves": 4, "arcs": 3, "cycles": 6, "corners": 4, "polar": 2, "rotation": 3, "sub": 2, "macro": 2,
+    WEIGHTS = {"moves": 4, "arcs": 3, "cycles": 6, "corners": 4, "flowholes": 3, "stairs": 2, "turns_off": 2, "polar": 2, "rotation": 3, "sub": 2, "macro": 2,
                "osub": 3, "oloop": 3, "oif": 1, "loop": 2}
 
     def __init__(self, rng, dialect):
@@ -144,7 +144,7 @@ class Mill:
         if self.turned and kind in ("rotation", "mirror", "scaling", "shift", "preset", "offsets", "write", "units",
                                     "machine", "home", "misc"):
             return False
-        if self.depth and kind in ("sub", "macro", "osub", "msub", "local", "units", "home", "machine", "preset",
+        if self.depth and kind in ("flowholes", "stairs", "turns_off", "sub", "macro", "osub", "msub", "local", "units", "home", "machine", "preset",
                                    "write", "jump", "offsets", "shift"):
             return False
         if kind == "preset" and self.long and (not self.ngc or self.dialect == "mach") and self.rng.random() < 0.97:
@@ -301,7 +301,7 @@ class Mill:
         if self.p(0.1):
             text += " " + self.feed()
         if self.p(0.1):
-            code = r.choice((81, 83, 82)) if not self.dwells or self.p(0.03) else r.choice((82, 89))
+            code = r.choice((81, 83, 82)) if not self.dwells else r.choice((82, 89))
             text = f"G{code} {text} {self.cycle_words(code)}"
             text = self.once(text)
         if self.p(0.06):
@@ -672,6 +672,99 @@ class Mill:
         self.plane == 17 or self.say(f"G{self.plane}")
         self.say(f"N{label} G90 G0 {self.axis_words('XYZ', 40, 60)}")
         self.absolute = True
+
+    def open_loop(self, count):
+        """The first lines of a loop and its last ones."""
+        self.variable += 1
+        v, name = f"#{self.variable}", self.name()
+        if self.ngc:
+            kind = self.rng.choice(("repeat", "while"))
+            head = [f"{v}=0", f"o{name} repeat [{count}]" if kind == "repeat" else f"o{name} while [{v} lt {count}]"]
+            return v, head, [f"{v}=[{v}+1]", f"o{name} end{kind}"]
+        return v, [f"{v}=0", f"WHILE[{v}LT{count}]DO2"], [f"{v}={v}+1", "END2"]
+
+    def flowholes(self):
+        """A cycle that stays in force through a loop or a call whose blocks name places alone."""
+        r = self.rng
+        if self.turned or self.polars:
+            return
+        if self.plane != 17:
+            self.plane = 17
+            self.say("G17")
+        code = r.choice((81, 82, 83, 73, 85))
+        self.dwells = False
+        if self.p(0.5):
+            self.abs()
+            self.say(f"G0 {self.n(45, 70, 'Z')}")
+        level = r.choice(("G98 ", "G99 ", ""))
+        self.say(f"{level}G{code} {self.places('XY')} {self.cycle_words(code)} {self.feed()}")
+        k = 25.4 if self.inch else 1
+        where = r.random()
+        if where < 0.6 or self.depth:
+            v, head, tail = self.open_loop(r.randint(1, 3))
+            self.lines += head
+            step, at = f"{round(r.randint(5, 15) / k, 2)}", f"{round(r.randint(-30, 30) / k, 2)}"
+            self.lines.append(r.choice((f"X[{v}*{step}+{at}]", f"X[{v}*{step}+{at}] Y[0-{v}*{step}]", f"Y[{at}+{v}]"))
+                              if self.absolute else r.choice((f"X{step}", f"X{step} Y-{step}", f"Y[{step}+{v}]")))
+            if self.p(0.3):
+                self.lines.append(self.places(r.choice(("X", "Y", "XY"))))
+            self.lines += tail
+        elif not self.ngc:
+            name = self.name()
+            body = [self.places(r.choice(("X", "Y", "XY"))) for _ in range(r.randint(1, 3))]
+            if self.repeats and not self.absolute and self.p(0.4):
+                body[-1] += f" {self.repeats}{r.randint(2, 3)}"
+            self.tail += [f"O{name}"] + body + ["M99"]
+            self.say(f"M98 P{name}" + (f" L{r.randint(2, 3)}" if self.p(0.3) else ""))
+        if self.p(0.4):
+            self.say(self.places("X"))
+        if self.p(0.7):
+            self.say("G80")
+        self.after_cycle()
+
+    def stairs(self):
+        """Corners whose second line comes from the next turn of a loop, or from behind it."""
+        r = self.rng
+        if self.turned or self.polars or self.inch:
+            return
+        self.abs()
+        if self.plane != 17:
+            self.plane = 17
+            self.say("G17")
+        x, y, d = r.randint(-50, 20), r.randint(-50, 20), r.randint(15, 30)
+        self.say(f"G1 X{x}. Y{y}. {self.feed()}")
+        v, head, tail = self.open_loop(r.randint(1, 4))
+        self.lines += head
+        self.lines.append(f"X[{v}*{d}.+{x + d}.] ,{r.choice('RC')}{r.randint(1, 4)}.")
+        self.lines.append(f"Y[{v}*{d}.+{y + d}.] ,{r.choice('RC')}{r.randint(1, 4)}.")
+        self.lines += tail
+        self.say(f"X{x + 200}.")
+
+    def turns_off(self):
+        """A code that ends something, beside a motion."""
+        r = self.rng
+        if self.turned or self.polars or self.depth:
+            return
+        pick = r.random()
+        self.abs()
+        if self.plane != 17:
+            self.plane = 17
+            self.say("G17")
+        if pick < 0.35 and not self.ngc:
+            self.say(f"G68 {self.n(-40, 40, 'X')} {self.n(-40, 40, 'Y')} R{self.angle()}")
+            self.say(f"G1 {self.n(-40, 40, 'X')} {self.n(-40, 40, 'Y')} {self.feed()}")
+            self.say(f"{self.n(-40, 40, 'X')}")
+            self.say(f"G69 {r.choice(('G0', 'G1'))} {self.n(-40, 40, 'X')} {self.n(-40, 40, 'Y')}")
+        elif pick < 0.65 and not self.ngc:
+            self.say(f"G16 {r.choice(('G0', 'G1'))} {self.n(15, 60, 'X')} Y{self.angle()} {self.feed()}")
+            self.say(f"Y{self.angle()}")
+            self.say(f"G15 {r.choice(('G0', 'G1'))} {self.axis_words(self.some('XY'))}")
+        else:
+            self.dwells = False
+            code = r.choice((81, 83))
+            self.say(f"G{code} {self.places('XY')} {self.cycle_words(code)} {self.feed()}")
+            self.say(self.places("X"))
+            self.say(f"G80 {r.choice(('G0', 'G1'))} {self.axis_words(self.some('XY'))}")
 
     # ---- O-words ----
     def osub(self):

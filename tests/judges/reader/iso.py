@@ -50,6 +50,8 @@ class Block:
 
 
 class Iso(Control):
+    axis_letters = "XYZ@^"
+
     def __init__(self, dialect):
         super().__init__()
         self.o = {**COMMON, **OPTIONS[dialect]}
@@ -450,7 +452,7 @@ class Iso(Control):
         return self.target(named, False)
 
     def motion(self, block):
-        if not block.has("XYZ@^") and not (self.mode in (2, 3) and block.has("IJK")):
+        if not block.has(self.axis_letters) and not (self.mode in (2, 3) and block.has("IJK")):
             if block.comma:
                 raise Invalid("corner word without a line")
             return

@@ -41,6 +41,35 @@ zero = "true"
 [work_offsets_mm]
 {offsets}
 """
+LATHE = """format = 1
+name = "Judge's lathe (invented)"
+control = "{control}"
+chain = "[w S b Z X t]"
+[program]
+zero = "true"
+x = "diameter"
+{system}
+[axis.X]
+travel_mm = [-20000, 20000]
+resolution_mm = 0.0001
+errors = "{machine}_lx.csv"
+[axis.Z]
+travel_mm = [-20000, 20000]
+resolution_mm = 0.0001
+errors = "{machine}_lz.csv"
+[tool]
+lengths_mm = {{ H1 = [0, 0, 0], H2 = [5, 0, -7], H3 = [12.5, 0, 41.25] }}
+[work_offsets_mm]
+G54 = [100, 0, 40]
+G55 = [110, 0, 41]
+G56 = [-60, 0, -12]
+"""
+FANUC_LATHE = """g_code_system = "{system}"
+thread_chamfer_leads = 0
+drill_pecks = "full"
+drill_return_mm = 1.0
+drill_r = "way"
+bore_return_percent = 200"""
 OFFSETS = {"G54": (100, 80, 40), "G55": (110, 75, 41), "G56": (-60, 33, -12), "G57": (15, -140, 22), "G58": (7, 9, 3),
            "G59": (-200, 50, 70)}
 NUMBERED = {"G54.1P1": (21, 31, -9), "G54.1P2": (-44, 12, 5), "G54.1P7": (3, -73, 18)}
@@ -48,6 +77,8 @@ NUMBERED = {"G54.1P1": (21, 31, -9), "G54.1P2": (-44, 12, 5), "G54.1P7": (3, -73
 
 def profile(folder, dialect, machine):
     """The profile of one of the two machines."""
+    if dialect in readers.LATHES:
+        return lathe_profile(folder, dialect, machine)
     for axis, table in machine.tables().items():
         with open(os.path.join(folder, f"{machine.name}_{axis.lower()}.csv"), "w") as f:
             f.write(table)
@@ -56,6 +87,19 @@ def profile(folder, dialect, machine):
     with open(path, "w") as f:
         f.write(PROFILE.format(dialect=dialect, machine=machine.name,
                                offsets="\n".join(f'"{k}" = {list(v)}' for k, v in offsets.items())))
+    return path
+
+
+def lathe_profile(folder, dialect, machine):
+    for axis in "XZ":
+        rows = [row.split(",") for row in machine.tables()[axis].split("\n") if row]
+        with open(os.path.join(folder, f"{machine.name}_l{axis.lower()}.csv"), "w") as f:
+            f.write("\n".join(",".join((row[0], row[1], row[3])) for row in rows) + "\n")
+    system = readers.SYSTEMS.get(dialect)
+    path = os.path.join(folder, f"{dialect}_{machine.name}.toml")
+    with open(path, "w") as f:
+        f.write(LATHE.format(control="fanuc-lathe" if system else dialect, machine=machine.name,
+                             system=FANUC_LATHE.format(system=system) if system else ""))
     return path
 
 
@@ -179,7 +223,7 @@ def main():
     options = parser.parse_args()
     judge = Judge(options)
     for dialect in options.dialect or readers.DIALECTS:
-        machines = [(m, profile(judge.folder, dialect, m)) for m in (compare.SHIFTED, compare.SLOPED)]
+        machines = [(m, profile(judge.folder, dialect, m)) for m in compare.machines(dialect in readers.LATHES)]
         for seed in range(options.seed, options.seed + options.count):
             judge.one(dialect, seed, machines)
         counts = judge.count[dialect]

@@ -3,11 +3,14 @@
 from fanuc import FanucFlow
 from iso import Iso
 from generator import Mill
+from generator_lathe import LatheProgram
 from generator_okuma import OkumaMill
 from generator_siemens import SiemensMill
+from generator_siemens_turn import SiemensTurnProgram
+from lathe import Lathe
 from ngc import NgcFlow, PlainFlow
 from okuma import Okuma
-from siemens import Siemens
+from siemens import Siemens, SiemensTurn
 
 
 class Fanuc(FanucFlow, Iso):
@@ -26,20 +29,28 @@ ISO = {"fanuc": Fanuc, "haas": Fanuc, "mitsubishi": Fanuc, "linuxcnc": Ngc, "grb
        "centroid": Plain, "perspektiva": Plain, "balt-system": Plain}
 
 
+SYSTEMS = {"fanuc-lathe": "A", "fanuc-lathe-b": "B"}
+LATHES = ("fanuc-lathe", "fanuc-lathe-b", "sinumerik-turn", "linuxcnc-lathe")
+
+
 def read(dialect, text, include=None):
     """The motions of a program, as its control makes them."""
     if dialect in ISO:
         return ISO[dialect](dialect).run(text)
     if dialect == "okuma":
         return Okuma().run(text)
-    return {"sinumerik": Siemens}[dialect](include).run(text)
+    if dialect in SYSTEMS:
+        return Lathe(SYSTEMS[dialect]).run(text)
+    return {"sinumerik": Siemens, "sinumerik-turn": SiemensTurn}[dialect](include).run(text)
 
 
 def generate(dialect, rng, include):
     """A random program; files that it calls go into the folder `include`."""
     if dialect in ISO:
         return Mill(rng, dialect).program()
-    return {"sinumerik": SiemensMill, "okuma": OkumaMill}[dialect](rng, include).program()
+    if dialect in SYSTEMS:
+        return LatheProgram(rng, SYSTEMS[dialect]).program()
+    return {"sinumerik": SiemensMill, "okuma": OkumaMill, "sinumerik-turn": SiemensTurnProgram}[dialect](rng, include).program()
 
 
 def profile_offsets(dialect, plain, numbered):
@@ -51,5 +62,5 @@ def profile_offsets(dialect, plain, numbered):
     return {**plain, **(numbered if dialect in ("fanuc", "haas", "mitsubishi") else {})}
 
 
-DIALECTS = list(ISO) + ["sinumerik", "okuma"]
-FLAGS = {d: ["--decimal", "increments"] for d in ("fanuc", "haas", "mitsubishi", "okuma", "fanuc-lathe")}
+DIALECTS = list(ISO) + ["sinumerik", "okuma", "fanuc-lathe", "fanuc-lathe-b", "sinumerik-turn"]
+FLAGS = {d: ["--decimal", "increments"] for d in ("fanuc", "haas", "mitsubishi", "okuma", "fanuc-lathe", "fanuc-lathe-b")}

@@ -267,7 +267,7 @@ class Siemens(Control):
         if first in ("MCALL", "HOLES", "CYCLE"):
             self.cycle_line(line)
             return False
-        if re.match(r"([A-Z][A-Z_]{2,}[A-Z0-9_]*)\s*(?:P(\d+))?$", line) and first not in ("SUPA", "RET"):
+        if re.match(r"([A-Z][A-Z_]{2,}[A-Z0-9_]*)\s*(?:P(\d+))?$", line) and first not in ("SUPA", "RET", "DIAMON", "DIAMOF", "DIAM"):
             match = re.match(r"([A-Z0-9_]+)\s*(?:P(\d+))?$", line)
             self.call(match.group(1), int(match.group(2) or 1))
             return False
@@ -710,3 +710,38 @@ class Words:
             if match and depth == 0:
                 break
         return (match.group(1) if match else None), Tokens(line[begin:at], variables).expression(), at
+
+
+class SiemensTurn(Siemens):
+    """Turning: X a diameter behind DIAMON, in G90 alone behind DIAM90, a radius behind DIAMOF."""
+
+    tools = {1: (0.0, 0.0, 0.0), 2: (5.0, 0.0, -7.0), 3: (12.5, 0.0, 41.25)}
+
+    def __init__(self, include=None):
+        super().__init__(include)
+        self.plane, self.pos, self.feed_mode, self.diameter = 18, [None, 0.0, None], 95, "DIAMON"
+
+    def words_block(self, line):
+        b = Words(line, self.variables)
+        for name in ("DIAMON", "DIAMOF", "DIAM90"):
+            if name in b.names:
+                self.diameter = name
+        if "D" in b.words or "T" in b.words:
+            if "T" in b.words:
+                self.tool = int(b.words["T"][1])
+                self.side("T", self.tool)
+            number = int(b.words["D"][1]) if "D" in b.words else 1
+            self.length = list(self.tools[self.tool]) if number else [0.0] * 3
+            self.edge = number
+            line = re.sub(r"\b[TD]\d+", "", line)
+        if "LIMS" in line:
+            line = re.sub(r"LIMS=\d+", "", line)
+        return super().words_block(line)
+
+    def target_of(self, b):
+        if "X" in b.words:
+            how, value = b.words["X"]
+            absolute = how == "AC" or how is None and self.absolute
+            if self.diameter == "DIAMON" or self.diameter == "DIAM90" and absolute:
+                b.words["X"] = (how, value / 2)
+        return super().target_of(b)
