@@ -756,7 +756,8 @@ class Mill:
             self.say(f"{self.n(-40, 40, 'X')}")
             self.say(f"G69 {r.choice(('G0', 'G1'))} {self.n(-40, 40, 'X')} {self.n(-40, 40, 'Y')}")
         elif pick < 0.65 and not self.ngc:
-            self.say(f"G16 {r.choice(('G0', 'G1'))} {self.n(15, 60, 'X')} Y{self.angle()} {self.feed()}")
+            self.say("G16")
+            self.say(f"{r.choice(('G0', 'G1'))} {self.n(15, 60, 'X')} Y{self.angle()} {self.feed()}")
             self.say(f"Y{self.angle()}")
             self.say(f"G15 {r.choice(('G0', 'G1'))} {self.axis_words(self.some('XY'))}")
         else:

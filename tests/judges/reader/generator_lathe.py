@@ -2,7 +2,7 @@
 
 
 class LatheProgram:
-    KINDS = dict(moves=4, arcs=2, corners=4, angles=3, passes=4, faces=2, threads=1, holes=4, rough=4, face_rough=2,
+    KINDS = dict(moves=4, arcs=2, corners=4, angles=3, passes=4, flow=3, faces=2, threads=1, holes=4, rough=4, face_rough=2,
                  grooves=2, sub=2, loop=2, tool=1, offset=1, misc=1, home=1, lead=1)
 
     def __init__(self, rng, system):
@@ -146,6 +146,27 @@ class LatheProgram:
             x -= r.randint(1, 4)
             self.say(f"X{x}." if self.system == "B" or self.p(0.7) else f"U-{r.randint(2, 12)}.")
         self.behind()
+
+    def flow(self):
+        """A pass that stays in force through a loop, corners whose second line is the next turn's."""
+        r = self.rng
+        if self.depth:
+            return
+        self.here()
+        self.variable += 1
+        v, count = f"#{self.variable}", r.randint(1, 3)
+        if self.p(0.5):
+            self.say(f"{'G90' if self.system == 'A' else 'G77'} X{r.randint(34, 39)}. Z-{r.randint(5, 40)}. {self.feed()}")
+            self.lines += [f"{v}=0", f"WHILE[{v}LT{count}]DO1", f"X[33.-{v}*2]" if self.system == "B" or self.p(0.6) else
+                           f"U-[{v}+4.]", f"{v}={v}+1", "END1"]
+            self.behind()
+        else:
+            x, d = r.randint(10, 30), r.randint(8, 15)
+            self.say(f"G0 X{x}. Z2.")
+            self.lines += [f"{v}=0", f"WHILE[{v}LT{count}]DO1",
+                           f"G1 Z[-{d}.-{v}*{d}] ,{r.choice('RC')}{r.randint(1, 3)}. {self.feed()}",
+                           f"X[{x + 16}.+{v}*16.] ,{r.choice('RC')}{r.randint(1, 3)}.", f"{v}={v}+1", "END1"]
+            self.say("Z-90.")
 
     def faces(self):
         r = self.rng

@@ -4,7 +4,7 @@ import os
 
 
 class SiemensMill:
-    KINDS = dict(moves=5, arcs=4, holes=6, modal=7, corners=4, frame=5, offsets=2, loop=3, jump=1, sub=3, machine=1,
+    KINDS = dict(moves=5, arcs=4, holes=6, modal=7, corners=4, stairs=2, frame=5, offsets=2, loop=3, jump=1, sub=3, machine=1,
                  units=1, misc=1, tool=1, variables=2, refused=0.15)
 
     def __init__(self, rng, folder):
@@ -199,6 +199,8 @@ class SiemensMill:
                          f"{r.randint(-90, 90)},{r.choice((0, 30, 45, -20))},{r.randint(2, 6)})")
             elif pick < 0.9:
                 self.say(r.choice(("M8", "S1200", "G54", "M9")))
+            elif pick < 0.95 and not self.depth:
+                self.positions(p, q)
             else:
                 name = self.variable = self.variable + 1
                 self.say(f"FOR R{name}=1 TO {r.randint(1, 3)}")
@@ -207,6 +209,31 @@ class SiemensMill:
         self.inside = False
         self.say("MCALL")
         self.behind(kind)
+
+    def positions(self, p, q):
+        """A called file that names places alone, drilled because MCALL holds in it."""
+        name = f"L{100 + len(self.files)}"
+        self.files[name] = None
+        body = [self.places(self.some(p + q)) for _ in range(self.rng.randint(1, 3))]
+        with open(os.path.join(self.folder, f"{name}.SPF"), "w") as f:
+            f.write("\n".join(body + ["M17"]) + "\n")
+        self.say(name + self.rng.choice(("", "", " P2")))
+
+    def stairs(self):
+        """Corners whose second line comes from the next turn of a loop, or from behind it."""
+        r = self.rng
+        if self.inch:
+            return
+        self.abs()
+        p, q = {17: "XY", 18: "ZX", 19: "YZ"}[self.plane]
+        x, y, d = r.randint(-50, 20), r.randint(-50, 20), r.randint(15, 30)
+        self.say(f"G1 {p}{x} {q}{y} {self.feed()}")
+        self.variable += 1
+        name, kind = f"R{self.variable}", r.choice(("RND", "CHR", "CHF"))
+        self.say(f"FOR {name}=0 TO {r.randint(0, 3)}")
+        self.lines += [f"{p}={name}*{d}+{x + d} {kind}={r.randint(1, 4)}", f"{q}={name}*{d}+{y + d} RND={r.randint(1, 4)}",
+                       "ENDFOR"]
+        self.say(f"{p}{x + 250}")
 
     def corners(self):
         r = self.rng

@@ -1,9 +1,14 @@
 """One reader per dialect."""
 
+import tempfile
+
+import rs274
+from core import Invalid
 from fanuc import FanucFlow
 from iso import Iso
 from generator import Mill
 from generator_lathe import LatheProgram
+from generator_ngc_lathe import NgcLatheProgram
 from generator_okuma import OkumaMill
 from generator_siemens import SiemensMill
 from generator_siemens_turn import SiemensTurnProgram
@@ -33,12 +38,23 @@ SYSTEMS = {"fanuc-lathe": "A", "fanuc-lathe-b": "B"}
 LATHES = ("fanuc-lathe", "fanuc-lathe-b", "sinumerik-turn", "linuxcnc-lathe")
 
 
+def read_by_rs274(text):
+    """A lathe's program by LinuxCNC's own interpreter; its Y stands still."""
+    with tempfile.TemporaryDirectory(prefix="rs274-") as folder:
+        events, said = rs274.read(folder, text, turning=True)
+    if events is None:
+        raise Invalid(f"rs274: {said}")
+    return [e for e in events if not isinstance(e, tuple)]
+
+
 def read(dialect, text, include=None):
     """The motions of a program, as its control makes them."""
     if dialect in ISO:
         return ISO[dialect](dialect).run(text)
     if dialect == "okuma":
         return Okuma().run(text)
+    if dialect == "linuxcnc-lathe":
+        return read_by_rs274(text)
     if dialect in SYSTEMS:
         return Lathe(SYSTEMS[dialect]).run(text)
     return {"sinumerik": Siemens, "sinumerik-turn": SiemensTurn}[dialect](include).run(text)
@@ -50,7 +66,8 @@ def generate(dialect, rng, include):
         return Mill(rng, dialect).program()
     if dialect in SYSTEMS:
         return LatheProgram(rng, SYSTEMS[dialect]).program()
-    return {"sinumerik": SiemensMill, "okuma": OkumaMill, "sinumerik-turn": SiemensTurnProgram}[dialect](rng, include).program()
+    return {"sinumerik": SiemensMill, "okuma": OkumaMill, "sinumerik-turn": SiemensTurnProgram,
+            "linuxcnc-lathe": NgcLatheProgram}[dialect](rng, include).program()
 
 
 def profile_offsets(dialect, plain, numbered):
@@ -62,5 +79,6 @@ def profile_offsets(dialect, plain, numbered):
     return {**plain, **(numbered if dialect in ("fanuc", "haas", "mitsubishi") else {})}
 
 
-DIALECTS = list(ISO) + ["sinumerik", "okuma", "fanuc-lathe", "fanuc-lathe-b", "sinumerik-turn"]
+DIALECTS = list(ISO) + ["sinumerik", "okuma", "fanuc-lathe", "fanuc-lathe-b", "sinumerik-turn",
+                        "linuxcnc-lathe"]
 FLAGS = {d: ["--decimal", "increments"] for d in ("fanuc", "haas", "mitsubishi", "okuma", "fanuc-lathe", "fanuc-lathe-b")}

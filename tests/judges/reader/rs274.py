@@ -14,12 +14,13 @@ from iso import LENGTHS, OFFSETS
 CALL = re.compile(r"N\S*\s+([A-Z0-9_]+)\((.*)\)\s*$")
 
 
-def files(folder):
+def files(folder, turning):
     """The variable file and the tool table."""
     variables = os.path.join(folder, "judge.var")
     with open(variables, "w") as f:
         for k, code in enumerate(sorted(OFFSETS)):
             for i, value in enumerate(OFFSETS[code]):
+                value = 0.0 if turning and (i == 1 or code > 56) else value
                 f.write(f"{5221 + 20 * k + i}\t{value / 25.4:.10f}\n")
     table = os.path.join(folder, "judge.tbl")
     with open(table, "w") as f:
@@ -28,9 +29,9 @@ def files(folder):
     return variables, table
 
 
-def read(folder, text):
+def read(folder, text, turning=False):
     """(motions, None) or (None, what the interpreter says)."""
-    variables, table = files(folder)
+    variables, table = files(folder, turning)
     path = os.path.join(folder, "judge.ngc")
     with open(path, "w") as f:
         f.write(text)
@@ -80,7 +81,8 @@ def calls(text):
         elif name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED"):
             end = s.axes(values[:3])
             found.append(Motion("rapid" if name == "STRAIGHT_TRAVERSE" else "line", s.pos, end,
-                                feed=(s.mode, s.feed) if name == "STRAIGHT_FEED" else None))
+                                feed=(s.mode, s.feed) if name == "STRAIGHT_FEED" else None,
+                                named="" if name == "STRAIGHT_TRAVERSE" else "XYZ"))
             s.pos = end
         elif name == "ARC_FEED":
             p, q = {"XY": (0, 1), "XZ": (2, 0), "YZ": (1, 2)}[s.plane]
@@ -89,7 +91,7 @@ def calls(text):
             c[p], c[q] = values[2], values[3]
             end, centre = s.axes(v), s.axes(c)
             found.append(Motion("arc", s.pos, end, feed=(s.mode, s.feed), centre=(centre[p], centre[q]), plane=(p, q),
-                                ccw=values[4] > 0, turns=abs(int(values[4])) - 1))
+                                ccw=values[4] > 0, turns=abs(int(values[4])) - 1, named="XYZ"))
             s.pos = end
         elif name == "DWELL":
             found.append(("dwell", values[0]))
