@@ -37,9 +37,9 @@ class Machine:
 
 
 SHIFTED = Machine("shifted", (0.004, -0.003, 0.002), [[0.0] * 3] * 3, 0.0011)
-SLOPED = Machine("sloped", (0.004, -0.003, 0.002), [[5e-5, 0.0, 0.0], [3e-5, -4e-5, 0.0], [0.0, 2e-5, 7e-5]], 0.004)
+SLOPED = Machine("sloped", (0.004, -0.003, 0.002), [[5e-5, 0.0, 0.0], [3e-5, -4e-5, 0.0], [0.0, 2e-5, 7e-5]], 0.006)
 TURN_SHIFTED = Machine("turn_shifted", (0.004, 0.0, 0.002), [[0.0] * 3] * 3, 0.0011)
-TURN_SLOPED = Machine("turn_sloped", (0.004, 0.0, 0.002), [[5e-5, 0.0, 3e-5], [0.0] * 3, [2e-5, 0.0, 7e-5]], 0.004)
+TURN_SLOPED = Machine("turn_sloped", (0.004, 0.0, 0.002), [[5e-5, 0.0, 3e-5], [0.0] * 3, [2e-5, 0.0, 7e-5]], 0.006)
 
 
 def machines(turning):
@@ -183,7 +183,8 @@ class Comparison:
                                        + self.near for i, w in enumerate(wide)):
                 return f"another place of the machine{said}", j
             return None, j + 1
-        loose = [raw or axis not in m.named for raw, axis in zip(m.raw, "XYZ")]
+        lost = m.kind == "rapid" and None in m.end                 # where an axis is not known nothing is corrected
+        loose = [lost or raw or axis not in m.named for raw, axis in zip(m.raw, "XYZ")]
         wide = self.m.stale if any(loose) else 0.0
         feeds = ("line", "arc", "thread")
         if (m.kind in feeds) != (n.kind in feeds) or (m.kind == "thread") != (n.kind == "thread"):

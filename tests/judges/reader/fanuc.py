@@ -75,7 +75,10 @@ class FanucFlow:
                 continue
             if text.startswith("#") or re.match(r"(IF|WH|DO|EN|GO)", text):
                 continue
+            self.go_on_at, self.first = None, first
             ended = self.block(text, depth)
+            if not ended and self.go_on_at is not None:      # M99 P of what was called
+                pc, self.go_on_at = self.find(int(self.go_on_at), first), None
             if getattr(self, "jump_to", None):
                 pc, self.jump_to = self.jump_to, None        # behind the contour of a lathe's cycle
             if ended:
@@ -142,6 +145,7 @@ class FanucFlow:
         if 98 in m or (97 in m and self.dialect == "haas"):
             return self.call(block, depth)
         if 99 in m:
+            self.go_on_at = block.words.pop("P", None)
             self.execute(block)
             return "all" if depth == 0 else "sub"
         self.execute(block)

@@ -266,10 +266,12 @@ class Mill:
             self.say("G80")
             return
         code = self.rng.choice(("G0", "G1"))
+        if not self.ngc and self.lines and self.lines[-1].startswith("G80") and self.p(0.3):
+            code = ""                                       # what was in force before the cycle
         words = self.axis_words(self.some("XY")) if self.absolute else self.steps(self.some("XY"))
         if self.p(0.5):
             words += " " + (self.n(45, 80, "Z") if self.absolute else self.n(5, 20, "Z"))
-        self.say(f"{code} {words}")
+        self.say(f"{code} {words}".strip())
 
     def places(self, axes):
         if self.polars:

@@ -556,7 +556,9 @@ class Iso(Control):
             self.cycle_words = {}
         elif self.o["kind"] == "ngc":
             self.cycle_words = {}
-        self.cycle, self.mode = code, None
+        self.cycle = code
+        if self.o["kind"] == "ngc":
+            self.mode = None
 
     def normal(self):
         p, q = PLANES[self.plane]

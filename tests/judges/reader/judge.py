@@ -173,6 +173,30 @@ class Judge:
                 self.wrong(dialect, seed, text, answer[0], f"({machine.name}) {why}")
                 return
 
+    def given(self, dialect, path, machines):
+        """One program that somebody wrote."""
+        with open(path) as f:
+            text = f.read()
+        self.include = os.path.dirname(os.path.abspath(path))
+        try:
+            motions = readers.read(dialect, text, self.include)
+        except Invalid as why:
+            print(f"{path}: not read: {why}")
+            return
+        if dialect == "linuxcnc":
+            self.like_rs274(path, text, motions)
+        for machine, profile_path in machines:
+            answer = self.correct(dialect, text, profile_path)
+            if answer[1]:
+                print(f"{path}: refused {answer[1]}\n{answer[2]}")
+                return
+            try:
+                why, rises = compare.compare(machine, motions, readers.read(dialect, answer[0], self.include), True)
+            except Invalid as invalid:
+                why, rises = f"the output is no program: {invalid}", 0
+            print(f"{path}: {machine.name}: {why or 'the same'}" + (f", rises {rises}" if rises else ""))
+            self.count[dialect]["different"] += why is not None
+
     def like_rs274(self, seed, text, motions):
         """Whether LinuxCNC's own interpreter reads the program as this one does."""
         counts = self.count["linuxcnc"]
@@ -220,10 +244,15 @@ def main():
     parser.add_argument("--keep-refused", action="store_true")
     parser.add_argument("--dialect", action="append")
     parser.add_argument("--invalid", action="store_true", help="show why the generator's programs were thrown away")
+    parser.add_argument("--program", action="append", help="compare this program of one --dialect instead")
     options = parser.parse_args()
     judge = Judge(options)
     for dialect in options.dialect or readers.DIALECTS:
         machines = [(m, profile(judge.folder, dialect, m)) for m in compare.machines(dialect in readers.LATHES)]
+        for path in options.program or ():
+            judge.given(dialect, path, machines)
+        if options.program:
+            continue
         for seed in range(options.seed, options.seed + options.count):
             judge.one(dialect, seed, machines)
         counts = judge.count[dialect]

@@ -336,7 +336,8 @@ class Lathe(FanucFlow, Iso):
         return first, last
 
     def first_line(self):
-        return 0
+        """Where the program in force begins: labels are its own."""
+        return self.first
 
     def shape(self, block, behind=True):
         """The motions of the contour, in words, and the line behind it. The axes stay where they are."""
