@@ -164,9 +164,14 @@ class Comparison:
                 if None in a[i].start or not self.place(a[m - 1].end, b[n - 1].end, (False, False, False)):
                     continue
                 low = min(e.end[2] for e in a[i:m])
-                if all(self.m.real(e.end)[2] > low - self.m.stale for e in b[j:n]) and all(
-                        any(math.dist(self.m.real(e.end)[:2], f[:2]) < self.m.stale
-                            for f in [a[i].start] + [g.end for g in a[i:m]]) for e in b[j:n]):
+                before, after = [a[i].start] + [e.end for e in a[i:m]], [self.m.real(e.end) for e in b[j:n]]
+                levels = {round(e.end[2], 3) for e in a[max(0, i - 400):m] if e.end[2] is not None}
+                def over(p, places):
+                    return any(math.dist(p[:2], q[:2]) < self.m.stale for q in places)
+                if all(p[2] > low - self.m.stale and over(p, before)
+                       and any(abs(p[2] - level) < self.m.stale for level in levels) for p in after) and all(
+                        over(p, after + [a[i].start]) for p in before[1:]) and (
+                        max(p[2] for p in after) > max(p[2] for p in before[1:]) - self.m.stale):
                     return m, n
         return None
 
@@ -174,7 +179,8 @@ class Comparison:
         n = b[j]
         said = f"\n    program: {m}\n    output:  {n}"
         if m.kind == "reference":
-            if n.kind != m.kind or n.named != m.named:
+            if n.kind != m.kind or n.named != m.named or any(
+                    d is not None and abs(d) > self.m.stale + self.near for d in off(m.end, self.m.real(n.end))):
                 return f"another return{said}", j
             return None, j + 1
         if m.kind == "machine":
