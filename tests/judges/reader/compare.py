@@ -14,7 +14,7 @@ class Machine:
 
     def __init__(self, name, shift, slope, near):
         self.name, self.shift, self.slope, self.near = name, shift, slope, near
-        self.stale = 0.008 if not any(map(any, slope)) else 0.08     # what an axis may be off that nobody named
+        self.stale = 0.008 if not any(map(any, slope)) else 0.045    # what an axis may be off that nobody named
         self.tiny = self.stale                                       # motions no longer than this are none
 
     def real(self, q):
@@ -161,7 +161,7 @@ class Comparison:
             return k
         for m in range(run(a, i), i, -1):
             for n in range(run(b, j), j, -1):
-                if None in a[i].start or not self.place(a[m - 1].end, b[n - 1].end, (False, False, False)):
+                if None in a[i].start or not self.place(a[m - 1].end, b[n - 1].end, (True, True, True)):
                     continue
                 low = min(e.end[2] for e in a[i:m])
                 before, after = [a[i].start] + [e.end for e in a[i:m]], [self.m.real(e.end) for e in b[j:n]]

@@ -144,8 +144,8 @@ class Mill:
         if self.turned and kind in ("rotation", "mirror", "scaling", "shift", "preset", "offsets", "write", "units",
                                     "machine", "home", "misc"):
             return False
-        if self.depth and kind in ("flowholes", "stairs", "turns_off", "sub", "macro", "osub", "msub", "local", "units", "home", "machine", "preset",
-                                   "write", "jump", "offsets", "shift"):
+        if self.depth and kind in ("flowholes", "stairs", "turns_off", "sub", "macro", "osub", "msub", "local", "preset",
+                                   "write", "jump"):
             return False
         if kind == "preset" and self.long and (not self.ngc or self.dialect == "mach") and self.rng.random() < 0.97:
             return False
@@ -576,13 +576,16 @@ class Mill:
     # ---- flow ----
     def body(self, kinds="moves arcs cycles corners polar rotation"):
         """Lines of a subprogram or loop, written apart."""
-        was, self.lines = self.lines, []
+        was, self.lines, inch = self.lines, [], self.inch
         self.depth += 1
         for _ in range(self.rng.randint(1, 3)):
-            self.snippet_of(kinds)
+            self.snippet_of(kinds + (" units home machine shift offsets" if self.p(0.3) else ""))
         self.depth -= 1
+        if self.inch != inch:
+            self.inch = inch
+            self.lines.append("G20" if inch else "G21")
         body, self.lines = self.lines, was
-        return [line for line in body]
+        return body
 
     def name(self):
         self.number += 7

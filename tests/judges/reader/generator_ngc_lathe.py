@@ -85,7 +85,7 @@ class NgcLatheProgram:
         if was:
             self.say("G90")
 
-    def contour(self, axis):
+    def contour(self, axis, pockets=False):
         r = self.rng
         self.number += 1
         name = self.number
@@ -98,6 +98,12 @@ class NgcLatheProgram:
                 z -= r.randint(5, 12)
                 lines.append(f"G1 Z{z}")
                 d = r.randint(2, 5)
+                if pockets and x > 14 and self.p(0.4):         # a groove: in by a slope, along, and out again
+                    deep = r.randint(1, 3)
+                    lines.append(f"X{(x - 2 * deep) * k:g} Z{z - deep}")
+                    z -= deep + r.randint(2, 6)
+                    lines.append(f"Z{z}")
+                    x -= 2 * deep
                 x += 2 * d
                 pick = r.random()
                 if pick < 0.4:
@@ -133,7 +139,7 @@ class NgcLatheProgram:
     def cycle(self, axis, codes):
         r = self.rng
         self.abs()
-        name, lines, x, z = self.contour(axis)
+        name, lines, x, z = self.contour(axis, "G71.2" in codes)
         self.lines += lines
         k = 1 if self.how == "G7" else 0.5
         start = f" X{x * k:g} Z{z}" if self.p(0.6) else ""
@@ -150,7 +156,7 @@ class NgcLatheProgram:
             self.here()
 
     def rough(self):
-        self.cycle("X", ("G71", "G71.1", "G71"))
+        self.cycle("X", self.rng.choice((("G71", "G71.1", "G71"), ("G71", "G71.2"))))
 
     def face(self):
         self.cycle("Z", ("G72", "G72.1"))

@@ -652,7 +652,7 @@ class Iso(Control):
         top = self.initial if self.back == 98 else r
         if self.o["kind"] == "ngc":
             top = max(self.initial, r) if self.back == 98 else r
-        elif self.back == 98 and self.initial < r:
+        elif self.back == 98 and self.initial < r - 0.09:
             raise Invalid("G98 from a level below R: no manual says where it returns to")
         self.leave(top, r, n)
 

@@ -649,7 +649,7 @@ class Siemens(Control):
                 self.level("rapid", start)
                 if dts:
                     self.side("dwell", round(dts, 6))
-                self.level("rapid", at + ahead)
+                self.level("rapid", min(at + ahead, start))
             else:
                 self.level("line", at + 1.0 / inch)
 
