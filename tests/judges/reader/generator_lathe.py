@@ -2,7 +2,7 @@
 
 
 class LatheProgram:
-    KINDS = dict(moves=4, arcs=2, corners=4, angles=3, passes=4, flow=3, faces=2, threads=1, holes=4, rough=4, face_rough=2,
+    KINDS = dict(moves=4, arcs=2, corners=4, angles=3, passes=4, flow=3, faces=2, threads=1, holes=4, rough=4, pattern=2, face_rough=2,
                  grooves=2, sub=2, loop=2, tool=1, offset=1, misc=1, home=1, lead=1)
 
     def __init__(self, rng, system):
@@ -43,7 +43,7 @@ class LatheProgram:
         return "\n".join(self.lines) + "\n"
 
     def snippet(self, kinds):
-        kinds = [k for k in kinds if not (self.depth and k in ("sub", "rough", "face_rough", "tool", "offset", "home"))]
+        kinds = [k for k in kinds if not (self.depth and k in ("sub", "rough", "pattern", "face_rough", "tool", "offset", "home"))]
         getattr(self, self.rng.choices(kinds, [self.KINDS[k] for k in kinds])[0])()
 
     def here(self, x=None):
@@ -286,6 +286,19 @@ class LatheProgram:
         self.say(f"G71 U{self.n(1, 3, digits=1)} R{self.n(0.3, 1, digits=1)}")
         allowance = f" U{self.n(0.2, 0.8, digits=1)} W{self.n(0.05, 0.2, digits=2)}" if self.p(0.8) else ""
         self.say(f"G71 P{p} Q{q}{allowance} {self.feed()}")
+        self.lines += lines
+        if self.p(0.6):
+            self.say(f"G70 P{p} Q{q}")
+        self.behind()
+
+    def pattern(self):
+        r = self.rng
+        self.abs()
+        p, q, lines, x, z = self.contour("X")
+        self.say(f"G0 X{x}. Z{z}.")
+        self.say(f"G73 U{self.n(2, 6, digits=1)} W{self.n(0.5, 2, digits=1)} R{r.randint(2, 4)}")
+        allowance = f" U{self.n(0.2, 0.8, digits=1)} W{self.n(0.05, 0.2, digits=2)}" if self.p(0.8) else ""
+        self.say(f"G73 P{p} Q{q}{allowance} {self.feed()}")
         self.lines += lines
         if self.p(0.6):
             self.say(f"G70 P{p} Q{q}")

@@ -533,7 +533,30 @@ class Lathe(FanucFlow, Iso):
         if "P" not in block.words:
             self.pattern = (self.depth_of(block, "U"), self.depth_of(block, "W"), block.words["R"])
             return
-        raise Invalid("G73 is not modelled")
+        if self.pattern is None or self.feed is None:
+            raise Invalid("pattern without its relief or F")
+        feed, (relief_x, relief_z, count) = self.feed, self.pattern
+        count = int(count)
+        x0, _, z0 = self.words()
+        if None in (x0, z0) or count < 2:
+            raise Invalid("pattern from a place that is not known")
+        u, w = self.mm(block, "U", 0.0), self.mm(block, "W", 0.0)
+        moves, last = self.shape(block)
+        off = self.offset()
+        for k in range(count):
+            share = (count - 1 - k) / (count - 1)
+            shift = {0: relief_x * share + u, 2: relief_z * share + w}
+            self.at({0: x0 + shift[0], 2: z0 + shift[2]}, "rapid")
+            for event, end, centre in moves:
+                place = {0: end[0] + shift[0], 2: end[2] + shift[2]}
+                if event.kind == "arc":
+                    _, target, touched = self.target(place, True)
+                    self.move("arc", target, (0, 2), plane=(2, 0), ccw=event.ccw,
+                              centre=(centre[0] + shift[2] + off[2], centre[1] + shift[0] + off[0]))
+                else:
+                    self.at(place, event.kind)
+        self.at({0: x0, 2: z0}, "rapid")
+        self.feed, self.jump_to = feed, last + 1
 
     def g76(self, block):
         raise Invalid("G76 is not modelled")
