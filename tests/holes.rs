@@ -116,3 +116,28 @@ fn words_of_a_cycle_are_not_lost_to_one_that_stays_as_it_is() {
     assert!(written.contains("\nG86 X300. Z100. R250. P500\n"), "{written}");
     assert_eq!(place.check(text, &written, &options)["passed"], true, "{written}");
 }
+
+/// LinuxCNC crosses to the next hole at another height where R lies a micrometre above the level of the series' start.
+#[test]
+fn a_series_that_begins_at_its_r_begins_there_in_the_output() {
+    let place = Folder::new();
+    place.write("x.csv", "position_mm,EZX_um\n-100,-10\n600,4\n");
+    let axes = ["Y", "Z"].map(|name| format!("axis.{name} = {{ travel_mm = [-100, 600] }}\n")).concat();
+    let machine = place.write(
+        "machine.toml",
+        &format!(
+            "format = 1\nname = \"holes\"\ncontrol = {{ dialect = \"linuxcnc\", blending = {{ mode = \"exact-stop\" }} }}\n\
+             chain = \"[w X Y b Z t]\"\naxis.X = {{ errors = \"x.csv\" }}\n{axes}\
+             work_offsets_mm = {{ G54 = {{ at = [100, 100, 100], zero = \"true\" }} }}\n"
+        ),
+    );
+    let program = "G21 G17 G90 G94 G40 G49 G80 G54 G99\nG0 X0 Y0 Z23.07\nG81 X40 Y20 Z-5 R38.8 F200\n\
+                   X-34 Y-16 R23.07\nG80\nG0 Z60\nM2\n";
+    let (out, said) = place.corrected(program, &["-m", &machine]);
+    let word = |line: usize, letter: char| {
+        let line = out.lines().nth(line).expect("as many lines");
+        line.split(' ').find(|word| word.starts_with(letter)).expect("the word")[1..].to_owned()
+    };
+    assert_eq!(word(4, 'R'), word(2, 'Z'), "{out}\n{said}");
+    assert_ne!(word(3, 'R'), "38.8", "{out}");
+}

@@ -15,6 +15,9 @@ use crate::grid::{Block, Goal, Stated};
 use crate::remembered::Remembered;
 use crate::{Piece, PieceKind};
 
+/// Levels whose words are one differ by last bits, mm.
+const SAME_LEVEL_MM: f64 = 1e-9;
+
 /// A cycle that stays one block.
 struct Kept {
     piece: Piece,
@@ -365,6 +368,12 @@ impl<'m> Corrector<'m> {
             && (stands - r_origin - r_value) * outward > 0.5 * block.step_mm(normal)
         {
             (r, r_value) = absolute.write(normal, stands - r_origin, None);
+        }
+        // Where the series began at R, LinuxCNC goes down to it before it crosses once R lies a micrometre higher.
+        let began = level(began_mm);
+        let began_above = (hole.began_mm - at_r[normal]) * outward >= 0.0;
+        if began_above && (r_origin + r_value - began) * outward > SAME_LEVEL_MM {
+            (r, r_value) = absolute.write(normal, began - r_origin, None);
         }
         let b_told = block.stated.axes[normal];
         let choose_bottom = |r_value: f64| {
