@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import Any, Dict, Tuple, Union, overload
+from typing import Any, Dict, Optional, Tuple, Union, overload
 
 from . import _vpost
 from ._messages import Message, messages
@@ -38,6 +38,8 @@ class Corrected:
     deviation_before_um: float
     #: The same with it, µm.
     deviation_after_um: float
+    #: How far the control itself leaves the path at corners, µm; None where nobody says.
+    control_um: Optional[float]
     #: What the command warns of.
     warnings: Tuple[Message, ...]
     #: All figures: the JSON of ``vpost correct --summary``.
@@ -66,6 +68,8 @@ class Checked:
     #: The same by the corrected program.
     deviation_after_um: float
     deviation_after_line: int
+    #: How far the control leaves the corrected path at corners, µm; None where nobody says.
+    control_um: Optional[float]
     #: What is wrong.
     findings: Tuple[str, ...]
     #: What the command prints.
@@ -104,7 +108,8 @@ def correct(
     out, summary, told = _vpost.correct(encoded(text), name, options(profile, **asked), force)
     figures = json.loads(summary)
     names = (
-        "changed blocks_in blocks_out splits largest_correction_um deviation_before_um deviation_after_um".split()
+        "changed blocks_in blocks_out splits largest_correction_um "
+        "deviation_before_um deviation_after_um control_um".split()
     )
     return Corrected(
         text=out if isinstance(text, bytes) else out.decode("utf-8", "surrogateescape"),
