@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic, both, of_toml};
+use diagnostic::{Code, Diagnostic, Text, both, of_toml};
 use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer, Error};
@@ -11,6 +11,11 @@ use crate::checks::wide;
 use crate::shipped::TEXTS;
 use crate::table::Grammar;
 
+/// Where the fields are described.
+pub(crate) const EVERY_FIELD: Text = Text::pair(
+    "docs/dialects.md lists every field of a grammar",
+    "все поля таблицы диалекта описаны в docs/dialects.md",
+);
 /// The key that names the other table.
 const EXTENDS: &str = "extends";
 
@@ -103,10 +108,7 @@ fn refused(error: &Error) -> Diagnostic {
             of_toml(error.message().trim())
         ),
     )
-    .help(both!(
-        "docs/dialects.md lists every field of a grammar",
-        "все поля таблицы диалекта описаны в docs/dialects.md"
-    ));
+    .help(EVERY_FIELD);
     match error.span() {
         Some(span) => diagnostic.at(wide(span), both!("here", "здесь")),
         None => diagnostic,

@@ -114,11 +114,8 @@ fn path_control(
                     "expected \"exact\", \"unstated\", \"argument\", or the letter of the word that says how far, like \"P\"",
                     "ожидалось \"exact\", \"unstated\", \"argument\" или буква слова, которое задаёт отклонение, например \"P\""
                 );
-                let help = both!(
-                    "docs/dialects.md lists every field of a grammar",
-                    "все поля таблицы диалекта описаны в docs/dialects.md"
-                );
-                wrong.push(Diagnostic::error(Code(804), message).at(wide(value.span()), expected).help(help));
+                let found = Diagnostic::error(Code(804), message).at(wide(value.span()), expected);
+                wrong.push(found.help(inherited::EVERY_FIELD));
                 continue;
             }
         };
