@@ -1,19 +1,14 @@
 //! What the control adds to the path: said by the program, by the profile, or by nobody.
 
-use crate::common::{messages, run};
+use crate::common::{Place, messages, run};
 
 const CORNER: &str = "G0 X10. Y10. Z5.\nG1 Z0 F200.\nX40.\nY30.\nM30\n";
 
-struct Shop(tempfile::TempDir);
+struct Shop(Place);
 
 impl Shop {
     fn new() -> Self {
-        Self(tempfile::tempdir().expect("a folder"))
-    }
-
-    fn write(&self, name: &str, text: &str) -> String {
-        std::fs::write(self.0.path().join(name), text).expect("written");
-        self.0.path().join(name).display().to_string()
+        Self(Place::new())
     }
 
     fn profile(&self, control: &str) -> String {
@@ -24,18 +19,16 @@ impl Shop {
             "format = 1\nname = \"m\"\nchain = \"[w X Y b Z t]\"\ncontrol = {control}\n{}{zero}{skew}",
             axes.concat()
         );
-        self.write("machine.toml", &text)
+        self.0.write("machine.toml", &text)
     }
 
     /// What the summary says that the control adds, µm, and what is warned of.
     fn said(&self, control: &str, program: &str) -> (serde_json::Value, String) {
-        let [profile, program] = [self.profile(control), self.write("part.nc", program)];
-        let summary = self.0.path().join("summary.json").display().to_string();
-        let ran = run(&[&program, "-m", &profile, "--summary", &summary]);
-        assert!(ran.status.success(), "{}", messages(&ran));
+        let (profile, summary) = (self.profile(control), self.0.write("summary.json", ""));
+        let (_, said) = self.0.corrected(program, &["-m", &profile, "--summary", &summary]);
         let summary = std::fs::read_to_string(&summary).expect("it was written");
         let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
-        (summary["control_um"].clone(), messages(&ran))
+        (summary["control_um"].clone(), said)
     }
 }
 
@@ -106,13 +99,14 @@ fn the_profile_says_what_the_control_does_where_the_program_does_not() {
 #[test]
 fn passed_is_of_the_machine() {
     let shop = Shop::new();
-    let program = shop.write("part.nc", &format!("G21 G90 G54 G64 P0.05\n{CORNER}"));
+    let program = format!("G21 G90 G54 G64 P0.05\n{CORNER}");
     let profile = shop.profile("\"linuxcnc\"");
-    let out = shop.0.path().join("out.nc").display().to_string();
-    assert!(run(&[&program, "-m", &profile, "-o", &out]).status.success());
-    let checked = run(&["check", &program, &out, "-m", &profile]);
+    let (corrected, _) = shop.0.corrected(&program, &["-m", &profile]);
+    let [posted, corrected] =
+        [("part.nc", &program), ("out.nc", &corrected)].map(|(name, text)| shop.0.write(name, text));
+    let checked = run(&["check", &posted, &corrected, "-m", &profile]);
     let said = String::from_utf8_lossy(&checked.stdout).into_owned();
     assert!(said.ends_with("the control adds up to 100.0 um at corners (line 4)\npassed\n"), "{said}");
-    let strict = messages(&run(&[&program, "-m", &profile, "--strict"]));
+    let strict = shop.0.refused(&program, &["-m", &profile, "--strict"]);
     assert!(strict.starts_with("error[VP0529]") && strict.contains("write G61 before it"), "{strict}");
 }

@@ -57,7 +57,7 @@ pub struct Outcome {
     /// Lines that cannot be held within the tolerance; held against what the correction proves of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub accepted_lines: Option<usize>,
-    /// The same in words.
+    /// What distances count from, and what the control adds, in words.
     #[serde(skip)]
     pub said: Vec<Text>,
     /// What is wrong.

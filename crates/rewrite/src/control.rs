@@ -25,13 +25,14 @@ struct Cut {
 impl ControlPart {
     /// A feed is made in this state; the corners of a hole lie in the air.
     #[inline]
-    pub(crate) fn cut(&mut self, job: &Job<'_>, modal: &Modal, (span, line): (&Range<u64>, u64)) {
+    pub(crate) fn cut(&mut self, job: &Job<'_>, modal: &Modal, place: impl FnOnce() -> (Range<u64>, u64)) {
         let mut by = modal.path_control;
         if by.off_mm.is_infinite() {
             by.off_mm = job.blending_mm.unwrap_or(f64::INFINITY);
         }
         if self.off_mm().is_none_or(|known_mm| by.off_mm > known_mm) {
-            self.0 = Some(Cut { by, span: span.clone(), line });
+            let (span, line) = place();
+            self.0 = Some(Cut { by, span, line });
         }
     }
 
@@ -47,22 +48,15 @@ impl ControlPart {
         self.0.as_ref().map(|cut| cut.by.off_mm)
     }
 
-    /// The line of the program that is cut so first.
-    #[must_use]
-    pub fn line(&self) -> u64 {
-        self.0.as_ref().map_or(0, |cut| cut.line)
-    }
-
     /// What it adds to the path, in words; `None` where it adds nothing.
     #[must_use]
     pub fn said(&self) -> Option<Text> {
-        let off_mm = self.off_mm().filter(|off_mm| *off_mm > 0.0)?;
-        Some(if off_mm.is_finite() {
+        let Cut { by, line, .. } = self.0.as_ref().filter(|cut| cut.by.off_mm > 0.0)?;
+        Some(if by.off_mm.is_finite() {
             both!(
-                "the control adds up to {:.1} um at corners (line {})",
-                "стойка добавляет на углах до {:.1} мкм (строка {})",
-                1e3 * off_mm,
-                self.line()
+                "the control adds up to {:.1} um at corners (line {line})",
+                "стойка добавляет на углах до {:.1} мкм (строка {line})",
+                1e3 * by.off_mm
             )
         } else {
             both!(

@@ -371,7 +371,8 @@ impl Pass<'_> {
             self.tally.lengthless.cut(self.job, self.state.interpreter.modal(), &span, line);
         }
         if motions.iter().any(|motion| matches!(motion, Motion::Feed(_))) {
-            self.tally.figures.control.cut(self.job, self.state.interpreter.modal(), (&span, line));
+            let place = || (span.clone(), line);
+            self.tally.figures.control.cut(self.job, self.state.interpreter.modal(), place);
         }
         let Tally { figures, notices, .. } = &mut self.tally;
         for (motion, correction) in motions.iter().zip(corrections) {

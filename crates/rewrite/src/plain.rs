@@ -104,12 +104,15 @@ impl Pass<'_> {
         run: &ShortRun,
         decimals: [u8; 3],
     ) -> Result<(), Vec<Diagnostic>> {
-        let (first, line) = (lines[0].offset, lines[0].line);
-        let span = first..first + lines[0].content().len() as u64;
+        let place = || {
+            let PlainLine { offset, line, .. } = lines[0];
+            (offset..offset + lines[0].content().len() as u64, line)
+        };
         if let Some(datum) = self.datum.newly_used() {
+            let (span, line) = place();
             self.tally.cut_from(datum, self.job.options.tolerance_mm, (&span, line));
         }
-        self.tally.figures.control.cut(self.job, self.state.interpreter.modal(), (&span, line));
+        self.tally.figures.control.cut(self.job, self.state.interpreter.modal(), place);
         for ((line, end), counts) in lines.iter().zip(ends).zip(run.counts).take(run.count) {
             if counts == [None; 3] {
                 self.state.emitter.pass_line(line, &mut self.out);

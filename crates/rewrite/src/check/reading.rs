@@ -268,7 +268,7 @@ impl<'a, 'n> Program<'a, 'n> {
             let datum = self.datum.placement(self.job.datums, self.job.machine(), context);
             let cuts = matches!(motion, Motion::Feed(_) | Motion::Hole(_));
             if matches!(motion, Motion::Feed(_)) {
-                self.control.cut(self.job, self.interpreter.modal(), (&block.file_range(), line));
+                self.control.cut(self.job, self.interpreter.modal(), || (block.file_range(), line));
             }
             if let Some(datum) = cuts.then(|| self.datum.newly_used()).flatten()
                 && !self.datums.iter().any(|known| known.is(datum))
