@@ -46,9 +46,9 @@ def distances(points, path):
 def farthest(recorded, lines, machine, path):
     """The largest distance of the tip from its path while it feeds, mm. A feed behind a rapid may first lead from where that
     has left the tip to the corrected start, in the air: the path counts from there."""
-    rows = recorded[np.isin(recorded[:, 3].astype(int), sorted(lines))]
-    off = distances(rows[:, :3] + machine.error_mm(rows[:, :3]), path)
     feeds = np.isin(recorded[:, 3].astype(int), sorted(lines))
+    commanded = recorded[feeds, :3]
+    off = distances(commanded + machine.error_mm(commanded), path)
     begins = np.flatnonzero(feeds & ~np.r_[False, feeds[:-1]])
     counted = np.ones(len(off), dtype=bool)
     for begin in begins:

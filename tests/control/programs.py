@@ -36,8 +36,8 @@ class Writer:
         self.blocks.append(f"{code} {words}" + (f" F{f:.0f}" if f else ""))
         start = math.atan2(at[1] - centre[1], at[0] - centre[0])
         turn = math.atan2(to[1] - centre[1], to[0] - centre[0]) - start
-        turn = turn % (2 * math.pi) or 2 * math.pi
-        turn = turn - 2 * math.pi if code == "G2" and turn < 2 * math.pi else (-turn if code == "G2" else turn)
+        sense = -1 if code == "G2" else 1
+        turn = sense * ((sense * turn) % (2 * math.pi) or 2 * math.pi)
         radius = math.dist(at[:2], centre)
         for k in range(1, CHORDS + 1):
             angle = start + turn * k / CHORDS
