@@ -13,7 +13,7 @@ use crate::flow::variables;
 use crate::jump::CallKind;
 use crate::o_word::{Label, OStatement, OWord};
 use crate::program::Source;
-use crate::run::{Place, Run};
+use crate::run::{Place, Run, Visit};
 use crate::statement::{Call, Control, Kind, Statement};
 use crate::value::{NameId, Program, Value};
 
@@ -147,8 +147,7 @@ impl<'a> Run<'a, '_> {
         source: &Source<'a>,
         statement: &Statement,
         call: &Call,
-        place: Place,
-        again: bool,
+        visit: Visit,
     ) -> Result<(), Stop> {
         let words = source.bytes(statement);
         if !self.are_untouched(&variables(words)) {
@@ -165,10 +164,10 @@ impl<'a> Run<'a, '_> {
                 ),
             ));
         }
-        self.copy(source, statement, place, again);
+        self.copy(source, statement, visit);
         self.note(statement);
         let number = self.known(&call.number)?;
-        if place.file == 0 && !self.declared(call, number as u32) {
+        if visit.place.file == 0 && !self.declared(call, number as u32) {
             let code = if call.arguments.is_some() { "G65" } else { "M98" };
             let span = source.span(statement);
             self.left_alone.entry(format!("{code} P{number}")).or_insert(span);

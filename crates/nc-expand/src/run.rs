@@ -28,6 +28,14 @@ pub(crate) struct Place {
     pub(crate) statement: u32,
 }
 
+/// A place that is reached.
+#[derive(Clone, Copy)]
+pub(crate) struct Visit {
+    pub(crate) place: Place,
+    /// Not for the first time.
+    pub(crate) again: bool,
+}
+
 pub(crate) struct Run<'a, 'e> {
     pub(crate) dialect: &'e Dialect,
     pub(crate) environment: &'e Environment<'e>,
@@ -148,20 +156,19 @@ impl<'a> Run<'a, '_> {
 
     /// Executes one block and moves on.
     fn step(&mut self, source: &Source<'a>, statement: &Statement) -> Result<Next, Stop> {
-        let place = self.at;
-        let again = self.visit(place);
+        let visit = self.visit(self.at);
+        let place = visit.place;
         self.at.statement += 1;
-        if statement.flags.starts {
-            if let Some(frame) = self.frames.last() {
-                return Err(self.no_return(frame.kind));
-            }
-            if self.started {
-                let program = match &statement.kind {
-                    Kind::Program(program) => *program,
-                    _ => source.program_at(place.statement),
-                };
-                return Err(faults::runs_into(&program.written(&self.names)));
-            }
+        let another = statement.flags.starts || matches!(statement.kind, Kind::Percent);
+        if let Some(frame) = self.frames.last().filter(|_| another) {
+            return Err(self.no_return(frame.kind));
+        }
+        if statement.flags.starts && self.started {
+            let program = match &statement.kind {
+                Kind::Program(program) => *program,
+                _ => source.program_at(place.statement),
+            };
+            return Err(faults::runs_into(&program.written(&self.names)));
         }
         match &statement.kind {
             _ if statement.flags.ends && self.called_by_name() => {
@@ -171,56 +178,41 @@ impl<'a> Run<'a, '_> {
                 )));
             }
             Kind::Copy => {
-                self.copy(source, statement, place, again);
+                self.copy(source, statement, visit);
                 self.note(statement);
                 self.acted |= statement.flags.words && !statement.flags.ends;
                 if statement.flags.routine {
                     self.routine(source, statement, place)?;
                 }
-                if again {
-                    self.spend(1)?;
-                }
+                self.spend(u64::from(visit.again))?;
                 self.bounded()?;
-                if statement.flags.ends && !statement.flags.skip {
-                    return Ok(Next::Ended);
-                }
             }
             Kind::Print(variables) => {
                 self.started = true;
-                self.print(source, statement, variables, place, again);
-                self.spend(u64::from(again))?;
+                self.print(source, statement, variables, visit);
+                self.spend(u64::from(visit.again))?;
                 self.bounded()?;
             }
             Kind::Complex(complex) => {
-                if again {
-                    self.spend(1 + u64::from(complex.cost) / 16)?;
-                }
+                self.spend(u64::from(visit.again) * (1 + u64::from(complex.cost) / 16))?;
                 self.started = true;
                 self.acted |= !complex.defines();
-                self.complex(source, statement, complex, place, again)?;
+                self.complex(source, statement, complex, visit)?;
                 self.bounded()?;
                 if statement.flags.routine {
                     self.routine(source, statement, place)?;
                 }
-                if statement.flags.ends && !statement.flags.skip {
-                    return Ok(Next::Ended);
-                }
             }
             Kind::Percent => {
-                if let Some(frame) = self.frames.last() {
-                    return Err(self.no_return(frame.kind));
-                }
-                self.copy(source, statement, place, again);
+                self.copy(source, statement, visit);
                 if self.started {
                     return Ok(Next::Ended);
                 }
             }
-            Kind::Program(_) => {
-                self.copy(source, statement, place, again);
-            }
+            Kind::Program(_) => self.copy(source, statement, visit),
             Kind::Broken(diagnostic) => return Err(Stop::Diagnostic(diagnostic.clone())),
         }
-        Ok(Next::On)
+        Ok(if statement.flags.ends && !statement.flags.skip { Next::Ended } else { Next::On })
     }
 
     /// A subprogram ends without its return.
@@ -240,15 +232,14 @@ impl<'a> Run<'a, '_> {
         main.statements.get(*first as usize).map(|statement| main.span(statement))
     }
 
-    /// Notes an execution; true where it is not the first.
-    fn visit(&mut self, place: Place) -> bool {
+    fn visit(&mut self, place: Place) -> Visit {
         let (word, bit) = (place.statement as usize / 64, 1_u64 << (place.statement % 64));
         let Some(slot) = self.visited.get_mut(place.file).and_then(|bits| bits.get_mut(word)) else {
-            return true;
+            return Visit { place, again: true };
         };
         let again = *slot & bit != 0;
         *slot |= bit;
-        again
+        Visit { place, again }
     }
 
     pub(crate) fn spend(&mut self, steps: u64) -> Result<(), Stop> {
@@ -312,16 +303,21 @@ impl<'a> Run<'a, '_> {
         self.previous = Some(place);
     }
 
-    pub(crate) fn copy(&mut self, source: &Source<'a>, statement: &Statement, place: Place, again: bool) {
-        self.join(place);
+    /// The N word that a block loses, which is reached again or called: no number repeats.
+    fn dropped_number(&self, statement: &Statement, visit: Visit) -> Option<Span> {
+        statement.flags.number.filter(|_| visit.again || !self.frames.is_empty())
+    }
+
+    pub(crate) fn copy(&mut self, source: &Source<'a>, statement: &Statement, visit: Visit) {
+        self.join(visit.place);
         let bytes = source.bytes(statement);
-        let from = self.from(statement, place);
-        match statement.flags.number.filter(|_| again || !self.frames.is_empty()) {
+        let from = self.from(statement, visit.place);
+        match self.dropped_number(statement, visit) {
             None if statement.flags.idle || statement.flags.starts => self.out.idle(bytes, from),
             None => self.out.text(bytes, from),
             Some(number) => {
                 let rest = [&bytes[..number.start as usize], &bytes[number.end as usize..]].concat();
-                self.out.write(&rest, From { number: lost_number(bytes, number), ..from });
+                self.out.write(&rest, From { number: value_of_number(bytes, number), ..from });
             }
         }
     }
@@ -332,18 +328,17 @@ impl<'a> Run<'a, '_> {
         source: &Source<'a>,
         statement: &Statement,
         variables: &[Option<Variable>],
-        place: Place,
-        again: bool,
+        visit: Visit,
     ) {
         if self.are_untouched(variables) {
-            return self.copy(source, statement, place, again);
+            return self.copy(source, statement, visit);
         }
-        if place.file == 0 {
+        if visit.place.file == 0 {
             self.first_output.get_or_insert_with(|| source.span(statement));
         }
-        if !again {
-            self.join(place);
-            let from = self.from(statement, place);
+        if !visit.again {
+            self.join(visit.place);
+            let from = self.from(statement, visit.place);
             self.out.comment(source.bytes(statement).trim_ascii_end(), from);
         }
     }
@@ -359,13 +354,13 @@ impl<'a> Run<'a, '_> {
         source: &Source<'a>,
         statement: &Statement,
         complex: &Complex,
-        place: Place,
-        again: bool,
+        visit: Visit,
     ) -> Result<(), Stop> {
+        let place = visit.place;
         if let Some(Control::Call(call)) = &complex.control
             && self.is_left_alone(source, call, place)?
         {
-            return self.leave_alone(source, statement, call, place, again);
+            return self.leave_alone(source, statement, call, visit);
         }
         if statement.flags.skip && (complex.control.is_some() || !complex.assignments.is_empty()) {
             return Err(faults::block_delete());
@@ -376,14 +371,13 @@ impl<'a> Run<'a, '_> {
         let shown = shown.strip_suffix(b";").unwrap_or(shown);
         if complex.has_words {
             let base: &[u8] = complex.residual.as_deref().unwrap_or(bytes);
-            let stripped = again || !self.frames.is_empty();
-            let text = self.edited(statement, complex, base, stripped)?;
-            let number =
-                statement.flags.number.filter(|_| stripped).and_then(|number| lost_number(bytes, number));
+            let number = self.dropped_number(statement, visit);
+            let text = self.edited(statement, complex, base, number.is_some())?;
+            let number = number.and_then(|number| value_of_number(bytes, number));
             self.join(place);
             self.out.comment(shown, from);
             self.out.write(&text, From { number, ..from });
-        } else if !again {
+        } else if !visit.again {
             self.join(place);
             self.out.comment(shown, from);
         }
@@ -581,16 +575,15 @@ impl<'a> Run<'a, '_> {
     /// The trailer of the file, and the result.
     fn finish(mut self) -> Result<Expanded<'a>, Refusal> {
         let main = Rc::clone(&self.sources[0]);
+        let end = main.statements.len();
         let closing = main.statements.iter().rposition(|statement| matches!(statement.kind, Kind::Percent));
-        if let Some(closing) = closing {
-            for at in closing..main.statements.len() {
-                let place = Place { file: 0, statement: at as u32 };
-                if at == closing && self.visit(place) && self.previous != Some(place) {
-                    break;
-                }
-                if self.previous != Some(place) {
-                    self.copy(&main, &main.statements[at], place, false);
-                }
+        for at in closing.unwrap_or(end)..end {
+            let place = Place { file: 0, statement: at as u32 };
+            if Some(at) == closing && self.visit(place).again && self.previous != Some(place) {
+                break;
+            }
+            if self.previous != Some(place) {
+                self.copy(&main, &main.statements[at], Visit { place, again: false });
             }
         }
         let mut warnings = Vec::new();
@@ -649,7 +642,7 @@ impl<'a> Run<'a, '_> {
     }
 }
 
-/// The number of an N word that is left out.
-fn lost_number(bytes: &[u8], word: Span) -> Option<u32> {
+/// The number of an N word.
+fn value_of_number(bytes: &[u8], word: Span) -> Option<u32> {
     std::str::from_utf8(bytes.get(word.start as usize + 1..word.end as usize)?).ok()?.trim().parse().ok()
 }

@@ -1,10 +1,11 @@
 //! The blocks between P and Q as a way in the plane of radius and Z.
 
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use diagnostic::{Text, both};
 use nc_syntax::dialect::{Action, TurningCycle};
-use nc_syntax::{ItemKind, Span, Value};
+use nc_syntax::{Dialect, ItemKind, Span, Value};
 use units::math;
 
 use super::drawing::{self, Drawing};
@@ -19,6 +20,24 @@ use crate::shorthand::Words;
 const TURNS_BACK: f64 = 1e-3;
 /// Angles nearer to an end of an arc than this are that end, rad.
 const AT_AN_END_RAD: f64 = 1e-9;
+
+/// Indices of blocks by their N, and whether all of one N stand in one place of the source.
+pub(super) type Numbers = BTreeMap<i64, (Vec<usize>, bool)>;
+
+/// The blocks that have an N, or had one in the source.
+pub(super) fn numbers(blocks: &[Came<'_>], dialect: &Dialect) -> Numbers {
+    let mut numbers = Numbers::new();
+    for (index, came) in blocks.iter().enumerate() {
+        let own = Words::of(came, dialect).number(b'N');
+        let number = own.map_or(came.from.number.map(i64::from), |(number, _)| number.integer());
+        let Some(number) = number else { continue };
+        let (indices, one_place) = numbers.entry(number).or_insert((Vec::new(), true));
+        let place = |index: usize| (blocks[index].from.file, blocks[index].from.offset);
+        *one_place &= indices.last().is_none_or(|last| place(*last) == place(index));
+        indices.push(index);
+    }
+    numbers
+}
 
 /// Index in the plane: radius (X), or Z.
 pub(super) type Axis = usize;
@@ -333,20 +352,14 @@ impl Writer<'_, '_, '_> {
                 both!("P and Q name the blocks of its contour", "P и Q называют кадры его контура"),
             ));
         };
-        let is_it = |index: &usize| {
-            let block = self.words(*index);
-            let n = block.number(b'N').map_or(block.from.number.map(i64::from), |(n, _)| n.integer());
-            n.is_some() && n == number.integer()
-        };
-        let found: Vec<usize> = (0..self.blocks.len()).filter(is_it).collect();
-        let place = |index: usize| (self.blocks[index].from.file, self.blocks[index].from.offset);
-        let one_place = found.windows(2).all(|pair| place(pair[0]) == place(pair[1]));
+        let found = number.integer().and_then(|number| self.numbers.get(&number));
+        let (found, one_place) = found.map_or((&[][..], true), |(found, one_place)| (&found[..], *one_place));
         let finishes = cycle_of(words).is_some_and(|(cycle, _)| cycle == TurningCycle::Finish);
         // Of a block that is reached more than once roughing means the next time, finishing the last one.
         let nearest = if finishes {
-            found.iter().rfind(|index| **index < cycle).or(found.first())
+            found[..found.partition_point(|index| *index < cycle)].last().or(found.first())
         } else {
-            found.iter().find(|index| **index > cycle).or(found.last())
+            found.get(found.partition_point(|index| *index <= cycle)).or(found.last())
         };
         match (nearest.filter(|_| one_place), found.first()) {
             (Some(nearest), _) => Ok(*nearest),

@@ -107,6 +107,7 @@ struct Writer<'b, 'a, 'd> {
     dialect: &'d Dialect,
     turning: &'d Turning,
     blocks: &'b [Came<'a>],
+    numbers: contour::Numbers,
     out: &'b mut Rewriting<'d>,
     /// What the codes of the block in hand make of the one reader's state.
     here: Modal,
@@ -128,6 +129,7 @@ impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
             dialect: out.dialect,
             turning,
             blocks,
+            numbers: contour::numbers(blocks, out.dialect),
             pass: None,
             passed: false,
             open: false,
