@@ -7,6 +7,7 @@
 mod entry;
 mod language;
 mod others;
+mod refusal;
 mod speaks;
 mod text;
 
@@ -16,6 +17,7 @@ use std::ops::Range;
 pub use entry::Entry;
 pub use language::{Language, russian_plural};
 pub use others::{of_system, of_toml};
+pub use refusal::Refusal;
 pub use speaks::Speaks;
 pub use text::Text;
 

@@ -1,6 +1,6 @@
 //! What only the control has: programs and functions that are left alone, and what is unknown behind them.
 
-use diagnostic::{Diagnostic, both};
+use diagnostic::{Diagnostic, Refusal, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::Action;
 use smallvec::smallvec;
@@ -60,5 +60,5 @@ pub(crate) fn moves_itself(words: &Words<'_, '_, '_>, span: Span) -> Box<Diagnos
     let label =
         both!("before or after the motion? controls differ", "до движения или после? у стоек по-разному");
     let help = both!("write it in a block of its own", "напишите её отдельным кадром");
-    words.refuse(codes::COMBINATION, message, span, label).help(help)
+    words.refuse(Refusal { code: codes::COMBINATION, message, label, help }, span)
 }

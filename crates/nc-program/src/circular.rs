@@ -4,11 +4,11 @@ use diagnostic::{Diagnostic, Text, both};
 use toolpath::{Arc, Feed, Motion, Shape};
 
 use crate::arc::{self, Circle, Fault, Tolerance};
-use crate::codes;
 use crate::frames::settle;
 use crate::modal::{ArcCentres, Modal, Turn, Units};
 use crate::motion::{Motions, arc_while_turning, division, feed_rate};
 use crate::position::{end, require_frame, require_known};
+use crate::refusals::circular as refusal;
 use crate::settings::Environment;
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, Outcome, Words};
 use nc_syntax::Letters;
@@ -37,20 +37,10 @@ pub(crate) fn circular(
     let [first, second, _] = state.plane.axes();
     let plane = |point: &[f64; 3]| [point[first], point[second]];
     let Some(similarity) = frame.similarity(state.plane) else {
-        return Err(words
-            .refuse(
-                codes::FRAME,
-                both!("an arc under {}", "дуга, пока действует {:#}", state.transform.name()),
-                words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-                both!(
-                    "the frame makes it an ellipse or turns it out of its plane",
-                    "система координат делает из неё эллипс или поворачивает её из плоскости"
-                ),
-            )
-            .help(both!(
-                "let the CAM write the arc as lines, or scale all axes alike",
-                "выводите дугу из CAM прямыми или масштабируйте все оси одинаково"
-            )));
+        return Err(words.refuse(
+            refusal::arc_under_frame(&state.transform.name()),
+            words.span(AXIS_LETTERS.or(ARC_LETTERS)),
+        ));
     };
     // The words say the circle in program coordinates. A shifted frame has the same circle in axis
     // commands; a turned or mirrored one must be asked.
@@ -65,14 +55,7 @@ pub(crate) fn circular(
     let circle = match words.coordinate(b'R', inch) {
         Some(_) if words.has(CENTRE_LETTERS) => {
             let span = words.span(ARC_LETTERS);
-            return Err(words
-                .refuse(
-                    codes::ARC_WORDS,
-                    both!("R and a centre in one arc", "в одной дуге и R, и центр"),
-                    span,
-                    both!("which one?", "какое из двух?"),
-                )
-                .help(both!("remove R or {}", "уберите R или {}", words.names(CENTRE_LETTERS))));
+            return Err(words.refuse(refusal::r_and_centre_in_one_arc(&words.names(CENTRE_LETTERS)), span));
         }
         Some(radius) => {
             arc::by_radius(start_2d, end_2d, radius * state.units.mm(), turn, tolerance.absolute_mm)
@@ -114,31 +97,10 @@ fn turns(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<u32> {
         if (1..=MOST).contains(&turns) {
             return Ok(turns);
         }
-        let message = both!("an arc of {turns} turns", "дуга в несколько оборотов: {turns}");
-        return Err(words
-            .refuse(
-                codes::ARC_WORDS,
-                message,
-                words.span(P),
-                both!("1 to {MOST} were expected", "ожидалось от 1 до {MOST}"),
-            )
-            .help(both!(
-                "write P1, or no P, for an arc of at most one turn",
-                "для дуги не больше оборота напишите P1 или ничего"
-            )));
+        return Err(words.refuse(refusal::arc_of_turns(turns, MOST), words.span(P)));
     }
     match words.plain(b'P') {
-        Some(turns) if (turns - 1.0).abs() > 1e-9 => Err(words
-            .refuse(
-                codes::ARC_WORDS,
-                both!("P beside an arc", "P рядом с дугой"),
-                words.span(P),
-                both!(
-                    "turns on some controls, nothing on others",
-                    "на одних стойках обороты, на других ничего"
-                ),
-            )
-            .help(both!("write one block for each turn", "напишите на каждый оборот свой кадр"))),
+        Some(turns) if (turns - 1.0).abs() > 1e-9 => Err(words.refuse(refusal::P_BESIDE_ARC, words.span(P))),
         _ => Ok(1),
     }
 }
@@ -151,7 +113,7 @@ fn centre(
     shift_mm: [f64; 2],
 ) -> Outcome<[f64; 2]> {
     let letters = state.plane.centre_letters();
-    let [one, two] = shown_letters(state);
+    let shown = shown_letters(state);
     let in_plane = Letters::of(&letters);
     let across = CENTRE_LETTERS.without(in_plane);
     let inch = state.units == Units::Inch;
@@ -159,26 +121,13 @@ fn centre(
         let letter = across.first();
         // `K0` on a G17 arc is how some posts write nothing.
         if words.coordinate(letter, inch) != Some(0.0) {
-            let message = both!(
-                "{} on an arc whose plane has {one} and {two}",
-                "{} у дуги, в плоскости которой {one} и {two}",
-                letter as char
+            return Err(
+                words.refuse(refusal::centre_of_another_plane(letter as char, shown), words.span(across))
             );
-            return Err(words
-                .refuse(
-                    codes::ARC_WORDS,
-                    message,
-                    words.span(across),
-                    both!("not in this plane", "не в этой плоскости"),
-                )
-                .help(both!(
-                    "select the arc's plane with G17, G18 or G19, or remove the word",
-                    "выберите плоскость дуги функцией G17, G18 или G19 или уберите слово"
-                )));
         }
     }
     if !words.has(in_plane) {
-        return Err(without_centre(words, one, two));
+        return Err(without_centre(words, shown));
     }
     let values = letters.map(|letter| words.coordinate(letter, inch).map(|value| value * state.units.mm()));
     match (state.arc_centres, values) {
@@ -186,37 +135,18 @@ fn centre(
             Ok([start_mm[0] + i.unwrap_or(0.0), start_mm[1] + j.unwrap_or(0.0)])
         }
         (ArcCentres::Absolute, [Some(i), Some(j)]) => Ok([i + shift_mm[0], j + shift_mm[1]]),
-        (ArcCentres::Absolute, _) => Err(words
-            .refuse(
-                codes::ARC_WORDS,
-                both!(
-                    "half a centre under absolute arc centres",
-                    "половина центра при абсолютных центрах дуг"
-                ),
-                words.span(in_plane),
-                both!("{one} and {two} were expected", "ожидались {one} и {two}"),
-            )
-            .help(both!(
-                "write both {one} and {two}, or G91.1 for centres from the start",
-                "напишите и {one}, и {two} или включите G91.1: центр от начала дуги"
-            ))),
+        (ArcCentres::Absolute, _) => {
+            Err(words.refuse(refusal::half_an_absolute_centre(shown), words.span(in_plane)))
+        }
     }
 }
 
-fn without_centre(words: &Words<'_, '_, '_>, one: char, two: char) -> Box<Diagnostic> {
-    words
-        .refuse(
-            codes::ARC_WITHOUT_CENTRE,
-            both!("arc without centre", "дуга без центра"),
-            words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-            both!("neither {one}/{two} nor R in this block, and neither is modal", "в этом кадре нет ни {one}/{two}, ни R, а модально ни одно из них не действует"),
-        )
-        .help(both!("post the program again so that each arc block has its {one} and {two} (some posts drop unchanged ones), or add R", "выведите программу заново, чтобы в каждом кадре дуги были {one} и {two} (некоторые постпроцессоры опускают повторные), или добавьте R"
-        ))
+fn without_centre(words: &Words<'_, '_, '_>, letters: [char; 2]) -> Box<Diagnostic> {
+    words.refuse(refusal::arc_without_centre(letters), words.span(AXIS_LETTERS.or(ARC_LETTERS)))
 }
 
 fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault) -> Box<Diagnostic> {
-    let [one, two] = shown_letters(state);
+    let letters = shown_letters(state);
     let (unit_mm, unit) = match state.units {
         Units::Millimetre => (1.0, Text::pair("mm", "мм")),
         Units::Inch => (25.4, Text::pair("inch", "дюйма")),
@@ -224,75 +154,24 @@ fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault) -> Box<Diag
     let show = |mm: f64| shortest(mm / unit_mm);
     let centre = words.span(ARC_LETTERS);
     match fault {
-        Fault::NoRadius => words
-            .refuse(
-                codes::ARC_WORDS,
-                both!(
-                    "an arc that starts or ends in its centre",
-                    "дуга начинается или кончается в своём центре"
-                ),
-                centre,
-                both!("no direction leads from there", "оттуда нет направления"),
-            )
-            .help(both!(
-                "write the distance from the start to the centre as {one} and {two}, or a line",
-                "напишите расстояние от начала до центра словами {one} и {two} или прямую"
-            )),
+        Fault::NoRadius => words.refuse(refusal::end_in_the_centre(letters), centre),
         Fault::RadiiDiffer { start_mm, end_mm, allowed_mm } => {
-            let message = both!(
-                "the ends of the arc lie at different distances from its centre",
-                "концы дуги лежат на разных расстояниях от её центра"
-            );
-            let label = both!(
-                "radius {} at the start, {} {unit} at the end, {} allowed",
-                "радиус в начале {}, в конце {} {unit:#}, допускается {}",
-                show(start_mm),
-                show(end_mm),
-                show(allowed_mm)
-            );
             let mode = match state.arc_centres {
                 ArcCentres::Incremental => {
                     both!("measured from the start (G91.1)", "отсчитанные от начала (G91.1)")
                 }
                 ArcCentres::Absolute => both!("absolute (G90.1)", "абсолютные (G90.1)"),
             };
-            words.refuse(codes::RADII_DIFFER, message, centre, label).help(both!(
-                "correct the end or the centre ({one} and {two} are read as {mode}); where the control takes more, say so with `arc_tolerance_mm` under `[program]` in the profile",
-                "исправьте конец или центр ({one} и {two} прочитаны как {mode:#}); если стойка допускает больше, скажите это ключом `arc_tolerance_mm` в разделе `[program]` профиля"
-            ))
+            let found = [start_mm, end_mm, allowed_mm].map(show);
+            words.refuse(refusal::radii_differ(found, &unit, letters, &mode), centre)
         }
         Fault::RadiusTooSmall { radius_mm, chord_mm } => {
             // Rounded up, so that the number can be typed as it stands.
             let least = (chord_mm / unit_mm / 2.0 * 1e4 - 1e-6).ceil() / 1e4;
-            words
-                .refuse(
-                    codes::RADIUS_TOO_SMALL,
-                    both!("arc radius is smaller than half the chord", "радиус дуги меньше половины хорды"),
-                    centre,
-                    both!(
-                        "R{} {unit}, chord is {} {unit}",
-                        "R{} {unit:#}, а хорда {} {unit:#}",
-                        show(radius_mm),
-                        show(chord_mm)
-                    ),
-                )
-                .help(both!(
-                    "use {one}/{two} centre form, or R of at least {}",
-                    "задайте центр словами {one}/{two} или R не меньше {}",
-                    shortest(least)
-                ))
+            let found = [radius_mm, chord_mm].map(show);
+            words.refuse(refusal::radius_too_small(found, &unit, letters, shortest(least)), centre)
         }
-        Fault::FullCircleByRadius => words
-            .refuse(
-                codes::ARC_WORDS,
-                both!("a full circle by R", "полная окружность через R"),
-                centre,
-                both!(
-                    "start and end are the same point: R has no centre",
-                    "начало и конец в одной точке: по R центра не найти"
-                ),
-            )
-            .help(both!("use {one}/{two} centre form", "задайте центр словами {one}/{two}")),
+        Fault::FullCircleByRadius => words.refuse(refusal::full_circle_by_r(letters), centre),
     }
 }
 

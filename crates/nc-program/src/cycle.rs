@@ -1,6 +1,6 @@
 //! Drilling cycles: which blocks make a hole, and where.
 
-use diagnostic::{Text, both};
+use diagnostic::{Refusal, Text, both};
 use nc_syntax::dialect::{CycleCode, CycleLevels, GCode};
 use smallvec::SmallVec;
 use toolpath::{Cycle, CycleKind, Frame, Hole, Motion, Position};
@@ -10,6 +10,7 @@ use crate::frames::settle;
 use crate::modal::{Axes, Axis, CycleState, Distance, FeedMode, Level, Modal, ReturnLevel, Units};
 use crate::motion::{Motions, own_feed, rate};
 use crate::position::{end, increment_base, require_frame, require_known};
+use crate::refusals::cycle as refusal;
 use crate::settings::Environment;
 use crate::words::{AXIS_LETTERS, CENTRE_LETTERS, LINEAR, Outcome, ROTARY_LETTERS, Words};
 use nc_syntax::Letters;
@@ -43,70 +44,22 @@ pub(crate) fn repeats(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outco
         // Once is once, whoever counts.
         if count.is_some_and(|count| count != 1) && !counts {
             let span = words.span(Letters::of(&[letter]));
-            let message = both!("{} in a drilling cycle", "{} в цикле сверления", words.text(span));
-            return Err(words
-                .refuse(
-                    codes::CYCLE_WORDS,
-                    message,
-                    span,
-                    both!("counts holes on some controls, is another depth or nothing on others", "на одних стойках число отверстий, на других ещё одна глубина или ничего"),
-                )
-                .help(both!("write each hole in a block of its own, or what the control's manual says as cycles.repeats in a copy of the grammar", "напишите каждое отверстие отдельным кадром или укажите сказанное в руководстве стойки как cycles.repeats в копии таблицы диалекта")));
+            return Err(words.refuse_code(refusal::IN_DRILLING_CYCLE, span));
         }
     }
     if k.is_some() && l.is_some() {
-        return Err(words
-            .refuse(
-                codes::CYCLE_WORDS,
-                both!("K and L both count repetitions", "и K, и L считают повторения"),
-                words.span(both),
-                both!("which one?", "какое из двух?"),
-            )
-            .help(both!("remove one of the two", "уберите одно из двух")));
+        return Err(words.refuse(refusal::K_AND_L_BOTH_COUNT, words.span(both)));
     }
     let count = k.or(l).unwrap_or(1);
     if count == 0 && !env.dialect.zero_repeats_define {
-        let message = both!("a drilling cycle repeated zero times", "цикл сверления с нулём повторений");
-        return Err(words
-            .refuse(
-                codes::CYCLE_WORDS,
-                message,
-                words.span(both),
-                both!("an error on this control", "на этой стойке это ошибка"),
-            )
-            .help(both!(
-                "write the words in the block of the first hole",
-                "напишите эти слова в кадре первого отверстия"
-            )));
+        return Err(words.refuse(refusal::REPEATED_ZERO_TIMES, words.span(both)));
     }
     if k.is_some() && words.has(Letters::of(b"IJ")) {
         let span = words.span(Letters::of(b"IJK"));
-        return Err(words
-            .refuse(
-                codes::CYCLE_WORDS,
-                both!("K beside I or J in a drilling cycle", "K рядом с I или J в цикле сверления"),
-                span,
-                both!(
-                    "a count of holes, or the smallest peck? controls differ",
-                    "число отверстий или наименьший проход? у стоек по-разному"
-                ),
-            )
-            .help(both!(
-                "write each hole in a block of its own, with its pecks as Q",
-                "напишите каждое отверстие отдельным кадром, глубину прохода словом Q"
-            )));
+        return Err(words.refuse(refusal::K_BESIDE_I_OR_J, span));
     }
     if count > MOST_REPEATS {
-        let message =
-            both!("{count} repetitions of a drilling cycle", "число повторений цикла сверления: {count}");
-        return Err(words
-            .refuse(
-                codes::CYCLE_WORDS,
-                message,
-                words.span(both),
-                both!("at most {MOST_REPEATS}", "не больше {MOST_REPEATS}"),
-            )
-            .help(both!("split the block", "разделите кадр")));
+        return Err(words.refuse(refusal::too_many_repetitions(count, MOST_REPEATS), words.span(both)));
     }
     Ok(count)
 }
@@ -123,17 +76,7 @@ pub(crate) fn holes(
     count: u32,
 ) -> Outcome<Motions> {
     if state.feed_mode == FeedMode::InverseTime {
-        return Err(words
-            .refuse(
-                codes::INVERSE_TIME,
-                both!("a drilling cycle under G93", "цикл сверления при G93"),
-                words.span(AXIS_LETTERS),
-                both!(
-                    "no control feeds a cycle by inverse time",
-                    "ни одна стойка не ведёт цикл по обратному времени"
-                ),
-            )
-            .help(both!("program G94 before it", "запрограммируйте перед ним G94")));
+        return Err(words.refuse(refusal::DRILLING_CYCLE_UNDER_G93, words.span(AXIS_LETTERS)));
     }
     own_feed(words, state)?;
     settle(words, state)?;
@@ -148,20 +91,7 @@ pub(crate) fn holes(
     }
     let ends = end(words, state, &frame)?;
     if words.has(ROTARY_LETTERS) && ends.rotary != state.axes.rotary {
-        return Err(words
-            .refuse(
-                codes::SIMULTANEOUS,
-                both!(
-                    "a rotary axis turns in a drilling cycle",
-                    "в цикле сверления вращается поворотная ось"
-                ),
-                words.span(ROTARY_LETTERS),
-                both!("turns here", "вращается здесь"),
-            )
-            .help(both!(
-                "turn the rotary axis in a block of its own before the cycle",
-                "поверните ось отдельным кадром до цикла"
-            )));
+        return Err(words.refuse(refusal::ROTARY_AXIS_TURNS_IN_CYCLE, words.span(ROTARY_LETTERS)));
     }
     let (r_mm, bottom_mm) = levels(env, words, state, &cycle, normal, &shift)?;
     if cycle.peck_mm.is_none() && matches!(cycle.kind, CycleCode::PeckFull | CycleCode::PeckChip) {
@@ -243,9 +173,15 @@ fn returns_to_initial(
             ),
         ),
     };
-    Err(words
-        .refuse(code, what, words.span(AXIS_LETTERS.or(R)), label)
-        .help(both!("write G98 or G99 in this block", "напишите G98 или G99 в этом кадре")))
+    Err(words.refuse(
+        Refusal {
+            code,
+            message: what,
+            label,
+            help: both!("write G98 or G99 in this block", "напишите G98 или G99 в этом кадре"),
+        },
+        words.span(AXIS_LETTERS.or(R)),
+    ))
 }
 
 /// Where an axis of the plane goes for the next hole: under G91 on from the last one.
@@ -281,16 +217,7 @@ fn no_scaling(words: &Words<'_, '_, '_>, state: &Modal, normal: usize, cycle: &C
         return Ok(());
     }
     Err(words
-        .refuse(
-            codes::FRAME,
-            both!("a drilling cycle under {}", "цикл сверления, пока действует {:#}", state.transform.name()),
-            words.span(AXIS_LETTERS.or(R).or(Q)),
-            both!(
-                "what becomes of its depth, pecks and shifts is told by no manual",
-                "что станет с глубиной, проходами и сдвигами, не сказано ни в одном руководстве"
-            ),
-        )
-        .help(both!("scale or mirror the holes in the CAM", "масштабируйте или отразите отверстия в CAM")))
+        .refuse(refusal::cycle_under_frame(&state.transform.name()), words.span(AXIS_LETTERS.or(R).or(Q))))
 }
 
 fn position(at: Position) -> Axes {
@@ -329,14 +256,7 @@ fn read_words(
     }
     if let Some(value) = words.coordinate(b'Q', inch) {
         if value == 0.0 && matches!(cycle.kind, CycleCode::PeckFull | CycleCode::PeckChip) {
-            return Err(words
-                .refuse(
-                    codes::CYCLE_WORDS,
-                    both!("a peck of depth zero", "проход нулевой глубины"),
-                    words.span(Q),
-                    both!("Q must not be 0", "Q не может быть 0"),
-                )
-                .help(both!("write the depth of one peck", "напишите глубину одного прохода")));
+            return Err(words.refuse(refusal::PECK_DEPTH_ZERO, words.span(Q)));
         }
         cycle.peck_mm = Some((value * unit_mm).abs());
     }
@@ -377,24 +297,7 @@ fn levels(
         CycleLevels::Held if !depth_may_follow => Ok(held),
         CycleLevels::Held | CycleLevels::Unstated => {
             let depth = LINEAR[normal] as char;
-            let message = both!(
-                "{depth} counts from an earlier R, or was written under another of G90 and G91: controls differ in what it means now",
-                "{depth} отсчитано от прежнего R или написано при другой из G90 и G91; что оно значит теперь, у стоек по-разному"
-            );
-            Err(words
-                .refuse(
-                    codes::CYCLE_WORDS,
-                    message,
-                    words.span(AXIS_LETTERS.or(R)),
-                    both!(
-                        "R and {depth} are taken from an earlier block",
-                        "R и {depth} взяты из прежнего кадра"
-                    ),
-                )
-                .help(both!(
-                    "write R and {depth} again in this block",
-                    "напишите R и {depth} заново в этом кадре"
-                )))
+            Err(words.refuse(refusal::counted_from_unknown(depth), words.span(AXIS_LETTERS.or(R))))
         }
     }
 }
@@ -404,18 +307,7 @@ fn begun_beyond_r(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<(
     if env.dialect.cycle_levels == CycleLevels::Reread {
         return Ok(());
     }
-    let message = both!(
-        "under G98 a hole begins at a level below its R",
-        "при G98 отверстие начато с уровня ниже своего R"
-    );
-    let label = both!(
-        "controls return to that level, or to R: where the tool stands behind it is not certain",
-        "стойки возвращают на этот уровень или на R: где инструмент окажется, неясно"
-    );
-    Err(words.refuse(codes::CYCLE_WORDS, message, words.span(AXIS_LETTERS.or(R)), label).help(both!(
-        "write G99, or bring the tool above R before the cycle",
-        "напишите G99 или выведите инструмент выше R до цикла"
-    )))
+    Err(words.refuse(refusal::LEVEL_BELOW_R, words.span(AXIS_LETTERS.or(R))))
 }
 
 /// Some controls drill downwards only, and stop where the bottom would lie above R.
@@ -436,27 +328,20 @@ fn below_r(
         env.dialect.name
     );
     let label = both!("R and the depth in force", "действующие R и глубина");
-    let refusal = words.refuse(codes::CYCLE_WORDS, message, words.span(AXIS_LETTERS.or(R)), label);
-    Err(refusal.help(if state.distance == Distance::Incremental {
+    let help = if state.distance == Distance::Incremental {
         both!(
             "under G91 this control counts R from the level before the cycle and the depth from R, also where an earlier block wrote them: write both again, or take the dialect that the program was posted for",
             "при G91 эта стойка отсчитывает R от уровня до цикла, а глубину от R, даже если их написал прежний кадр: напишите оба снова или возьмите диалект, для которого выведена программа"
         )
     } else {
         both!("correct R or the depth", "исправьте R или глубину")
-    }))
+    };
+    let refusal = Refusal { code: codes::CYCLE_WORDS, message, label, help };
+    Err(words.refuse(refusal, words.span(AXIS_LETTERS.or(R))))
 }
 
 fn incomplete(words: &Words<'_, '_, '_>, missing: &str) -> Box<diagnostic::Diagnostic> {
-    let message = both!("the drilling cycle has no {missing}", "в цикле сверления нет {missing}");
-    let label = both!(
-        "{missing} was expected here or in an earlier block of this cycle",
-        "{missing} ожидалось здесь или в прежнем кадре этого цикла"
-    );
-    words.refuse(codes::CYCLE_INCOMPLETE, message, words.span(AXIS_LETTERS.or(R)), label).help(both!(
-        "write {missing} on the block that starts the cycle",
-        "напишите {missing} в кадре, который начинает цикл"
-    ))
+    words.refuse(refusal::cycle_without(missing), words.span(AXIS_LETTERS.or(R)))
 }
 
 const fn kind(code: CycleCode) -> CycleKind {

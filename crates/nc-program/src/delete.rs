@@ -11,11 +11,11 @@ use diagnostic::{Text, both};
 use nc_syntax::dialect::Side;
 use toolpath::Kinematics;
 
-use crate::codes;
 use crate::modal::{
     ArcCentres, Aside, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Naming, Progress,
     ReturnLevel, Stated, ToolLength, Units, Why, XWords,
 };
+use crate::refusals::delete as refusal;
 use crate::words::{Outcome, Words};
 
 /// The state behind blocks that may be skipped.
@@ -75,18 +75,7 @@ pub(crate) fn merge(words: &Words<'_, '_, '_>, aside: &Aside, executed: &Modal) 
         None => Ok(both),
         Some((with, without)) => {
             let span = words.codes.first().map_or_else(|| words.span(words.letters), |code| code.span);
-            let message = both!(
-                "after line {line} either {with} or {without} is in force, depending on the block delete switch",
-                "после строки {line} состояние зависит от переключателя пропуска кадров: {with:#} или {without:#}"
-            );
-            Err(words
-                .refuse(
-                    codes::BLOCK_DELETE,
-                    message,
-                    span,
-                    both!("{with} where the blocks with `/` are executed, {without} where they are skipped", "{with:#}, если кадры с `/` исполнены, {without:#}, если пропущены"),
-                )
-                .help(both!("write the code in a block without `/`, or take it back in a block with `/`, so that both ways lead to one state", "напишите функцию в кадре без `/` или отмените её в кадре с `/`, чтобы оба случая вели к одному состоянию")))
+            Err(words.refuse(refusal::either_is_in_force(line, &with, &without), span))
         }
     }
 }

@@ -4,13 +4,14 @@
 //! makes of it is the machine's kinematics, and of two ways and all whole turns the nearest to where the axes stand; where two
 //! are as near, the branch of the profile.
 
-use diagnostic::both;
+use diagnostic::{Refusal, both};
 use nc_syntax::Letters;
 use toolpath::{AXIS_NAMES, Kinematics, NoAngles, unit};
 
 use crate::codes;
 use crate::modal::{Axis, Modal, MotionMode};
 use crate::position::require_rotary;
+use crate::refusals::direction as refusal;
 use crate::settings::Environment;
 use crate::setup::BetweenVectors;
 use crate::words::{AXIS_LETTERS, CENTRE_LETTERS, Outcome, ROTARY_LETTERS, SECONDARY_LETTERS, Words};
@@ -63,86 +64,29 @@ pub(crate) fn check(
     named: Option<DirectionWords>,
 ) -> Outcome<()> {
     if state.vectors && words.has(ROTARY_LETTERS) {
-        return Err(words
-            .refuse(
-                codes::DIRECTION_WORDS,
-                both!("{} under G43.5", "{} при G43.5", words.names(ROTARY_LETTERS)),
-                words.span(ROTARY_LETTERS),
-                both!(
-                    "the control takes directions as vectors here",
-                    "стойка принимает здесь направления векторами"
-                ),
-            )
-            .help(both!(
-                "write I, J and K, or G43.4 for rotary words",
-                "напишите I, J и K или G43.4 для слов поворотных осей"
-            )));
+        return Err(
+            words.refuse(refusal::under_g43_5(&words.names(ROTARY_LETTERS)), words.span(ROTARY_LETTERS))
+        );
     }
     let Some(named) = named else {
         if state.vectors
             && matches!(state.motion, MotionMode::Arc(..))
             && words.has(AXIS_LETTERS.or(CENTRE_LETTERS))
         {
-            return Err(words
-                .refuse(
-                    codes::DIRECTION_WORDS,
-                    both!("an arc under G43.5", "дуга при G43.5"),
-                    words.span(AXIS_LETTERS.or(CENTRE_LETTERS)),
-                    both!(
-                        "are I, J, K its centre or the tool's direction?",
-                        "I, J, K — её центр или направление инструмента?"
-                    ),
-                )
-                .help(both!("let the CAM write lines", "выводите из CAM прямые")));
+            return Err(words.refuse(refusal::ARC_UNDER_G43_5, words.span(AXIS_LETTERS.or(CENTRE_LETTERS))));
         }
         return Ok(());
     };
     let span = words.span(named.all());
     if words.has(ROTARY_LETTERS) {
-        return Err(words
-            .refuse(
-                codes::DIRECTION_WORDS,
-                both!("a direction beside {}", "направление рядом с {}", words.names(ROTARY_LETTERS)),
-                span,
-                both!(
-                    "two answers to where the tool points",
-                    "два ответа на вопрос, куда направлен инструмент"
-                ),
-            )
-            .help(both!("leave one of the two", "оставьте что-то одно")));
+        return Err(words.refuse(refusal::direction_beside(&words.names(ROTARY_LETTERS)), span));
     }
     if state.kinematics != Kinematics::Tip {
-        return Err(words
-            .refuse(
-                codes::DIRECTION_WORDS,
-                both!(
-                    "a direction without tool centre point control",
-                    "направление без управления по вершине инструмента"
-                ),
-                span,
-                both!(
-                    "the control makes angles of it under TRAORI only",
-                    "углы из него стойка получает только при TRAORI"
-                ),
-            )
-            .help(both!(
-                "write TRAORI before it, or the rotary axes themselves",
-                "напишите перед ним TRAORI или сами поворотные оси"
-            )));
+        return Err(words.refuse(refusal::DIRECTION_WITHOUT_TIP_CONTROL, span));
     }
     let straight = matches!(state.motion, MotionMode::Rapid(_) | MotionMode::Line(_));
     if !straight || state.cycle.is_some() {
-        return Err(words
-            .refuse(
-                codes::DIRECTION_WORDS,
-                both!("a direction in a block that is no line", "направление в кадре, который не прямая"),
-                span,
-                both!(
-                    "what the tool does meanwhile is not certain",
-                    "что инструмент делает тем временем, неясно"
-                ),
-            )
-            .help(both!("let the CAM write lines", "выводите из CAM прямые")));
+        return Err(words.refuse(refusal::DIRECTION_WITHOUT_LINE, span));
     }
     let (label, help) = match env.setup.vectors {
         Some(BetweenVectors::Axes) => return Ok(()),
@@ -167,14 +111,18 @@ pub(crate) fn check(
             ),
         ),
     };
-    Err(words
-        .refuse(
-            codes::DIRECTION_BETWEEN,
-            both!("a direction as a vector cannot be followed", "направление вектором не проследить"),
-            span,
+    Err(words.refuse(
+        Refusal {
+            code: codes::DIRECTION_BETWEEN,
+            message: both!(
+                "a direction as a vector cannot be followed",
+                "направление вектором не проследить"
+            ),
             label,
-        )
-        .help(help))
+            help,
+        },
+        span,
+    ))
 }
 
 /// A, B, C at the end of a block with a direction, degrees.
@@ -187,17 +135,7 @@ pub(crate) fn angles(
     let span = words.span(named.all());
     let vector = named.letters().map(|letter| words.coordinate(letter, false).unwrap_or(0.0));
     let Some(direction) = unit(vector).filter(|unit| unit.iter().all(|part| part.is_finite())) else {
-        return Err(words
-            .refuse(
-                codes::NO_DIRECTION,
-                both!("a direction of no length", "направление нулевой длины"),
-                span,
-                both!("the tool points nowhere", "инструмент никуда не направлен"),
-            )
-            .help(both!(
-                "write the vector from the tip up the tool, as I0. J0. K1.",
-                "напишите вектор от вершины вдоль инструмента, например I0. J0. K1."
-            )));
+        return Err(words.refuse(refusal::DIRECTION_OF_NO_LENGTH, span));
     };
     require_rotary(words, &state.axes)?;
     let stand = state.axes.rotary.map(|axis: Axis| axis.known().unwrap_or(0.0));
@@ -227,7 +165,7 @@ pub(crate) fn angles(
         };
         let message = both!("where a direction turns the rotary axes is not certain", "куда направление повернёт поворотные оси, неясно");
         let refusal: Box<diagnostic::Diagnostic> =
-            words.refuse(codes::DIRECTION_ANGLES, message, span, label).help(help);
+            words.refuse(Refusal { code: codes::DIRECTION_ANGLES, message, label, help }, span);
         refusal
     })
 }

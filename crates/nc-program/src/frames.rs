@@ -3,19 +3,18 @@
 //! All of them end in [`toolpath::Frame`]: axis = T(word) + zero + shifts + tool length, T being the
 //! rotation, scaling or mirror in force. What a manual leaves open is refused.
 
-use diagnostic::{Text, both};
 use nc_syntax::dialect::{Action, FramePart, GCode, OffsetL20};
 use nc_syntax::{Dialect, Span};
 use toolpath::{Frame, Kinematics};
 
-use crate::codes;
 use crate::modal::{Compensation, Distance, Modal, Units, WorkOffset};
 use crate::position::{increment_base, require_frame};
+use crate::refusals::frames as refusal;
 use crate::settings::{BASE_FRAME, Demand, Environment};
 use crate::tool_length;
 use crate::transform::Transform;
 use crate::words::{
-    ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, ROTARY_LETTERS, Refusal,
+    ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, ROTARY_LETTERS,
     SECONDARY_LETTERS, Words,
 };
 use crate::{swivel, tilted};
@@ -59,71 +58,22 @@ pub(crate) fn execute(
 ) -> Outcome<bool> {
     let (Some(action), Some(span)) = (demand.frame, demand.owner_span) else { return Ok(false) };
     if let Some(motion) = demand.written_motion {
-        let message =
-            both!("{} and {} in one block", "{} и {} в одном кадре", words.text(span), words.text(motion));
-        return Err(words
-            .refuse(
-                codes::FRAME,
-                message,
-                span,
-                both!(
-                    "moves the frame: before or after the motion?",
-                    "смещает систему координат: до движения или после?"
-                ),
-            )
-            .help(both!("write the two codes in two blocks", "напишите эти две функции двумя кадрами")));
+        return Err(
+            words.refuse(refusal::two_codes_in_one_block(&words.text(span), &words.text(motion)), span)
+        );
     }
     if words.has(ROTARY_LETTERS.or(SECONDARY_LETTERS)) {
         let letters = ROTARY_LETTERS.or(SECONDARY_LETTERS);
-        let message = both!(
-            "{} shifts an axis that is not X, Y or Z",
-            "{} смещает ось, которая не X, не Y и не Z",
-            words.text(span)
-        );
-        return Err(words
-            .refuse(
-                codes::FRAME,
-                message,
-                words.span(letters),
-                both!("no offset of such an axis is known", "смещения такой оси неизвестны"),
-            )
-            .help(both!(
-                "remove the word where it is zero; else set the offset on the control",
-                "уберите слово, если оно нулевое; иначе задайте смещение на стойке"
-            )));
+        return Err(words.refuse(refusal::shifts_another_axis(&words.text(span)), words.span(letters)));
     }
     if [before, state].iter().any(|state| state.compensation != Compensation::Off) {
-        return Err(refuse(
-            words,
-            span,
-            &both!("under cutter compensation", "при коррекции на радиус"),
-            both!("the compensated path jumps with it", "эквидистанта скачком сместилась бы вместе с ней"),
-        )
-        .help(both!(
-            "cancel the compensation with G40 before it",
-            "отмените перед ней коррекцию функцией G40"
-        )));
+        return Err(words.refuse_code(refusal::UNDER_CUTTER_COMPENSATION, span));
     }
     if state.cycle.is_some() {
-        return Err(refuse(
-            words,
-            span,
-            &both!("while a drilling cycle is in force", "во время цикла сверления"),
-            both!("a cycle is running here", "здесь действует цикл"),
-        )
-        .help(both!(
-            "cancel the cycle with G80 before, and write it again with R and Z afterwards",
-            "отмените цикл до этого функцией G80, а после напишите его снова, с R и Z"
-        )));
+        return Err(words.refuse_code(refusal::DURING_DRILLING_CYCLE, span));
     }
     if before.work_offset != state.work_offset || before.tool_length != state.tool_length {
-        return Err(refuse(
-            words,
-            span,
-            &both!("beside another offset", "рядом с другим смещением"),
-            both!("in which order? controls differ", "в каком порядке? у стоек по-разному"),
-        )
-        .help(both!("write the two codes in two blocks", "напишите эти две функции двумя кадрами")));
+        return Err(words.refuse_code(refusal::BESIDE_ANOTHER_OFFSET, span));
     }
     let turns = matches!(
         action,
@@ -134,20 +84,7 @@ pub(crate) fn execute(
             | Action::ProgramFrame { .. }
     );
     if !turns && !state.transform.is_none() {
-        let under = both!("under {}", "при действующем преобразовании ({:#})", state.transform.name());
-        return Err(refuse(
-            words,
-            span,
-            &under,
-            both!(
-                "its words may be turned, scaled or not",
-                "её слова могут быть повёрнуты и масштабированы, а могут и нет"
-            ),
-        )
-        .help(both!(
-            "cancel the rotation, scaling or mirror before it",
-            "отмените перед этим поворот, масштабирование или зеркальное отображение"
-        )));
+        return Err(words.refuse_code(refusal::under_transform(&state.transform.name()), span));
     }
     let mut states_position = false;
     match action {
@@ -164,19 +101,7 @@ pub(crate) fn execute(
                 state.shifts.preset_mm = [0.0; 3];
             } else {
                 let Some(kept) = state.shifts.kept_mm else {
-                    return Err(refuse(
-                        words,
-                        span,
-                        &both!("without a shift of this program", "без сдвига в этой программе"),
-                        both!(
-                            "brings back what an earlier program left",
-                            "возвращает то, что осталось от прежней программы"
-                        ),
-                    )
-                    .help(both!(
-                        "write the shift with G92 or G52, or use a work offset",
-                        "задайте сдвиг функцией G92 или G52 или возьмите смещение нуля"
-                    )));
+                    return Err(words.refuse_code(refusal::WITHOUT_SHIFT_OF_THIS_PROGRAM, span));
                 };
                 state.shifts.preset_mm = kept;
             }
@@ -221,30 +146,13 @@ pub(crate) fn settle(words: &Words<'_, '_, '_>, state: &mut Modal) -> Outcome<()
         return Ok(());
     }
     let names = open.names();
-    let message = both!(
-        "the first motion after a rotation, scaling or mirror was switched must be absolute and whole",
-        "первое движение после смены поворота, масштаба или зеркального отображения должно быть абсолютным и полным"
-    );
-    let label = both!(
-        "{names} were expected, in G90: controls differ in where they start otherwise",
-        "ожидались {names} при G90: откуда иначе начинать, у стоек по-разному"
-    );
-    Err(words
-        .refuse(codes::FRAME, message, words.span(AXIS_LETTERS), label)
-        .help(both!("write {names} in this block, in G90", "напишите {names} в этом кадре, при G90")))
-}
-
-fn refuse(words: &Words<'_, '_, '_>, span: Span, what: &Text, label: Text) -> Refusal {
-    words.refuse(codes::FRAME, both!("{} {what}", "{} {what:#}", words.text(span)), span, label)
+    Err(words.refuse(refusal::first_motion_must_be_whole(names), words.span(AXIS_LETTERS)))
 }
 
 fn no_words(words: &Words<'_, '_, '_>, span: Span) -> Outcome<()> {
     let letters = AXIS_LETTERS.or(ARC_LETTERS);
     if words.has(letters) {
-        let message = both!("{} takes no words", "{} не принимает слов", words.text(span));
-        return Err(words
-            .refuse(codes::FRAME, message, words.span(letters), both!("whose are they?", "чьи они?"))
-            .help(both!("write them in a block of their own", "напишите их отдельным кадром")));
+        return Err(words.refuse(refusal::takes_no_words(&words.text(span)), words.span(letters)));
     }
     Ok(())
 }
@@ -252,28 +160,13 @@ fn no_words(words: &Words<'_, '_, '_>, span: Span) -> Outcome<()> {
 /// Words of X, Y, Z in mm; at least one.
 fn shift_words(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<[Option<f64>; 3]> {
     if words.has(ARC_LETTERS) {
-        let message =
-            both!("{} takes no {}", "{} не принимает {}", words.text(span), words.names(ARC_LETTERS));
-        return Err(words
-            .refuse(
-                codes::FRAME,
-                message,
-                words.span(ARC_LETTERS),
-                both!("X, Y and Z were expected", "ожидались X, Y и Z"),
-            )
-            .help(both!("remove the word", "уберите слово")));
+        return Err(words.refuse(
+            refusal::takes_no_letters(&words.text(span), &words.names(ARC_LETTERS)),
+            words.span(ARC_LETTERS),
+        ));
     }
     if !words.has(LINEAR_LETTERS) {
-        return Err(refuse(
-            words,
-            span,
-            &both!("without X, Y or Z", "без X, Y и Z"),
-            both!("shifts what, by how much?", "смещает что и насколько?"),
-        )
-        .help(both!(
-            "write the axes and their values, or remove the code",
-            "напишите оси и их значения или уберите функцию"
-        )));
+        return Err(words.refuse_code(refusal::WITHOUT_X_Y_OR_Z, span));
     }
     let inch = state.units == Units::Inch;
     Ok(LINEAR.map(|letter| words.coordinate(letter, inch).map(|value| value * state.units.mm())))
@@ -281,13 +174,7 @@ fn shift_words(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<
 
 pub(crate) fn absolute(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<()> {
     if state.distance == Distance::Incremental {
-        return Err(refuse(
-            words,
-            span,
-            &both!("under G91", "при G91"),
-            both!("added or set? controls differ", "прибавить или установить? у стоек по-разному"),
-        )
-        .help(both!("write G90 before it", "напишите перед ней G90")));
+        return Err(words.refuse_code(refusal::UNDER_G91, span));
     }
     Ok(())
 }
@@ -303,16 +190,7 @@ fn local_shift(
     let shift = shift_words(words, span, state)?;
     let one = env.dialect.frames.local_is_preset;
     if !one && state.shifts.preset_mm != [0.0; 3] {
-        return Err(refuse(
-            words,
-            span,
-            &both!("after G92", "после G92"),
-            both!(
-                "whether the two shifts add up depends on the control",
-                "складываются ли два сдвига, зависит от стойки"
-            ),
-        )
-        .help(both!("use one of the two", "обойдитесь одним из двух")));
+        return Err(words.refuse_code(refusal::AFTER_G92, span));
     }
     let target = if one { &mut state.shifts.preset_mm } else { &mut state.shifts.local_mm };
     for i in 0..3 {
@@ -335,31 +213,10 @@ fn preset(env: &Environment<'_>, words: &Words<'_, '_, '_>, span: Span, state: &
     let wanted = shift_words(words, span, state)?;
     let rules = &env.dialect.frames;
     if !rules.local_is_preset && state.shifts.local_mm != [0.0; 3] {
-        return Err(refuse(
-            words,
-            span,
-            &both!("after G52", "после G52"),
-            both!(
-                "whether the two shifts add up depends on the control",
-                "складываются ли два сдвига, зависит от стойки"
-            ),
-        )
-        .help(both!("use one of the two", "обойдитесь одним из двух")));
+        return Err(words.refuse_code(refusal::AFTER_G52, span));
     }
     if !rules.local_is_preset && state.tool_length.applied_mm() != [0.0; 3] {
-        return Err(refuse(
-            words,
-            span,
-            &both!("with a tool length in force", "при действующей коррекции на длину"),
-            both!(
-                "with or without the length? a parameter decides",
-                "с учётом длины или без него? решает параметр"
-            ),
-        )
-        .help(both!(
-            "write G49 before it, or use a work offset",
-            "напишите перед ней G49 или возьмите смещение нуля"
-        )));
+        return Err(words.refuse_code(refusal::WITH_TOOL_LENGTH_IN_FORCE, span));
     }
     let mut preset = state.shifts.preset_mm;
     for i in 0..3 {
@@ -391,13 +248,7 @@ fn cancel_preset(
     let shifts = [state.shifts.preset_mm, state.shifts.local_mm];
     let shifted = shifts.iter().flatten().any(|shift| shift.abs() > NO_SHIFT_MM);
     if !words.has(LINEAR_LETTERS) && shifted {
-        return Err(refuse(
-            words,
-            span,
-            &both!("without axes", "без осей"),
-            both!("which axes lose their shift?", "у каких осей снимается сдвиг?"),
-        )
-        .help(both!("write X0 Y0 Z0 beside it", "напишите рядом X0 Y0 Z0")));
+        return Err(words.refuse_code(refusal::WITHOUT_AXES, span));
     }
     for (i, letter) in LINEAR.into_iter().enumerate() {
         if words.has(Letters::of(&[letter])) {
@@ -422,31 +273,13 @@ fn write_offset(
     }
     if !matches!(l, Some(2 | 20)) {
         let at = if words.has(L) { words.span(L) } else { span };
-        return Err(words
-            .refuse(codes::FRAME, both!("{} that writes no work offset", "{} записывает не смещение нуля", words.text(span)), at, both!("L2 or L20 was expected", "ожидалось L2 или L20"))
-            .help(both!("tool tables and parameters: set them on the control, give lengths with --tool, and delete the block", "таблицы инструментов и параметры задайте на стойке, длины дайте ключом --tool, а кадр удалите")));
+        return Err(words.refuse(refusal::writes_no_work_offset(&words.text(span)), at));
     }
     if words.has(R) {
-        return Err(words
-            .refuse(
-                codes::FRAME,
-                both!("a work offset with a rotation", "смещение нуля с поворотом"),
-                words.span(R),
-                both!("turns the frame", "поворачивает систему координат"),
-            )
-            .help(both!(
-                "rotate in the CAM, or align the workpiece, and remove R",
-                "поверните в CAM или выставьте деталь и уберите R"
-            )));
+        return Err(words.refuse(refusal::WORK_OFFSET_WITH_ROTATION, words.span(R)));
     }
     let Some(p) = words.whole(b'P')? else {
-        return Err(refuse(
-            words,
-            span,
-            &both!("without P", "без P"),
-            both!("which work offset?", "какое смещение нуля?"),
-        )
-        .help(both!("write P1 for G54, P2 for G55", "напишите P1 для G54, P2 для G55")));
+        return Err(words.refuse_code(refusal::WITHOUT_P, span));
     };
     let values = shift_words(words, span, state)?;
     let rules = &env.dialect.frames;
@@ -456,43 +289,16 @@ fn write_offset(
         (_, 0) if rules.l20 == OffsetL20::Position => match name_of(env.dialect, &state.work_offset) {
             Some(name) => name,
             None => {
-                return Err(refuse(
-                    words,
-                    span,
-                    &both!("without a work offset in force", "без действующего смещения нуля"),
-                    both!("P0 is the one in force", "P0 — то, которое действует"),
-                )
-                .help(both!("write P1 for G54, or G54 before it", "напишите P1 для G54 или G54 перед ней")));
+                return Err(words.refuse_code(refusal::WITHOUT_WORK_OFFSET_IN_FORCE, span));
             }
         },
         (_, 0) => {
-            return Err(words
-                .refuse(
-                    codes::FRAME,
-                    both!("writes the external work offset", "записывает внешнее смещение нуля"),
-                    words.span(P),
-                    both!("shifts all work offsets", "смещает все смещения нуля"),
-                )
-                .help(both!(
-                    "add it to the work offsets, which P1 to P6 write",
-                    "прибавьте его к смещениям нуля, которые записывают P1–P6"
-                )));
+            return Err(words.refuse(refusal::WRITES_EXTERNAL_WORK_OFFSET, words.span(P)));
         }
         (_, p) => match offset_of_number(env, p) {
             Some(name) => name,
             None => {
-                let message = both!("there is no work offset P{p}", "смещения нуля P{p} нет");
-                return Err(words
-                    .refuse(
-                        codes::FRAME,
-                        message,
-                        words.span(P),
-                        both!("P1 is G54, P2 is G55 and so on", "P1 — это G54, P2 — G55 и так далее"),
-                    )
-                    .help(both!(
-                        "write the number of a work offset of this control",
-                        "напишите номер смещения нуля этой стойки"
-                    )));
+                return Err(words.refuse(refusal::no_such_work_offset(p), words.span(P)));
             }
         },
     };
@@ -511,24 +317,7 @@ fn write_offset(
             (Some(value), _) if !adds => value,
             (None, Some(old)) => old[i],
             _ => {
-                let message = both!(
-                    "work offset {name} is written in part, and the rest is not given",
-                    "смещение нуля {name} записано частично, а остальное не задано"
-                );
-                return Err(words
-                    .refuse(
-                        codes::WORK_OFFSET,
-                        message,
-                        span,
-                        both!(
-                            "the axes left out keep what nobody said",
-                            "у опущенных осей остаётся то, чего никто не сказал"
-                        ),
-                    )
-                    .help(both!(
-                        "write X, Y and Z here, or give it with `--work-offset {name}=X,Y,Z`",
-                        "напишите здесь X, Y и Z или задайте его ключом `--work-offset {name}=X,Y,Z`"
-                    )));
+                return Err(words.refuse(refusal::work_offset_written_in_part(name), span));
             }
         };
     }
@@ -581,27 +370,11 @@ fn program_frame(
     let others = words.letters.without(allowed).without(Letters::of(b"NO"));
     if words.has(others) || !words.codes.is_empty() || !words.m_codes.is_empty() {
         let at = if words.has(others) { words.span(others) } else { span };
-        return Err(words
-            .refuse(
-                codes::FRAME,
-                both!("{} beside something else", "{} рядом с чем-то ещё", words.text(span)),
-                at,
-                both!("a block of its own was expected", "ожидался отдельный кадр"),
-            )
-            .help(both!("write it in a block of its own", "напишите её отдельным кадром")));
+        return Err(words.refuse(refusal::beside_something_else(&words.text(span)), at));
     }
     let none = !words.has(allowed);
     if none && adds {
-        return Err(refuse(
-            words,
-            span,
-            &both!("without words", "без слов"),
-            both!("adds what to the frame?", "что прибавить к системе координат?"),
-        )
-        .help(both!(
-            "write the axes and their values, or remove it",
-            "напишите оси и их значения или уберите её"
-        )));
+        return Err(words.refuse_code(refusal::WITHOUT_WORDS, span));
     }
     let (mut shift, mut transform) =
         if adds { (state.shifts.local_mm, state.transform) } else { ([0.0; 3], Transform::None) };
@@ -613,16 +386,7 @@ fn program_frame(
             let turned =
                 transform.frame([0.0; 3]).map(|frame| (frame.to_machine(by), frame.to_machine([0.0; 3])));
             let Some((end, start)) = turned else {
-                return Err(refuse(
-                    words,
-                    span,
-                    &both!("in a frame without inverse", "в необратимой системе координат"),
-                    both!("leads nowhere", "никуда не ведёт"),
-                )
-                .help(both!(
-                    "cancel the frame with TRANS alone before it",
-                    "отмените перед этим систему координат: TRANS отдельным кадром"
-                )));
+                return Err(words.refuse_code(refusal::IN_FRAME_WITHOUT_INVERSE, span));
             };
             (0..3).for_each(|i| shift[i] += end[i] - start[i]);
         }
@@ -646,20 +410,7 @@ fn program_frame(
                 let Some(value) = words.coordinate(LINEAR[i], false) else { continue };
                 if value != 0.0 {
                     let at = words.span(Letters::of(&[LINEAR[i]]));
-                    return Err(words
-                        .refuse(
-                            codes::FRAME,
-                            both!(
-                                "a mirror about a place that is not zero",
-                                "зеркальное отображение не относительно нуля"
-                            ),
-                            at,
-                            both!("0 was expected", "ожидался 0"),
-                        )
-                        .help(both!(
-                            "shift the zero with ATRANS before it, and write 0",
-                            "сместите перед ним нуль командой ATRANS и напишите 0"
-                        )));
+                    return Err(words.refuse(refusal::MIRROR_ABOUT_ANOTHER_PLACE, at));
                 }
                 // Twice is none.
                 about[i] = if about[i].is_some() { None } else { Some(0.0) };
@@ -679,9 +430,7 @@ fn in_which_order(
     span: Span,
     transform: &Transform,
 ) -> Box<diagnostic::Diagnostic> {
-    let under = both!("under {}", "при действующем преобразовании ({:#})", transform.name());
-    refuse(words, span, &under, both!("the two together are neither", "вместе они ни то, ни другое"))
-        .help(both!("write one of the two in the CAM", "выполните одно из двух в CAM"))
+    words.refuse_code(refusal::under_another_transform(&transform.name()), span)
 }
 
 /// The angle of ROT in the plane, degrees: `RPL=`, or the word of the axis that stands upright on the plane.
@@ -689,25 +438,12 @@ fn rotation_words(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outco
     let normal = LINEAR[state.plane.axes()[2]];
     let out = words.letters.and(AXIS_LETTERS).without(Letters::of(&[normal]));
     if !out.is_empty() {
-        return Err(words
-            .refuse(
-                codes::FRAME,
-                both!("a rotation out of the plane", "поворот из плоскости"),
-                words.span(out),
-                both!("tilts the frame", "наклоняет систему координат"),
-            )
-            .help(both!("post without tilted planes", "выводите программу без наклонных плоскостей")));
+        return Err(words.refuse(refusal::ROTATION_OUT_OF_PLANE, words.span(out)));
     }
     // RPL= is a word of L.
     match (words.coordinate(b'L', false), words.coordinate(normal, false)) {
         (Some(angle), None) | (None, Some(angle)) => Ok(angle),
-        _ => Err(refuse(
-            words,
-            span,
-            &both!("by two angles", "с двумя углами"),
-            both!("RPL= or the plane's normal was expected", "ожидалось RPL= или нормаль плоскости"),
-        )
-        .help(both!("write RPL= alone", "напишите одно RPL="))),
+        _ => Err(words.refuse_code(refusal::BY_TWO_ANGLES, span)),
     }
 }
 
@@ -731,20 +467,7 @@ fn transform(
     absolute(words, span, state)?;
     let again = matches!((action, state.transform), (Action::MirrorOn, Transform::Mirror(_)));
     if !state.transform.is_none() && !again {
-        let under = both!("under {}", "при действующем преобразовании ({:#})", state.transform.name());
-        return Err(refuse(
-            words,
-            span,
-            &under,
-            both!(
-                "in which order? controls and parameters differ",
-                "в каком порядке? зависит от стойки и её параметров"
-            ),
-        )
-        .help(both!(
-            "cancel the one before it, or do one of the two in the CAM",
-            "отмените перед ней прежнюю или выполните одно из двух в CAM"
-        )));
+        return Err(words.refuse_code(refusal::in_which_order(&state.transform.name()), span));
     }
     let inch = state.units == Units::Inch;
     let unit_mm = state.units.mm();
@@ -754,44 +477,20 @@ fn transform(
             let [u, v, n] = state.plane.axes();
             let across = CENTRE_LETTERS.or(Letters::of(&[LINEAR[n]]));
             if words.has(across) {
-                return Err(words
-                    .refuse(
-                        codes::FRAME,
-                        both!("a rotation out of the plane", "поворот из плоскости"),
-                        words.span(across),
-                        both!("tilts the frame", "наклоняет систему координат"),
-                    )
-                    .help(both!("select the plane with G17, G18 or G19; post tilted planes as plain axes", "выберите плоскость функцией G17, G18 или G19; наклонные плоскости выводите обычными осями")));
+                return Err(words.refuse(refusal::ROTATION_THAT_TILTS, words.span(across)));
             }
             let (Some(first), Some(second)) = (at(LINEAR[u]), at(LINEAR[v])) else {
                 let names = Letters::of(&[LINEAR[u], LINEAR[v]]).names();
-                let message = both!("a rotation without {names}", "поворот без {names}");
-                return Err(words
-                    .refuse(codes::FRAME, message, span, both!("about which point?", "вокруг какой точки?"))
-                    .help(both!("write {names} of the centre, and R", "напишите {names} центра и R")));
+                return Err(words.refuse(refusal::rotation_without(names), span));
             };
             let Some(angle_deg) = words.coordinate(b'R', false) else {
-                return Err(words
-                    .refuse(
-                        codes::FRAME,
-                        both!("a rotation without R", "поворот без R"),
-                        span,
-                        both!("by a parameter's angle", "на угол из параметра"),
-                    )
-                    .help(both!("write the angle as R", "напишите угол словом R")));
+                return Err(words.refuse(refusal::ROTATION_WITHOUT_R, span));
             };
             Ok(Transform::Rotation { plane: state.plane, centre_mm: [first, second], angle_deg })
         }
         Action::ScalingOn => {
             let (Some(x), Some(y), Some(z)) = (at(b'X'), at(b'Y'), at(b'Z')) else {
-                return Err(words
-                    .refuse(
-                        codes::FRAME,
-                        both!("a scaling without X, Y and Z", "масштабирование без X, Y и Z"),
-                        span,
-                        both!("about which point?", "вокруг какой точки?"),
-                    )
-                    .help(both!("write X, Y and Z of the centre", "напишите X, Y и Z центра")));
+                return Err(words.refuse(refusal::SCALING_WITHOUT_CENTRE, span));
             };
             let factor = |letter: u8| {
                 let (number, _) = words.number(letter)?;
@@ -802,14 +501,7 @@ fn transform(
                 (Some(p), [None, None, None]) if p > 0.0 => [p; 3],
                 (None, [Some(i), Some(j), Some(k)]) if i * j * k != 0.0 => [i, j, k],
                 _ => {
-                    return Err(words
-                        .refuse(
-                            codes::FRAME,
-                            both!("a scaling without its factor", "масштабирование без коэффициента"),
-                            span,
-                            both!("P above zero, or I, J and K, were expected", "ожидалось P больше нуля или I, J и K"),
-                        )
-                        .help(both!("write P2. to double; negative factors are mirrors: G51.1", "напишите P2., чтобы удвоить; отрицательный коэффициент — это зеркальное отображение: G51.1")));
+                    return Err(words.refuse(refusal::SCALING_WITHOUT_FACTOR, span));
                 }
             };
             Ok(Transform::Scaling { centre_mm: [x, y, z], factors })
@@ -819,18 +511,7 @@ fn transform(
             let mut all = if let Transform::Mirror(all) = state.transform { all } else { [None; 3] };
             for i in 0..3 {
                 if about[i].is_some() && all[i].is_some() {
-                    let message = both!("{} is mirrored already", "{} уже отражена", LINEAR[i] as char);
-                    return Err(words
-                        .refuse(
-                            codes::FRAME,
-                            message,
-                            span,
-                            both!("twice, or anew? controls differ", "дважды или заново? у стоек по-разному"),
-                        )
-                        .help(both!(
-                            "cancel the mirror with G50.1 before it",
-                            "отмените перед этим зеркальное отображение функцией G50.1"
-                        )));
+                    return Err(words.refuse(refusal::mirrored_already(LINEAR[i] as char), span));
                 }
                 all[i] = about[i].or(all[i]);
             }
@@ -843,16 +524,7 @@ fn transform(
 fn mirror_off(words: &Words<'_, '_, '_>, span: Span, state: &mut Modal) -> Outcome<()> {
     let Transform::Mirror(mut about) = state.transform else { return Ok(()) };
     if !words.has(LINEAR_LETTERS) {
-        return Err(refuse(
-            words,
-            span,
-            &both!("without axes", "без осей"),
-            both!("which axes are no longer mirrored?", "какие оси больше не отражать?"),
-        )
-        .help(both!(
-            "write the mirrored axes beside it, as in G50.1 X0 Y0",
-            "напишите рядом отражённые оси, например G50.1 X0 Y0"
-        )));
+        return Err(words.refuse_code(refusal::MIRROR_WITHOUT_AXES, span));
     }
     for i in 0..3 {
         if words.has(Letters::of(&[LINEAR[i]])) {

@@ -20,6 +20,7 @@ use crate::naming;
 use crate::offset::{self, Offset};
 use crate::path_control;
 use crate::plain::Plain;
+use crate::refusals::interpreter as refusal;
 use crate::settings::{self, Environment, Owner};
 use crate::setup::{AfterChange, Setup};
 use crate::tilted;
@@ -402,17 +403,7 @@ fn leave(env: &Environment<'_>, row: &MCode, line: u64, state: &mut Modal) -> Sm
 /// not all of it.
 fn opened_twice(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
     let whole = Span { start: 0, end: words.block.bytes.trim_ascii_end().len() as u32 };
-    words
-        .refuse(
-            codes::AFTER_END,
-            both!("two `%` stand in front of the program", "перед программой два знака `%`"),
-            whole,
-            both!(
-                "the second `%` closes what the first opens, so this may be behind the end",
-                "второй `%` закрывает то, что открыл первый, так что это может быть уже за концом"
-            ),
-        )
-        .help(both!("delete one of the two `%`", "удалите один из двух `%`"))
+    words.refuse(refusal::TWO_PERCENT_SIGNS, whole)
 }
 
 /// M codes that the dialect's table names.

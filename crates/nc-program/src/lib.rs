@@ -55,6 +55,7 @@ mod path_control;
 mod plain;
 mod position;
 pub mod process;
+mod refusals;
 mod settings;
 mod setup;
 mod swivel;

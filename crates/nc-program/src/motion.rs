@@ -1,6 +1,6 @@
 //! What the axis words of a block make the axes do.
 
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Diagnostic, Refusal, Text, both};
 use nc_syntax::Span;
 use smallvec::{SmallVec, smallvec};
 use toolpath::{Division, Feed, FeedRate, Motion, Mover, Shape};
@@ -16,6 +16,7 @@ use crate::modal::{
 };
 use crate::offset;
 use crate::position::{end, known_axes, require_frame, require_known, require_rotary};
+use crate::refusals::motion as refusal;
 use crate::settings::{Demand, Environment, Owner};
 use crate::tip;
 use crate::tool_length;
@@ -130,22 +131,7 @@ fn untransformed(
     let spared = may_spare && words.has(LINEAR_LETTERS) && !words.has(touched);
     match demand.owner_span {
         Some(span) if !state.transform.is_none() && !spared => {
-            let message =
-                both!("{} under {}", "{}, пока действует {:#}", words.text(span), state.transform.name());
-            Err(words
-                .refuse(
-                    codes::FRAME,
-                    message,
-                    span,
-                    both!(
-                        "controls forbid it, or differ in what it does",
-                        "стойки это запрещают или делают по-разному"
-                    ),
-                )
-                .help(both!(
-                    "cancel the rotation, scaling or mirror before it",
-                    "отмените перед этим поворот, масштабирование или зеркальное отображение"
-                )))
+            Err(words.refuse(refusal::move_under_transform(&words.text(span), &state.transform.name()), span))
         }
         _ => Ok(()),
     }
@@ -157,14 +143,7 @@ fn dwell_beside(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
         state.cycle.is_some() || matches!(state.motion, MotionMode::Arc(..) | MotionMode::Curve(..));
     if takes_p && words.has(AXIS_LETTERS.or(ARC_LETTERS)) {
         let span = words.span(Letters::of(b"P").or(AXIS_LETTERS));
-        return Err(words
-            .refuse(
-                codes::WORDS_OF_TWO,
-                both!("a dwell beside an arc or a cycle", "выдержка рядом с дугой или циклом"),
-                span,
-                both!("whose is P?", "чьё это P?"),
-            )
-            .help(both!("write the dwell in a block of its own", "напишите выдержку отдельным кадром")));
+        return Err(words.refuse(refusal::DWELL_BESIDE_ARC_OR_CYCLE, span));
     }
     Ok(())
 }
@@ -182,17 +161,7 @@ fn by_mode(
             moved.motions = cycle::holes(env, words, state, running, moved.repeats)?;
         } else if words.has(Letters::of(b"Q")) {
             let span = words.span(Letters::of(b"Q"));
-            return Err(words
-                .refuse(
-                    codes::CYCLE_WORDS,
-                    both!("Q without a hole", "Q без отверстия"),
-                    span,
-                    both!(
-                        "does it hold for the next one? controls differ",
-                        "действует ли оно для следующего? у стоек по-разному"
-                    ),
-                )
-                .help(both!("write Q in a block that drills", "напишите Q в кадре, который сверлит")));
+            return Err(words.refuse(refusal::Q_WITHOUT_HOLE, span));
         } else if words.has(Letters::of(b"IJ")) {
             return Err(stray(
                 words,
@@ -238,38 +207,14 @@ fn by_mode(
             }
         }
         MotionMode::None if words.has(AXIS_LETTERS) => {
-            let message =
-                both!("{} without a motion code", "{} без функции движения", words.names(AXIS_LETTERS));
             return Err(words
-                .refuse(
-                    codes::NO_MOTION_CODE,
-                    message,
-                    words.span(AXIS_LETTERS),
-                    both!(
-                        "no G0, G1, G2, G3 or cycle is in force",
-                        "не действует ни G0, ни G1, ни G2, ни G3, ни цикл"
-                    ),
-                )
-                .help(both!(
-                    "write the motion code in this block",
-                    "напишите функцию движения в этом кадре"
-                )));
+                .refuse(refusal::without_motion_code(&words.names(AXIS_LETTERS)), words.span(AXIS_LETTERS)));
         }
         MotionMode::Undecided { line } if words.has(AXIS_LETTERS.or(ARC_LETTERS)) => {
-            let message = both!(
-                "the motion code in force depends on the block delete switch",
-                "какая функция движения действует, зависит от переключателя пропуска кадров"
-            );
-            let label = both!(
-                "line {line} changes the motion code and may be skipped",
-                "строка {line} меняет функцию движения и может быть пропущена"
-            );
-            return Err(words
-                .refuse(codes::BLOCK_DELETE, message, words.span(AXIS_LETTERS.or(ARC_LETTERS)), label)
-                .help(both!(
-                    "write the motion code in this block",
-                    "напишите функцию движения в этом кадре"
-                )));
+            return Err(words.refuse(
+                refusal::motion_code_behind_block_delete(line),
+                words.span(AXIS_LETTERS.or(ARC_LETTERS)),
+            ));
         }
         MotionMode::None | MotionMode::Undecided { .. } => {
             if words.has(ARC_LETTERS) {
@@ -365,28 +310,8 @@ pub(crate) fn feed_rate(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<Fee
     }
     match words.plain(b'F') {
         Some(value) if value > 0.0 => Ok(rate(state, value)),
-        Some(_) => Err(words
-            .refuse(
-                codes::INVERSE_TIME,
-                both!("inverse time must be above zero", "обратное время должно быть больше нуля"),
-                words.span(F),
-                both!("1/F minutes", "1/F минут"),
-            )
-            .help(both!(
-                "write F as one over the minutes of this motion",
-                "напишите F как единицу, делённую на минуты этого движения"
-            ))),
-        None => Err(words
-            .refuse(
-                codes::INVERSE_TIME,
-                both!("a feed motion under G93 without F", "рабочий ход при G93 без F"),
-                words.span(AXIS_LETTERS),
-                both!("F was expected in this block", "в этом кадре ожидалось F"),
-            )
-            .help(both!(
-                "G93 needs F on each feed block; or program G94",
-                "при G93 нужно F в каждом рабочем кадре; или запрограммируйте G94"
-            ))),
+        Some(_) => Err(words.refuse(refusal::INVERSE_TIME_NOT_ABOVE_ZERO, words.span(F))),
+        None => Err(words.refuse(refusal::G93_WITHOUT_F, words.span(AXIS_LETTERS))),
     }
 }
 
@@ -395,17 +320,7 @@ pub(crate) fn own_feed(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> 
     if state.last_feed != LastFeed::Inverse {
         return Ok(());
     }
-    Err(words
-        .refuse(
-            codes::INVERSE_TIME,
-            both!("a feed behind G93 without F", "рабочий ход после G93 без F"),
-            words.span(AXIS_LETTERS),
-            both!("the last F was an inverse time", "последнее F было обратным временем"),
-        )
-        .help(both!(
-            "write F in this block, or beside the code that ends G93",
-            "напишите F в этом кадре или рядом с функцией, которая отменяет G93"
-        )))
+    Err(words.refuse(refusal::FEED_BEHIND_G93_WITHOUT_F, words.span(AXIS_LETTERS)))
 }
 
 /// G4: X, U, P (and whatever F or S the control reads there) are a time.
@@ -421,14 +336,15 @@ fn dwell(env: &Environment<'_>, words: &Words<'_, '_, '_>, demand: &Demand<'_>) 
             "напишите её время словом {} или удалите её",
             own.names()
         );
-        return Err(words
-            .refuse(
-                codes::REFUSED_CODE,
+        return Err(words.refuse(
+            Refusal {
+                code: codes::REFUSED_CODE,
                 message,
-                span,
-                both!("is no dwell on this control", "на этой стойке это не выдержка"),
-            )
-            .help(help));
+                label: both!("is no dwell on this control", "на этой стойке это не выдержка"),
+                help,
+            },
+            span,
+        ));
     }
     let time = own.unwrap_or(Letters::of(b"XU"));
     let times = time.or(Letters::of(b"P"));
@@ -437,14 +353,7 @@ fn dwell(env: &Environment<'_>, words: &Words<'_, '_, '_>, demand: &Demand<'_>) 
         || (words.has(time) && (demand.written_motion.is_some() || words.letters.and(times).count() > 1));
     if unclear {
         let span = words.span(others.or(time));
-        return Err(words
-            .refuse(
-                codes::WORDS_OF_TWO,
-                both!("a dwell and a motion in one block", "выдержка и движение в одном кадре"),
-                span,
-                both!("time or coordinate?", "время или координата?"),
-            )
-            .help(both!("write the dwell in a block of its own", "напишите выдержку отдельным кадром")));
+        return Err(words.refuse(refusal::DWELL_AND_MOTION_IN_ONE_BLOCK, span));
     }
     Ok(())
 }
@@ -455,20 +364,7 @@ fn dwell_by_setting(words: &Words<'_, '_, '_>, demand: &Demand<'_>) -> Outcome<(
     if !words.has(others) && demand.written_motion.is_none() {
         return Ok(());
     }
-    Err(words
-        .refuse(
-            codes::WORDS_OF_TWO,
-            both!("a dwell and a motion in one block", "выдержка и движение в одном кадре"),
-            words.span(others),
-            both!(
-                "no time: this control takes it from elsewhere, and these are a motion's words",
-                "не время: эта стойка берёт его из другого слова, а это слова движения"
-            ),
-        )
-        .help(both!(
-            "write the dwell in a block of its own, and its time as the control takes it",
-            "напишите выдержку отдельным кадром, а её время так, как берёт стойка"
-        )))
+    Err(words.refuse(refusal::DWELL_BESIDE_MOTION, words.span(others)))
 }
 
 /// G53 with axis words: they are axis commands, tool length included.
@@ -481,17 +377,7 @@ fn machine_coordinates(
     if let Some(span) = demand.owner_span
         && (state.cycle.is_some() || matches!(state.motion, MotionMode::Arc(..)))
     {
-        return Err(words
-            .refuse(
-                codes::COMBINATION,
-                both!(
-                    "machine coordinates with an arc or a cycle",
-                    "координаты станка вместе с дугой или циклом"
-                ),
-                span,
-                both!("moves straight on every control", "на любой стойке идёт по прямой"),
-            )
-            .help(both!("write G0 in this block", "напишите в этом кадре G0")));
+        return Err(words.refuse(refusal::MACHINE_COORDINATES_WITH_ARC_OR_CYCLE, span));
     }
     if words.has(ARC_LETTERS) {
         return Err(stray(words, both!("this block is no arc", "этот кадр не дуга")));
@@ -505,17 +391,7 @@ fn machine_coordinates(
     };
     let along = Letters::of_axes(lengths);
     if env.dialect.edge_in_d && words.has(along) {
-        return Err(words
-            .refuse(
-                codes::TOOL_LENGTH,
-                both!(
-                    "machine coordinates while a tool length is in force",
-                    "координаты станка при действующей коррекции на длину"
-                ),
-                words.span(along),
-                both!("the place of the tip, or of the spindle?", "положение вершины или шпинделя?"),
-            )
-            .help(both!("write D0 in this block, or before it", "напишите D0 в этом кадре или перед ним")));
+        return Err(words.refuse(refusal::MACHINE_COORDINATES_WITH_TOOL_LENGTH, words.span(along)));
     }
     if state.distance == Distance::Incremental {
         // Some controls ignore G53 under G91, some refuse it, some obey: the end is not known.
@@ -552,88 +428,40 @@ fn lose(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal, why
 
 fn no_cycle(words: &Words<'_, '_, '_>, state: &Modal, demand: &Demand<'_>) -> Outcome<()> {
     match demand.owner_span {
-        Some(span) if state.cycle.is_some() => Err(words
-            .refuse(
-                codes::COMBINATION,
-                both!(
-                    "a reference return or probe move while a drilling cycle is in force",
-                    "выход в исходное положение или движение щупа во время цикла сверления"
-                ),
-                span,
-                both!("a cycle is running here", "здесь действует цикл"),
-            )
-            .help(both!("cancel the cycle with G80 first", "сначала отмените цикл функцией G80"))),
+        Some(span) if state.cycle.is_some() => Err(words.refuse(refusal::REFERENCE_OR_PROBE_IN_CYCLE, span)),
         _ => Ok(()),
     }
 }
 
 fn whose(words: &Words<'_, '_, '_>, demand: &Demand<'_>, motion: Span) -> Box<Diagnostic> {
     let owner = demand.owner_span.map_or_else(String::new, |span| words.text(span));
-    let message = both!(
-        "{owner} and {} both take the axis words of this block",
-        "слова осей этого кадра принимают и {owner}, и {}",
-        words.text(motion)
-    );
-    words
-        .refuse(
-            codes::WORDS_OF_TWO,
-            message,
-            words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-            both!("whose are they?", "чьи они?"),
-        )
-        .help(both!("write the two codes in two blocks", "напишите эти две функции двумя кадрами"))
+    words.refuse(
+        refusal::both_take_axis_words(owner, &words.text(motion)),
+        words.span(AXIS_LETTERS.or(ARC_LETTERS)),
+    )
 }
 
 fn stray(words: &Words<'_, '_, '_>, why: Text) -> Box<Diagnostic> {
     let names = words.names(ARC_LETTERS);
-    words
-        .refuse(
-            codes::STRAY_ARC_WORD,
-            both!("{names} has no meaning here", "{names} здесь ничего не значит"),
-            words.span(ARC_LETTERS),
-            why,
-        )
-        .help(both!(
-            "write G2 or G3 for an arc, or remove the word; corner roundings must be posted as arcs",
-            "для дуги напишите G2 или G3 или уберите слово; скругления углов выводите дугами"
-        ))
+    words.refuse(
+        Refusal {
+            code: codes::STRAY_ARC_WORD,
+            message: both!("{names} has no meaning here", "{names} здесь ничего не значит"),
+            label: why,
+            help: both!(
+                "write G2 or G3 for an arc, or remove the word; corner roundings must be posted as arcs",
+                "для дуги напишите G2 или G3 или уберите слово; скругления углов выводите дугами"
+            ),
+        },
+        words.span(ARC_LETTERS),
+    )
 }
 
 /// The control would offset a path that turns with the workpiece.
 fn compensated_turn(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
-    words
-        .refuse(
-            codes::SIMULTANEOUS,
-            both!(
-                "{} turn at feed rate under cutter compensation",
-                "{} вращается на рабочей подаче при коррекции на радиус",
-                words.names(ROTARY_LETTERS)
-            ),
-            words.span(ROTARY_LETTERS),
-            both!(
-                "what the control offsets is no path in space while a rotary axis turns",
-                "пока вращается поворотная ось, то, что стойка смещает на радиус, — не путь в пространстве"
-            ),
-        )
-        .help(both!(
-            "cancel the compensation with G40 before this block; let the CAM write the tool's centre",
-            "отмените коррекцию функцией G40 до этого кадра; выводите из CAM путь центра инструмента"
-        ))
+    words.refuse(refusal::turn_under_compensation(&words.names(ROTARY_LETTERS)), words.span(ROTARY_LETTERS))
 }
 
 pub(crate) fn arc_while_turning(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
-    words
-        .refuse(
-            codes::SIMULTANEOUS,
-            both!("a rotary axis turns along an arc", "вдоль дуги вращается поворотная ось"),
-            words.span(AXIS_LETTERS),
-            both!(
-                "seen from the workpiece this is no arc, and no arc corrects it",
-                "для детали это не дуга, и дугой её не исправить"
-            ),
-        )
-        .help(both!(
-            "let the CAM write lines, or turn the rotary axis in a block of its own",
-            "выводите из CAM прямые или поверните ось отдельным кадром"
-        ))
+    words.refuse(refusal::ROTARY_AXIS_TURNS_ALONG_ARC, words.span(AXIS_LETTERS))
 }

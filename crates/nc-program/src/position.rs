@@ -1,11 +1,12 @@
 //! Where a block's axis words lead, and what is said where that cannot be known.
 
-use diagnostic::{Diagnostic, Entry, Text, both};
+use diagnostic::{Diagnostic, Entry, Refusal, Text, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::Action;
 use toolpath::{AXIS_NAMES, Frame, Position};
 
 use crate::modal::{Axes, Axis, Distance, Lost, Modal, MotionMode, Naming, Units, Why};
+use crate::refusals::position as refusal;
 use crate::settings::{BASE_FRAME, Environment, missing_offset};
 use crate::words::{AXIS_LETTERS, LINEAR, Outcome, ROTARY, ROTARY_LETTERS, Words};
 use crate::{codes, frames};
@@ -29,33 +30,12 @@ fn no_frame(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &Modal) -> 
     let span = words.span(AXIS_LETTERS);
     if state.work_offset.rewritten {
         let name = frames::name_of(env.dialect, &state.work_offset).unwrap_or_default();
-        let message = both!(
-            "G10 wrote work offset {name} while it was in force",
-            "G10 записала смещение нуля {name}, пока оно действовало"
-        );
-        return words
-            .refuse(
-                codes::FRAME,
-                message,
-                span,
-                both!("in force at once or not? controls differ", "действует ли сразу? у стоек по-разному"),
-            )
-            .help(both!("write {name} again after the G10 block", "напишите {name} снова после кадра G10"));
+        return words.refuse(refusal::work_offset_rewritten(name), span);
     }
     match state.work_offset.code.and_then(|code| env.dialect.code(code)).map(|entry| &entry.action) {
         Some(Action::WorkOffset(name)) => missing_offset(words, name, span),
         Some(Action::BaseFrame) => missing_offset(words, BASE_FRAME, span),
-        _ => words
-            .refuse(
-                codes::WORK_OFFSET,
-                both!("no work offset is in force", "не действует ни одно смещение нуля"),
-                span,
-                both!("coordinates of which zero?", "координаты от какого нуля?"),
-            )
-            .help(both!(
-                "program G54 before the first motion and give it with `--work-offset G54=X,Y,Z`",
-                "запрограммируйте G54 до первого движения и задайте его ключом `--work-offset G54=X,Y,Z`"
-            )),
+        _ => words.refuse(refusal::NO_WORK_OFFSET_IN_FORCE, span),
     }
 }
 
@@ -64,38 +44,16 @@ fn no_frame(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &Modal) -> 
 pub(crate) fn known_axes(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<()> {
     if words.has(crate::words::SECONDARY_LETTERS) && !words.names_direction() {
         let letters = crate::words::SECONDARY_LETTERS;
-        let message =
-            both!("{} cannot be resolved", "{}: как это понимать, неизвестно", words.names(letters));
-        return Err(words
-            .refuse(
-                codes::SECONDARY_AXIS,
-                message,
-                words.span(letters),
-                both!(
-                    "an increment on some controls, an axis on others",
-                    "на одних стойках приращение, на других отдельная ось"
-                ),
-            )
-            .help(both!(
-                "program X, Y, Z instead (with G91 for increments)",
-                "пишите вместо этого X, Y, Z (для приращений при G91)"
-            )));
+        return Err(words.refuse(refusal::cannot_be_resolved(&words.names(letters)), words.span(letters)));
     }
     if words.has(ROTARY_LETTERS) {
         for (i, letter) in ROTARY.iter().enumerate() {
             let bit = Letters::of(&[*letter]);
             if words.has(bit) && !env.setup.has_rotary[i] {
                 let name = *letter as char;
-                let message = both!("the machine has no axis {name}", "на станке нет оси {name}");
-                let label = both!(
-                    "rotary axes of the profile's chain: {}",
-                    "поворотные оси в цепи профиля: {:#}",
-                    env.setup.rotary_names()
+                return Err(
+                    words.refuse(refusal::no_such_axis(name, &env.setup.rotary_names()), words.span(bit))
                 );
-                return Err(words.refuse(codes::NO_SUCH_AXIS, message, words.span(bit), label).help(both!(
-                    "name {name} in `chain` of the profile, or remove the word",
-                    "назовите {name} в `chain` профиля или уберите слово"
-                )));
             }
         }
     }
@@ -183,10 +141,10 @@ fn direct(words: &Words<'_, '_, '_>, span: Span, value_deg: f64, axis: usize, st
             both!("where the axis comes from is not known", "откуда идёт ось, неизвестно")
         }
     };
-    Err(words.refuse(codes::BAD_NUMBER, message, span, label).help(both!(
+    Err(words.refuse(Refusal { code: codes::BAD_NUMBER, message, label, help: both!(
         "write the angle without a name, counted on over whole turns, or turn the axis by a rapid of its own before",
         "напишите угол без имени, со счётом полных оборотов, или поверните ось раньше отдельным быстрым ходом"
-    )))
+    ) }, span))
 }
 
 /// The linear axes after the words of the block where a rotation, scaling or mirror is in force.
@@ -346,12 +304,13 @@ fn unknown(words: &Words<'_, '_, '_>, message: Text, span: Span, lost: &[(char, 
         "запрограммируйте перед этим кадром быстрый ход `G90 G0 {}`{length:#}{tool_change:#}{start:#}",
         names.join(" ")
     );
-    let refusal = words.refuse(codes::POSITION_UNKNOWN, message, span, reasons(lost));
+    let refusal = Refusal { code: codes::POSITION_UNKNOWN, message, label: reasons(lost), help };
+    let refused = words.refuse(refusal, span);
     if lost.iter().all(|(_, lost)| changed(&lost.why)) {
         let entry = Entry::new("program", None, "tool_change", "{ keeps = \"XYZ\" }");
-        return refusal.settled_by(entry).help(help);
+        return Box::new(refused.settled_by(entry));
     }
-    refusal.help(help)
+    refused
 }
 
 /// `X, Y not known since the start of the program; Z not known since the reference return in line 12`.

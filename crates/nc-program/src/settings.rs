@@ -1,6 +1,6 @@
 //! What the codes of a block set before anything moves, whatever their order in the block.
 
-use diagnostic::{Entry, both};
+use diagnostic::{Entry, Refusal, both};
 use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
 use nc_syntax::{Dialect, Span};
 use toolpath::{Kinematics, Plane};
@@ -10,6 +10,7 @@ use crate::modal::{
     ArcCentres, Compensation, CycleState, Distance, FeedMode, Modal, MotionMode, ReturnLevel, Shifts, Turn,
     Units, WorkOffset,
 };
+use crate::refusals::settings as refusal;
 use crate::setup::Setup;
 use crate::tool_length::{self, Length};
 use crate::words::{LINEAR_LETTERS, Outcome, Words};
@@ -143,23 +144,8 @@ pub(crate) fn apply<'d>(
             }
             owner => {
                 if let Some(other) = demand.owner_span {
-                    let message = both!(
-                        "{} and {} both take the words of this block",
-                        "слова этого кадра принимают и {}, и {}",
-                        words.text(other),
-                        words.text(span)
-                    );
                     return Err(words
-                        .refuse(
-                            codes::WORDS_OF_TWO,
-                            message,
-                            span,
-                            both!("whose are the axis words?", "чьи это слова осей?"),
-                        )
-                        .help(both!(
-                            "write the two codes in two blocks",
-                            "напишите эти две функции двумя кадрами"
-                        )));
+                        .refuse(refusal::both_take_the_words(&words.text(other), &words.text(span)), span));
                 }
                 demand.owner = owner;
                 demand.owner_span = Some(span);
@@ -181,25 +167,10 @@ pub(crate) fn apply<'d>(
         };
         if let Some((label, help)) = unwritten {
             let message = both!("{} was not written out", "{} не расписана движениями", words.text(span));
-            return Err(words.refuse(codes::REFUSED_CODE, message, span, label).help(help));
+            return Err(words.refuse(Refusal { code: codes::REFUSED_CODE, message, label, help }, span));
         }
         if *action == Action::Swivel && (state.shifts.local_mm != [0.0; 3] || !state.transform.is_none()) {
-            let message = both!(
-                "{} while a frame of the program is in force",
-                "{} при действующей системе координат программы",
-                words.text(span)
-            );
-            return Err(words
-                .refuse(
-                    codes::FRAME,
-                    message,
-                    span,
-                    both!("does it end the frame too?", "отменяет ли она и её?"),
-                )
-                .help(both!(
-                    "end the frame with TRANS alone before it",
-                    "отмените перед этим систему координат: TRANS отдельным кадром"
-                )));
+            return Err(words.refuse_code(refusal::WHILE_FRAME_IN_FORCE, span));
         }
         if *action == Action::ContourTolerance && may_switch_tip(&words.text(span), before) {
             let call = words.text(span);
@@ -216,7 +187,7 @@ pub(crate) fn apply<'d>(
                 "write the tolerance alone, as in CYCLE832(0.01)",
                 "напишите только допуск, например CYCLE832(0.01)"
             );
-            return Err(words.refuse(codes::COMMAND, message, span, label).help(help));
+            return Err(words.refuse(Refusal { code: codes::COMMAND, message, label, help }, span));
         }
         if let Action::Refuse { reason, help } = action {
             return Err(words.refused_code(span, reason, help));
@@ -304,9 +275,12 @@ fn offset_by_h(
     if length {
         let message = both!("{} beside a tool length", "{} рядом с коррекцией на длину", words.text(span));
         let help = both!("write them in two blocks", "напишите их двумя кадрами");
-        return Err(words
-            .refuse(codes::WORDS_OF_TWO, message, words.span(H), both!("whose is H?", "чьё это H?"))
-            .help(help));
+        return Err(words.refuse(
+            Refusal {
+                code: codes::WORDS_OF_TWO, message, label: both!("whose is H?", "чьё это H?"), help
+            },
+            words.span(H),
+        ));
     }
     let number = match words.whole(b'H')? {
         Some(number) if number > 0 => number,
@@ -318,7 +292,7 @@ fn offset_by_h(
             let label = both!("a number from 1 was expected", "ожидался номер от 1");
             let help =
                 both!("write the number of the work offset as H", "напишите номер смещения нуля словом H");
-            return Err(words.refuse(codes::WORK_OFFSET, message, span, label).help(help));
+            return Err(words.refuse(Refusal { code: codes::WORK_OFFSET, message, label, help }, span));
         }
     };
     let name = frames::by_h(code, number);
@@ -343,72 +317,20 @@ fn work_offset(
     let may_be_numbered = name.is_none() || (env.dialect.frames.p_selects_numbered && code == FIRST);
     let number = match words.number(b'P') {
         None if name.is_none() => {
-            let message = both!("{} without P", "{} без P", words.text(span));
-            return Err(words
-                .refuse(
-                    codes::WORK_OFFSET,
-                    message,
-                    span,
-                    both!("which of the numbered work offsets?", "какое из нумерованных смещений нуля?"),
-                )
-                .help(both!("write P1 for the first", "для первого напишите P1")));
+            return Err(words.refuse_code(refusal::WITHOUT_P, span));
         }
         None => None,
         Some(_) if other && !may_be_numbered => None,
         Some(_) if other => {
-            let message = both!(
-                "P beside {} may belong to two codes",
-                "P рядом с {} может относиться к двум функциям",
-                words.text(span)
-            );
-            return Err(words
-                .refuse(
-                    codes::WORDS_OF_TWO,
-                    message,
-                    words.span(P),
-                    both!(
-                        "a work offset's number, or another code's P?",
-                        "номер смещения нуля или P другой функции?"
-                    ),
-                )
-                .help(both!(
-                    "write {} and its P in a block of their own",
-                    "напишите {} и её P отдельным кадром",
-                    words.text(span)
-                )));
+            return Err(words.refuse(refusal::p_of_two_codes(&words.text(span)), words.span(P)));
         }
         Some(_) if may_be_numbered => words.whole(b'P')?,
         Some(_) => {
-            let message = both!(
-                "P beside {} has no meaning here",
-                "P рядом с {} здесь ничего не значит",
-                words.text(span)
-            );
-            return Err(words
-                .refuse(
-                    codes::FRAME,
-                    message,
-                    words.span(P),
-                    both!(
-                        "another work offset on some controls",
-                        "на некоторых стойках другое смещение нуля"
-                    ),
-                )
-                .help(both!(
-                    "remove P, or write the numbered work offset in the form this control has",
-                    "уберите P или напишите нумерованное смещение нуля так, как принято на этой стойке"
-                )));
+            return Err(words.refuse(refusal::p_without_meaning(&words.text(span)), words.span(P)));
         }
     };
     if number == Some(0) {
-        return Err(words
-            .refuse(
-                codes::WORK_OFFSET,
-                both!("there is no work offset P0", "смещения нуля P0 нет"),
-                words.span(P),
-                both!("they count from 1", "счёт идёт с 1"),
-            )
-            .help(both!("write the number of the work offset", "напишите номер смещения нуля")));
+        return Err(words.refuse(refusal::NO_WORK_OFFSET_P0, words.span(P)));
     }
     let name = match (number, name) {
         (Some(number), _) => frames::numbered(number),
@@ -432,21 +354,7 @@ fn switches(words: &Words<'_, '_, '_>, state: &mut Modal, wanted: &Wanted<'_>) -
     };
     let Some(span) = off.or(wanted.shift.map(|(_, span)| span)) else { return Ok(()) };
     if state.compensation != Compensation::Off {
-        let message = both!("{} under cutter compensation", "{} при коррекции на радиус", words.text(span));
-        return Err(words
-            .refuse(
-                codes::FRAME,
-                message,
-                span,
-                both!(
-                    "the compensated path jumps with it",
-                    "эквидистанта скачком сместилась бы вместе с ней"
-                ),
-            )
-            .help(both!(
-                "cancel the compensation with G40 before it",
-                "отмените перед ней коррекцию функцией G40"
-            )));
+        return Err(words.refuse_code(refusal::UNDER_CUTTER_COMPENSATION, span));
     }
     if off.is_some() {
         frames::unsettle(state, Transform::None);
@@ -458,25 +366,7 @@ fn switches(words: &Words<'_, '_, '_>, state: &mut Modal, wanted: &Wanted<'_>) -
         (Action::PresetSuspend, _) => (shifts.preset_mm, shifts.kept_mm) = ([0.0; 3], Some(shifts.preset_mm)),
         (_, Some(kept)) => shifts.preset_mm = kept,
         (_, None) => {
-            let message = both!(
-                "{} without a shift of this program",
-                "{} без сдвига в этой программе",
-                words.text(span)
-            );
-            return Err(words
-                .refuse(
-                    codes::FRAME,
-                    message,
-                    span,
-                    both!(
-                        "brings back what an earlier program left",
-                        "возвращает то, что осталось от прежней программы"
-                    ),
-                )
-                .help(both!(
-                    "write the shift with G92 or G52, or use a work offset",
-                    "задайте сдвиг функцией G92 или G52 или возьмите смещение нуля"
-                )));
+            return Err(words.refuse_code(refusal::WITHOUT_SHIFT_OF_THIS_PROGRAM, span));
         }
     }
     Ok(())
@@ -493,26 +383,8 @@ fn transformed(words: &Words<'_, '_, '_>, before: &Modal, after: &Modal) -> Outc
     } else {
         return Ok(());
     };
-    let message = both!(
-        "the {what} changes under {}",
-        "{what:#} меняется, пока действует {:#}",
-        before.transform.name()
-    );
     let span = words.codes.first().map_or_else(|| words.span(Letters::of(b"H")), |code| code.span);
-    Err(words
-        .refuse(
-            codes::FRAME,
-            message,
-            span,
-            both!(
-                "controls differ in what the centre means then",
-                "что тогда значит центр, у стоек по-разному"
-            ),
-        )
-        .help(both!(
-            "cancel the rotation, scaling or mirror before, and write it again afterwards",
-            "отмените до этого поворот, масштабирование или зеркальное отображение, а после напишите снова"
-        )))
+    Err(words.refuse(refusal::changes_under_transform(&what, &before.transform.name()), span))
 }
 
 /// Applies the dialect's state at the start of a program. A work offset that the setup lacks is
@@ -688,20 +560,7 @@ fn cycle_frame(words: &Words<'_, '_, '_>, before: &Modal, after: &Modal) -> Outc
         return Ok(());
     };
     let span = words.codes.first().map_or_else(|| words.span(Letters::of(b"H")), |code| code.span);
-    Err(words
-        .refuse(
-            codes::CYCLE_WORDS,
-            both!(
-                "the {what} changes while a drilling cycle is in force",
-                "{what:#} меняется во время цикла сверления"
-            ),
-            span,
-            both!("a cycle is running here", "здесь действует цикл"),
-        )
-        .help(both!(
-            "cancel the cycle with G80 before, and write it again with R and Z afterwards",
-            "отмените цикл до этого функцией G80, а после напишите его снова, с R и Z"
-        )))
+    Err(words.refuse(refusal::changes_during_cycle(&what), span))
 }
 
 /// A name as a key of the profile: with a point in it it is quoted.
@@ -716,14 +575,6 @@ pub(crate) fn missing_offset(
     name: &str,
     span: Span,
 ) -> Box<diagnostic::Diagnostic> {
-    words
-        .refuse(
-            codes::WORK_OFFSET,
-            both!("work offset {name} is not given", "смещение нуля {name} не задано"),
-            span,
-            both!("given by no profile, file or option", "его нет ни в профиле, ни в файлах, ни в ключах"),
-        )
-        .settled_by(Entry::new("work_offsets_mm", None, toml_key(name), "[X, Y, Z]"))
-        .help(both!("`--work-offset {name}=X,Y,Z` with the machine coordinates of the program's zero, or `{name} = [X, Y, Z]` under `[work_offsets_mm]` in the profile", "`--work-offset {name}=X,Y,Z` с координатами станка, где лежит нуль программы, или `{name} = [X, Y, Z]` в разделе `[work_offsets_mm]` профиля"
-        ))
+    let entry = Entry::new("work_offsets_mm", None, toml_key(name), "[X, Y, Z]");
+    Box::new(words.refuse(refusal::work_offset_not_given(name), span).settled_by(entry))
 }

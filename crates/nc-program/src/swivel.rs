@@ -6,15 +6,16 @@
 //! the control's own rapid to places that no program names; behind the cycle nobody knows where X, Y and Z stand in the
 //! plane, with a retraction or without.
 
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Diagnostic, Refusal, Text, both};
 use nc_syntax::Span;
 use toolpath::{Kinematics, Plane, TiltedPlane};
 
+use crate::codes;
 use crate::frames;
 use crate::modal::{Axis, Modal, Units};
 use crate::position::require_frame;
 use crate::settings::Environment;
-use crate::tilted::{declared, lose, not_certain, refuse};
+use crate::tilted::{declared, lose, not_certain};
 use crate::words::{Outcome, Words};
 use nc_syntax::Letters;
 
@@ -77,7 +78,7 @@ struct Swivel {
 impl Call<'_, '_, '_, '_> {
     fn refuse(&self, what: &Text, label: Text, help: Text) -> Box<Diagnostic> {
         let message = both!("CYCLE800 {what}", "CYCLE800 {what:#}");
-        refuse(self.words, self.span, message, label).help(help)
+        self.words.refuse(Refusal { code: codes::TILTED_PLANE, message, label, help }, self.span)
     }
 
     /// A plain number; an argument left out is 0.

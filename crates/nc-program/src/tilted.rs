@@ -5,7 +5,7 @@
 //! it does so wherever the rotary axes stand no manual promises; so nothing moves in a plane on which the tool does not
 //! stand upright.
 
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Diagnostic, Refusal, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::Action;
 use smallvec::SmallVec;
@@ -16,11 +16,10 @@ use crate::frames::absolute;
 use crate::modal::{Axis, Lost, Modal, Units, Why};
 use crate::naming;
 use crate::position::{require_frame, require_rotary};
+use crate::refusals::tilted as refusal;
 use crate::settings::{Demand, Environment, Owner};
 use crate::swivel;
-use crate::words::{
-    ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, Refusal, Words,
-};
+use crate::words::{ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, Words};
 use nc_syntax::Letters;
 
 /// The tool stands upright on a plane where its direction is within this of the plane's normal, rad: whichever of the two
@@ -44,10 +43,6 @@ pub struct Begun {
     points: [Option<Three>; 4],
     /// By Q: a direction.
     directions: [Option<Three>; 4],
-}
-
-pub(crate) fn refuse(words: &Words<'_, '_, '_>, span: Span, message: Text, label: Text) -> Refusal {
-    words.refuse(codes::TILTED_PLANE, message, span, label)
 }
 
 /// What ends a plane in this dialect.
@@ -81,7 +76,7 @@ pub(crate) fn declared(env: &Environment<'_>, words: &Words<'_, '_, '_>, span: S
         "{code} is refused: it tilts the working plane",
         "{code} не принимается: она наклоняет рабочую плоскость"
     );
-    Err(refuse(words, span, message, label).help(help))
+    Err(words.refuse(Refusal { code: codes::TILTED_PLANE, message, label, help }, span))
 }
 
 /// G68.2.
@@ -101,19 +96,7 @@ pub(crate) fn define(
     absolute(words, span, state)?;
     // Some posts write `R0.` with each plane.
     if words.coordinate(b'R', false).is_some_and(|angle| angle != 0.0) {
-        return Err(stray(
-            words,
-            span,
-            R,
-            both!(
-                "turns the plane about its zero, before or behind its own angles?",
-                "поворачивает плоскость вокруг её нуля: до её углов или после?"
-            ),
-        )
-        .help(both!(
-            "write the turn into the plane's angles, points or vectors, and remove R",
-            "учтите поворот в углах, точках или векторах плоскости и уберите R"
-        )));
+        return Err(beside(words, span, R, refusal::TURN_ABOUT_THE_ZERO));
     }
     let origin = match words.whole(b'P')?.unwrap_or(0) {
         form @ (0 | 1) => {
@@ -129,18 +112,7 @@ pub(crate) fn define(
             } else {
                 both!("by a form that no manual has", "в виде, которого нет ни в одном руководстве")
             };
-            let message =
-                both!("{code} P{form} defines a plane {what}", "{code} P{form} задаёт плоскость {what:#}");
-            return Err(refuse(
-                words,
-                words.span(P),
-                message,
-                both!("which turn that is, is not certain", "какой это поворот, неясно"),
-            )
-            .help(both!(
-                "write the plane by Euler angles: P0 and I, J, K about Z, the new X and the new Z",
-                "задайте плоскость углами Эйлера: P0 и I, J, K вокруг Z, новой X и новой Z"
-            )));
+            return Err(words.refuse(refusal::defines_plane_otherwise(code, form, &what), words.span(P)));
         }
     };
     let Some((origin, turn)) = origin else { return Ok(()) };
@@ -154,48 +126,18 @@ pub(crate) fn define(
 
 /// A plane begins where neither another one nor a tool length is in force.
 fn may_begin(env: &Environment<'_>, words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<()> {
-    let code = words.text(span);
     declared(env, words, span)?;
     match state.kinematics {
         Kinematics::Axes => {}
         Kinematics::Tip => {
-            let message = both!(
-                "{code} under tool centre point control",
-                "{code} при управлении по вершине инструмента"
-            );
-            let label = both!(
-                "are X, Y and Z in the plane's coordinates then, or in the workpiece's?",
-                "в чьих координатах тогда X, Y и Z: плоскости или детали?"
-            );
-            return Err(refuse(words, span, message, label).help(both!(
-                "switch tool centre point control off before",
-                "отключите до этого управление по вершине инструмента"
-            )));
+            return Err(words.refuse_code(refusal::UNDER_TOOL_CENTRE_POINT_CONTROL, span));
         }
         Kinematics::Plane(_) => {
-            let message = both!("{code} inside a tilted plane", "{code} в наклонной плоскости");
-            return Err(refuse(
-                words,
-                span,
-                message,
-                both!("in the coordinates of which plane?", "в координатах какой плоскости?"),
-            )
-            .help(both!("cancel the plane before with G69", "отмените до этого плоскость функцией G69")));
+            return Err(words.refuse_code(refusal::INSIDE_TILTED_PLANE, span));
         }
     }
     if state.tool_length.applied_mm() != [0.0; 3] {
-        let message =
-            both!("{code} with a tool length in force", "{code} при действующей коррекции на длину");
-        return Err(refuse(
-            words,
-            span,
-            message,
-            both!("along which axis is the length then?", "вдоль какой оси тогда длина?"),
-        )
-        .help(both!(
-            "write G49 before it, and G43 with its H behind G53.1, or in the plane",
-            "напишите перед ней G49, а G43 с H — после G53.1 или в плоскости"
-        )));
+        return Err(words.refuse_code(refusal::WITH_TOOL_LENGTH_IN_FORCE, span));
     }
     Ok(())
 }
@@ -210,23 +152,11 @@ pub(crate) fn follow(
 ) -> Outcome<()> {
     may_begin(env, words, span, state)?;
     if words.has(AXIS_LETTERS) {
-        let label = both!("before or behind the motion?", "до движения или после?");
-        return Err(stray(words, span, AXIS_LETTERS, label)
-            .help(both!("write the code alone in its block", "напишите функцию отдельным кадром")));
+        return Err(beside(words, span, AXIS_LETTERS, refusal::MOTION_BESIDE));
     }
     let chain = &env.setup.rotary_chain;
     if !chain.0.iter().all(|link| link.carries_workpiece) {
-        let message = both!(
-            "{} on a machine that turns the tool",
-            "{} на станке, который поворачивает инструмент",
-            words.text(span)
-        );
-        let label = both!(
-            "what follows the head, the offset or the tool?",
-            "что следует за головкой: смещение нуля или инструмент?"
-        );
-        return Err(refuse(words, span, message, label)
-            .help(both!("write G234 in its place", "напишите вместо неё G234")));
+        return Err(words.refuse_code(refusal::ON_A_MACHINE_THAT_TURNS_THE_TOOL, span));
     }
     require_rotary(words, &state.axes)?;
     let stand_deg = state.axes.rotary.map(|axis| axis.known().unwrap_or(0.0));
@@ -245,27 +175,14 @@ pub(crate) fn lose(words: &Words<'_, '_, '_>, state: &mut Modal) {
     naming::forget_all(words, state, Why::TiltedPlane);
 }
 
-fn stray(words: &Words<'_, '_, '_>, span: Span, letters: Letters, label: Text) -> Refusal {
+/// Words that stand beside the code: the message names both.
+fn beside(words: &Words<'_, '_, '_>, span: Span, letters: Letters, refusal: Refusal) -> Box<Diagnostic> {
     let message = both!("{} beside {}", "{} рядом с {}", words.names(letters), words.text(span));
-    refuse(words, words.span(letters), message, label)
+    words.refuse(Refusal { message, ..refusal }, words.span(letters))
 }
 
 fn unfinished(words: &Words<'_, '_, '_>, span: Span) -> Box<Diagnostic> {
-    let message =
-        both!("the definition of a tilted plane is not whole", "наклонная плоскость задана не полностью");
-    refuse(
-        words,
-        span,
-        message,
-        both!(
-            "points and vectors of one plane stand in blocks one behind the other",
-            "точки и векторы одной плоскости стоят в кадрах, идущих подряд"
-        ),
-    )
-    .help(both!(
-        "write all its blocks, Q1 and Q2, of three points Q3 too, before anything else",
-        "напишите прежде всего остального все её кадры: Q1 и Q2, для трёх точек ещё Q3"
-    ))
+    words.refuse(refusal::DEFINITION_NOT_WHOLE, span)
 }
 
 /// X, Y and Z of the block, program coordinates, mm: all of them.
@@ -273,20 +190,7 @@ fn point(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<Three>
     let inch = state.units == Units::Inch;
     let values = LINEAR.map(|letter| words.coordinate(letter, inch));
     let [Some(x), Some(y), Some(z)] = values else {
-        let message = both!("{} without X, Y and Z", "{} без X, Y и Z", words.text(span));
-        return Err(refuse(
-            words,
-            span,
-            message,
-            both!(
-                "where the axes stand, or at zero? controls differ",
-                "там, где стоят оси, или в нуле? у стоек по-разному"
-            ),
-        )
-        .help(both!(
-            "write X, Y and Z of the plane's zero, or of the point",
-            "напишите X, Y и Z нуля плоскости или точки"
-        )));
+        return Err(words.refuse_code(refusal::WITHOUT_X_Y_AND_Z, span));
     };
     Ok([x, y, z].map(|value| value * state.units.mm()))
 }
@@ -300,62 +204,25 @@ fn three(words: &Words<'_, '_, '_>) -> Three {
 fn by_angles(words: &Words<'_, '_, '_>, span: Span, form: u32) -> Outcome<Turn> {
     let angles = three(words);
     if !words.has(CENTRE_LETTERS) {
-        let message = both!("{} without an angle", "{} без угла", words.text(span));
-        return Err(refuse(
-            words,
-            span,
-            message,
-            both!(
-                "a plane that is not tilted, or as the last one?",
-                "без наклона или как прошлая плоскость?"
-            ),
-        )
-        .help(both!("write I, J and K in degrees", "напишите I, J и K в градусах")));
+        return Err(words.refuse_code(refusal::WITHOUT_ANGLE, span));
     }
     let order = words.whole(b'Q')?;
     if form == 0 {
         if order.is_some_and(|order| order != 313) {
-            return Err(stray(
-                words,
-                span,
-                Q,
-                both!(
-                    "another order of Euler angles on some controls",
-                    "на некоторых стойках другой порядок углов Эйлера"
-                ),
-            )
-            .help(both!(
-                "write the plane by I about Z, J about the new X and K about the new Z, and remove Q",
-                "задайте плоскость словами I вокруг Z, J вокруг новой X и K вокруг новой Z и уберите Q"
-            )));
+            return Err(beside(words, span, Q, refusal::OTHER_ORDER_OF_EULER));
         }
         return Ok(TiltedPlane::turn_by_euler(angles));
     }
     if order != Some(123) {
-        let message = both!("{} P1 without Q123", "{} P1 без Q123", words.text(span));
         let at = if words.has(Q) { words.span(Q) } else { span };
-        return Err(refuse(words, at, message, both!("whether I, J, K then change places, controls differ", "меняются ли тогда местами I, J, K, у стоек по-разному")).help(
-            both!("write Q123, and one angle: I about X, J about Y or K about Z; or the plane by Euler angles (P0)", "напишите Q123 и один угол: I вокруг X, J вокруг Y или K вокруг Z; или задайте плоскость углами Эйлера (P0)"),
-        ));
+        return Err(words.refuse(refusal::p1_without_q123(&words.text(span)), at));
     }
     let mut turns = (0..3).filter(|axis| angles[*axis] != 0.0);
     let axis = turns.next().unwrap_or(0);
     if turns.next().is_some() {
-        let message =
-            both!("{} P1 with more than one angle", "{} P1 больше чем с одним углом", words.text(span));
-        return Err(refuse(
-            words,
-            words.span(CENTRE_LETTERS),
-            message,
-            both!(
-                "about axes that stand, or that turn? controls differ",
-                "вокруг неподвижных осей или поворачивающихся? у стоек по-разному"
-            ),
-        )
-        .help(both!(
-            "write the plane by Euler angles: P0 and I, J, K about Z, the new X and the new Z",
-            "задайте плоскость углами Эйлера: P0 и I, J, K вокруг Z, новой X и новой Z"
-        )));
+        return Err(
+            words.refuse(refusal::p1_with_more_than_one_angle(&words.text(span)), words.span(CENTRE_LETTERS))
+        );
     }
     Ok(TiltedPlane::turn_about(axis, angles[axis]))
 }
@@ -376,102 +243,42 @@ fn by_blocks(
     let last = if form == 2 { 3 } else { 2 };
     let least = if form == 2 { 0 } else { 1 };
     let Some(q) = words.whole(b'Q')?.filter(|q| (least..=last).contains(q)) else {
-        let message =
-            both!("{code} P{form} without the number of its block", "{code} P{form} без номера своего кадра");
         let at = if words.has(Q) { words.span(Q) } else { span };
-        return Err(refuse(
-            words,
-            at,
-            message,
-            both!("Q{least} to Q{last} were expected", "ожидались Q{least}–Q{last}"),
-        )
-        .help(both!("write Q1 beside the plane's zero", "напишите Q1 рядом с нулём плоскости")));
+        return Err(words.refuse(refusal::without_number_of_block(code, form, least, last), at));
     };
     let place = q as usize;
     if begun.points[place].is_some() || begun.directions[place].is_some() {
-        let message = both!("{code} P{form} Q{q} stands twice", "{code} P{form} Q{q} стоит дважды");
-        return Err(refuse(words, words.span(Q), message, both!("which one?", "какое из двух?"))
-            .help(both!("remove one of the two", "уберите одно из двух")));
+        return Err(words.refuse(refusal::block_stands_twice(code, form, q), words.span(Q)));
     }
     let has_point = form == 2 || q == 1;
     let without = if has_point { Letters::NONE } else { LINEAR_LETTERS };
     let without = if form == 2 { without.or(CENTRE_LETTERS) } else { without };
     if words.has(without) {
-        return Err(stray(
-            words,
-            span,
-            without,
-            both!("has no meaning in this block of the plane", "в этом кадре плоскости ничего не значит"),
-        )
-        .help(both!(
-            "remove the word, or write it in the block that it belongs to",
-            "уберите слово или напишите его в том кадре, к которому оно относится"
-        )));
+        return Err(beside(words, span, without, refusal::NO_MEANING_IN_THIS_BLOCK));
     }
     if has_point {
         let at = point(words, span, state)?;
         if form == 2 && q == 0 && at != [0.0; 3] {
-            return Err(stray(
-                words,
-                span,
-                LINEAR_LETTERS,
-                both!(
-                    "a shift in the plane, or in the workpiece? controls differ",
-                    "сдвиг в плоскости или в детали? у стоек по-разному"
-                ),
-            )
-            .help(both!(
-                "write the plane's zero as its first point, and zeros or nothing as Q0",
-                "напишите нуль плоскости первой точкой, а Q0 — с нулями или совсем не пишите"
-            )));
+            return Err(beside(words, span, LINEAR_LETTERS, refusal::SHIFT_IN_PLANE_OR_WORKPIECE));
         }
         begun.points[place] = Some(at);
     }
     if form == 3 {
         let Some(direction) = unit(three(words)) else {
-            let message =
-                both!("{code} P3 Q{q} with a vector of no length", "{code} P3 Q{q} с нулевым вектором");
-            return Err(refuse(words, span, message, both!("no direction", "направления нет"))
-                .help(both!("write I, J and K of the direction", "напишите I, J и K направления")));
+            return Err(words.refuse(refusal::vector_of_no_length(code, q), span));
         };
         begun.directions[place] = Some(direction);
     }
     let plane = match (form, begun.points, begun.directions) {
         (2, [_, Some(zero), Some(on_x), Some(beside)], _) => {
             let Some(turn) = TiltedPlane::turn_by_points([zero, on_x, beside]) else {
-                let message = both!(
-                    "three points of a tilted plane lie on one line",
-                    "три точки наклонной плоскости лежат на одной прямой"
-                );
-                return Err(refuse(
-                    words,
-                    span,
-                    message,
-                    both!("no plane, or any", "плоскости нет или подходит любая"),
-                )
-                .help(both!(
-                    "write three points that span the plane",
-                    "напишите три точки не на одной прямой"
-                )));
+                return Err(words.refuse(refusal::POINTS_ON_ONE_LINE, span));
             };
             Some((zero, turn))
         }
         (3, [_, Some(zero), ..], [_, Some(x), Some(z), _]) => {
-            let turn = TiltedPlane::turn_by_directions(x, z).map_err(|lean| {
-                let message = both!(
-                    "the two vectors of a tilted plane are not at right angles",
-                    "два вектора наклонной плоскости не под прямым углом"
-                );
-                let label = both!(
-                    "by {:.4} degrees: which of the two stays is not certain",
-                    "на {:.4} градуса: какой из двух остаётся, неясно",
-                    lean.to_degrees()
-                );
-                refuse(words, span, message, label).help(both!(
-                    "write the vectors with more decimals, or the plane by angles or points",
-                    "напишите векторы с большим числом знаков или задайте плоскость углами или точками"
-                ))
-            })?;
+            let turn = TiltedPlane::turn_by_directions(x, z)
+                .map_err(|lean| words.refuse(refusal::vectors_not_square(lean.to_degrees()), span))?;
             Some((zero, turn))
         }
         _ => None,
@@ -489,21 +296,12 @@ pub(crate) fn align(
     span: Span,
     state: &mut Modal,
 ) -> Outcome<()> {
-    let code = words.text(span);
     let others = AXIS_LETTERS.or(ARC_LETTERS).or(Letters::of(b"PQHD"));
     if words.has(others) {
-        return Err(stray(words, span, others, both!("chooses or moves something, as the control has it", "что-то выбирает или двигает, у каждой стойки своё"))
-            .help(both!("write the code alone in its block, and say which way the control turns as `branch` and `turn` under `[kinematics]` in the profile", "напишите функцию отдельным кадром, а куда поворачивает стойка, скажите ключами `branch` и `turn` раздела `[kinematics]` профиля")));
+        return Err(beside(words, span, others, refusal::AXES_CHOSEN_BY_THE_CONTROL));
     }
     let Kinematics::Plane(plane) = state.kinematics else {
-        let message = both!("{code} without a tilted plane", "{code} без наклонной плоскости");
-        return Err(refuse(
-            words,
-            span,
-            message,
-            both!("turns the tool to which plane?", "к какой плоскости повернуть инструмент?"),
-        )
-        .help(both!("write G68.2 before it", "напишите перед ней G68.2")));
+        return Err(words.refuse_code(refusal::WITHOUT_TILTED_PLANE, span));
     };
     let stand = state.axes.rotary.map(Axis::known);
     let angles = env.setup.rotary_chain.angles_for(plane.normal(), &env.setup.tilt_rule, stand);
@@ -629,7 +427,7 @@ pub(crate) fn not_certain(
         "where {code} turns the rotary axes is not certain",
         "куда {code} повернёт поворотные оси, неясно"
     );
-    words.refuse(codes::PLANE_ANGLES, message, span, label).help(help)
+    words.refuse(Refusal { code: codes::PLANE_ANGLES, message, label, help }, span)
 }
 
 /// G69 and CYCLE800() end the plane, before the motion of their block.
@@ -694,16 +492,18 @@ pub(crate) fn check(
     };
     let span = span();
     let message = both!("{} inside a tilted plane", "{} в наклонной плоскости", words.text(span));
-    Err(refuse(
-        words,
+    Err(words.refuse(
+        Refusal {
+            code: codes::TILTED_PLANE,
+            message,
+            label: both!(
+                "{what}: controls differ in what that means here",
+                "{what:#}: что это здесь значит, у стоек по-разному"
+            ),
+            help,
+        },
         span,
-        message,
-        both!(
-            "{what}: controls differ in what that means here",
-            "{what:#}: что это здесь значит, у стоек по-разному"
-        ),
-    )
-    .help(help))
+    ))
 }
 
 /// A code of the group of G68.2 that is passed elsewhere.
@@ -733,30 +533,31 @@ pub(crate) fn check_motions(
             "a rotary axis turns inside a tilted plane",
             "в наклонной плоскости вращается поворотная ось"
         );
-        return Err(words
-            .refuse(
-                codes::PLANE_ANGLES,
+        return Err(words.refuse(
+            Refusal {
+                code: codes::PLANE_ANGLES,
                 message,
-                span,
-                both!(
+                label: both!(
                     "the plane turns with it on some controls, on others not",
                     "на одних стойках плоскость поворачивается вместе с ней, на других нет"
                 ),
-            )
-            .help(match ending(env) {
-                "G69" => both!(
-                    "turn the axis before G68.2, or let G53.1 do it",
-                    "поверните ось до G68.2 или предоставьте это G53.1"
-                ),
-                "G255" => both!(
-                    "end it with G255 before the turn, and write G254 again behind it",
-                    "отмените до поворота функцией G255, а после снова напишите G254"
-                ),
-                _ => both!(
-                    "end the plane with CYCLE800() before it, or let CYCLE800 turn the axis",
-                    "отмените перед этим плоскость: CYCLE800() — или предоставьте поворот CYCLE800"
-                ),
-            }));
+                help: match ending(env) {
+                    "G69" => both!(
+                        "turn the axis before G68.2, or let G53.1 do it",
+                        "поверните ось до G68.2 или предоставьте это G53.1"
+                    ),
+                    "G255" => both!(
+                        "end it with G255 before the turn, and write G254 again behind it",
+                        "отмените до поворота функцией G255, а после снова напишите G254"
+                    ),
+                    _ => both!(
+                        "end the plane with CYCLE800() before it, or let CYCLE800 turn the axis",
+                        "отмените перед этим плоскость: CYCLE800() — или предоставьте поворот CYCLE800"
+                    ),
+                },
+            },
+            span,
+        ));
     }
     if motions.iter().all(|motion| matches!(motion, Motion::Uncorrected { .. })) {
         return Ok(());
@@ -766,30 +567,11 @@ pub(crate) fn check_motions(
         env.setup.rotary_chain.tool_direction(state.axes.rotary.map(|axis| axis.known().unwrap_or(0.0)));
     let off_rad = plane.off_normal_rad(stands);
     if off_rad > UPRIGHT_RAD {
-        let message = both!(
-            "the rotary axes do not stand the tool upright on the tilted plane",
-            "поворотные оси не ставят инструмент перпендикулярно наклонной плоскости"
-        );
-        let label = both!("it leans by {} degrees", "наклон {}°", angle(off_rad));
-        return Err(words
-            .refuse(codes::PLANE_ANGLES, message, span, label)
-            .help(both!("write the angles that belong to the plane before G68.2, with as many decimals as the plane has, or G53.1 behind it", "напишите до G68.2 углы этой плоскости с тем же числом знаков, что и у неё, или после неё G53.1")));
+        return Err(words.refuse(refusal::tool_not_upright(angle(off_rad)), span));
     }
     let tool_mm = env.setup.tool_vector(&state.tool_length);
     if tool_mm[0] != 0.0 || tool_mm[1] != 0.0 {
-        return Err(refuse(
-            words,
-            span,
-            both!(
-                "a tool beside the spindle's axis in a tilted plane",
-                "в наклонной плоскости инструмент не на оси шпинделя"
-            ),
-            both!("along which axes is it then?", "вдоль каких осей он тогда?"),
-        )
-        .help(both!(
-            "give the tool's length along Z alone, or post without tilted planes",
-            "задайте длину инструмента только вдоль Z или выводите без наклонных плоскостей"
-        )));
+        return Err(words.refuse(refusal::TOOL_BESIDE_SPINDLE_AXIS, span));
     }
     Ok(())
 }

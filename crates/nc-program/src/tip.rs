@@ -1,12 +1,13 @@
 //! Tool centre point control: G43.4, TRAORI, M codes of the machine. X, Y and Z then say where the tip is.
 
-use diagnostic::both;
+use diagnostic::{Refusal, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::{Action, TipSwitch};
 use toolpath::Kinematics;
 
 use crate::codes;
 use crate::modal::{Axis, Compensation, Lost, Modal, Why};
+use crate::refusals::tip as refusal;
 use crate::settings::{Demand, Environment};
 use crate::words::{Outcome, Words};
 use nc_syntax::Letters;
@@ -64,7 +65,7 @@ pub(crate) fn switch(
             "{} не принимается: она ведёт оси так, чтобы по пути шла вершина инструмента",
             words.text(span)
         );
-        return Err(words.refuse(codes::TIP_CONTROL, message, span, label).help(help));
+        return Err(words.refuse(Refusal { code: codes::TIP_CONTROL, message, label, help }, span));
     }
     if kinematics == before.kinematics {
         return Ok(());
@@ -74,21 +75,7 @@ pub(crate) fn switch(
             // What is not on cannot be switched off.
             return Ok(());
         }
-        let message = both!("{} inside a tilted plane", "{} в наклонной плоскости", words.text(span));
-        return Err(words
-            .refuse(
-                codes::TILTED_PLANE,
-                message,
-                span,
-                both!(
-                    "is the tip then in the plane's coordinates, or in the workpiece's?",
-                    "в чьих координатах тогда вершина: плоскости или детали?"
-                ),
-            )
-            .help(both!(
-                "cancel the plane with G69 before it, or post the points of the plane without it",
-                "отмените перед ней плоскость функцией G69 или выводите точки плоскости без неё"
-            )));
+        return Err(words.refuse_code(refusal::INSIDE_TILTED_PLANE, span));
     }
     state.kinematics = kinematics;
     if state.axes.rotary.iter().any(|axis| *axis != Axis::At(0.0)) {
@@ -157,12 +144,13 @@ pub(crate) fn check(
     } else {
         return Ok(());
     };
-    Err(words
-        .refuse(
-            codes::TIP_CONTROL,
+    Err(words.refuse(
+        Refusal {
+            code: codes::TIP_CONTROL,
             message,
-            span(),
-            both!("X, Y and Z say where the tip is here", "X, Y и Z здесь — положение вершины"),
-        )
-        .help(help))
+            label: both!("X, Y and Z say where the tip is here", "X, Y и Z здесь — положение вершины"),
+            help,
+        },
+        span(),
+    ))
 }

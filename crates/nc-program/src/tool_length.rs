@@ -1,18 +1,18 @@
 //! T, H, G43, G44, G49 and G43.1: which tool length is in force.
 
-use diagnostic::{Entry, Text, both};
-use nc_syntax::Span;
-use nc_syntax::dialect::{LengthAfter, LengthAtChange, TWord};
+use diagnostic::{Entry, Refusal, Text, both};
+use nc_syntax::dialect::{LengthAfter, LengthAtChange, TWord, Turning};
+use nc_syntax::{Letters, Span};
 
 use crate::codes;
 use crate::frames;
 use crate::modal::{Distance, Modal, MotionMode, ToolLength, Units, WrittenLength};
 use crate::motion::compensated;
+use crate::refusals::tool_length as refusal;
 use crate::settings::{Demand, Environment};
 use crate::words::{
     ARC_LETTERS, AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, ROTARY_LETTERS, SECONDARY_LETTERS, Words,
 };
-use nc_syntax::Letters;
 
 /// How the tool length is asked to change.
 #[derive(Clone, Copy)]
@@ -35,19 +35,7 @@ pub(crate) fn tool(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut
     }
     if words.has(T) {
         if env.dialect.t_word == TWord::MayChange {
-            let message = both!(
-                "{} may change the tool at once",
-                "{} может сразу сменить инструмент",
-                words.text(words.span(T))
-            );
-            return Err(words
-                .refuse(
-                    codes::TOOL_LENGTH,
-                    message,
-                    words.span(T),
-                    both!("brings in a length that no word of the program names, and moves the axes", "вводит длину, которой не называет ни одно слово программы, и двигает оси"),
-                )
-                .help(both!("correct the operations of each tool apart, without T and M6, the length given in the profile's tool.default_mm; or write t_word = \"selects\" in a copy of the grammar where M6 changes the tool", "исправляйте переходы каждого инструмента отдельно, без T и M6, задав длину ключом tool.default_mm профиля; или, если инструмент меняет M6, впишите t_word = \"selects\" в копию таблицы диалекта")));
+            return Err(words.refuse_code(refusal::MAY_CHANGE_TOOL_AT_ONCE, words.span(T)));
         }
         state.tool_selected = words.whole(b'T').ok().flatten();
     }
@@ -65,17 +53,7 @@ pub(crate) fn tool(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut
 
 /// The tool that comes in has no number.
 fn no_tool(words: &Words<'_, '_, '_>, span: Span) -> Box<diagnostic::Diagnostic> {
-    words
-        .refuse(
-            codes::TOOL_LENGTH,
-            both!(
-                "a tool change, and no tool was called before",
-                "смена инструмента, а до неё ни один инструмент не вызван"
-            ),
-            span,
-            both!("which tool?", "какой инструмент?"),
-        )
-        .help(both!("write T and the tool's number before it", "напишите перед ним T и номер инструмента"))
+    words.refuse(refusal::NO_TOOL_CALLED, span)
 }
 
 /// T of a turret: tool and offset in one number, `T0101`; offset 00 is none.
@@ -90,24 +68,7 @@ fn turret(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -
         return Ok(());
     };
     if !(3..=4).contains(&digits) {
-        return Err(words
-            .refuse(
-                codes::TOOL_LENGTH,
-                both!(
-                    "{} is not a tool and its offset",
-                    "{} — не номер инструмента с номером корректора",
-                    words.text(span)
-                ),
-                span,
-                both!(
-                    "which digits are the offset's depends on a parameter (5028)",
-                    "какие цифры относятся к корректору, зависит от параметра 5028"
-                ),
-            )
-            .help(both!(
-                "write two digits for the tool and two for its offset, like T0101; T0100 for no offset",
-                "напишите две цифры инструмента и две корректора, например T0101; T0100 — без коррекции"
-            )));
+        return Err(words.refuse_code(refusal::NOT_A_TOOL_AND_ITS_OFFSET, span));
     }
     state.tool_selected = Some(number / 100);
     state.tool_loaded = state.tool_selected;
@@ -129,17 +90,7 @@ fn edge(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -> 
     match (words.whole(b'D')?, state.tool_loaded) {
         (Some(0), _) | (None, Some(0)) => take(env, words, span, 0, state),
         (None | Some(1), Some(tool)) => take(env, words, span, tool, state),
-        (_, None) => Err(words
-            .refuse(
-                codes::TOOL_LENGTH,
-                both!(
-                    "an offset of a tool that the program has not called",
-                    "корректор инструмента, который программа не вызывала"
-                ),
-                span,
-                both!("of which tool?", "какого инструмента?"),
-            )
-            .help(both!("write T before it", "напишите перед ним T"))),
+        (_, None) => Err(words.refuse(refusal::OFFSET_OF_TOOL_NOT_CALLED, span)),
         (Some(edge), Some(_)) => Err(further_edge(words, edge, span)),
     }
 }
@@ -186,31 +137,13 @@ fn edge_of_loaded(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut 
 }
 
 fn further_edge(words: &Words<'_, '_, '_>, edge: u32, span: Span) -> Box<diagnostic::Diagnostic> {
-    words
-        .refuse(
-            codes::TOOL_LENGTH,
-            both!("D{edge} is a further edge of the tool", "D{edge} — ещё одна режущая кромка инструмента"),
-            span,
-            both!(
-                "the profile has one offset for each tool",
-                "в профиле у каждого инструмента один корректор"
-            ),
-        )
-        .help(both!(
-            "write D1, or give the edge a tool of its own",
-            "напишите D1 или заведите для кромки отдельный инструмент"
-        ))
+    words.refuse(refusal::further_edge(edge), span)
 }
 
 /// The number of a tool that the program calls by its name.
 fn named(env: &Environment<'_>, words: &Words<'_, '_, '_>, span: Span, name: &str) -> Outcome<u32> {
     let known = env.setup.tool_names.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
-    known.map(|(_, number)| *number).ok_or_else(|| {
-        words
-            .refuse(codes::TOOL_LENGTH, both!("the tool \"{name}\" is not given", "инструмент \"{name}\" не задан"), span, both!("which length has it?", "какая у него длина?"))
-            .help(both!("write `names = {{ \"{name}\" = 1 }}` and its length `lengths_mm = {{ H1 = 120.0 }}` under `[tool]` in the profile", "впишите `names = {{ \"{name}\" = 1 }}` и его длину `lengths_mm = {{ H1 = 120.0 }}` в раздел `[tool]` профиля"
-            ))
-    })
+    known.map(|(_, number)| *number).ok_or_else(|| words.refuse(refusal::tool_not_given(name), span))
 }
 
 /// Refuses a motion in program coordinates while nobody has said which edge of the tool counts.
@@ -222,14 +155,7 @@ pub(crate) fn edge_is_said(env: &Environment<'_>, words: &Words<'_, '_, '_>, sta
     if !env.dialect.edge_in_d {
         return length_is_said(words, state);
     }
-    Err(words
-        .refuse(
-            codes::TOOL_LENGTH,
-            both!("which tool is in, and which of its edges counts, is not said", "не сказано, какой инструмент в шпинделе и какая его кромка считается"),
-            words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-            both!("moves by a tool length that a parameter chooses (MD20270 CUTTING_EDGE_DEFAULT)", "идёт с длиной, которую выбирает параметр MD20270 CUTTING_EDGE_DEFAULT"),
-        )
-        .help(both!("write T, M6 and D1 before it; or, where D alone is missing, `edge_at_change = 1` under `[program]` in the profile, where MD20270 is 1", "напишите перед ним T, M6 и D1; если нет только D, а MD20270 равен 1, впишите `edge_at_change = 1` в раздел `[program]` профиля")))
+    Err(words.refuse(refusal::TOOL_NOT_SAID, words.span(AXIS_LETTERS.or(ARC_LETTERS))))
 }
 
 /// The same where a code says whether the length of the tool that came in holds: a rapid beside its axis needs none.
@@ -238,23 +164,7 @@ fn length_is_said(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
     if matches!(state.motion, MotionMode::Rapid(_)) && state.cycle.is_none() && !words.has(along) {
         return Ok(());
     }
-    Err(words
-        .refuse(
-            codes::TOOL_LENGTH,
-            both!(
-                "whether the length of the tool that came in holds is not said",
-                "не сказано, действует ли длина вошедшего инструмента"
-            ),
-            words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-            both!(
-                "with its length on some controls, without it on others",
-                "на одних стойках с его длиной, на других без неё"
-            ),
-        )
-        .help(both!(
-            "write G43 behind the tool change, in this block or before it",
-            "напишите G43 после смены инструмента, в этом кадре или раньше"
-        )))
+    Err(words.refuse(refusal::LENGTH_NOT_SAID, words.span(AXIS_LETTERS.or(ARC_LETTERS))))
 }
 
 /// Brings in the offset of a number; 0 is none.
@@ -270,21 +180,9 @@ fn take(
         return Ok(());
     }
     let Some(applied_mm) = env.setup.tool(offset) else {
-        return Err(words
-            .refuse(
-                codes::TOOL_LENGTH,
-                both!("tool offset {offset:02} is not given", "корректор {offset:02} не задан"),
-                span,
-                both!("given by no profile, file or option", "его нет ни в профиле, ни в файлах, ни в ключах"),
-            )
-            .settled_by(length_entry(offset, env.dialect.turning.is_some()))
-            .help(if env.dialect.turning.is_some() {
-                both!("`--tool H{offset}=X,0,Z` in mm, X a radius, or `lengths_mm = {{ H{offset} = [X, 0, Z] }}` under `[tool]` in the profile", "`--tool H{offset}=X,0,Z` в мм, где X — радиус, или `lengths_mm = {{ H{offset} = [X, 0, Z] }}` в разделе `[tool]` профиля"
-                )
-            } else {
-                both!("`--tool H{offset}=120` for a length of 120 mm, or `lengths_mm = {{ H{offset} = 120.0 }}` under `[tool]` in the profile", "`--tool H{offset}=120` для длины 120 мм или `lengths_mm = {{ H{offset} = 120.0 }}` в разделе `[tool]` профиля"
-                )
-            }));
+        let turning = env.dialect.turning.as_ref();
+        let refused = words.refuse(refusal::tool_offset_not_given(offset, turning), span);
+        return Err(Box::new(refused.settled_by(length_entry(offset, turning))));
     };
     let length = ToolLength::On { number: offset, negative: false, applied_mm };
     bring_in(env, words, span, &both!("tool offset {offset:02}", "корректор {offset:02}"), length, state)
@@ -305,21 +203,15 @@ fn bring_in(
     if let Some([x, y, z]) = length.ends_mm().filter(|_| asked)
         && (z < 0.0 || [x, y, z] == [0.0; 3])
     {
-        let message = both!(
-            "{name} shifts Z by {z} mm: a tool {z} mm long",
-            "{name:#} смещает Z на {z} мм: длина инструмента {z} мм"
-        );
-        return Err(words
-            .refuse(codes::TOOL_LENGTH, message, span, both!("the machine's angles act along the tool: how long is it?", "угловые погрешности станка действуют на вылете инструмента: каков он?"))
-            .help(both!("where tools are touched off, write what the control's length would be with the bare spindle nose touched off, like `gauge_point_mm = -470.0` under `[tool]` in the profile; a tool is as long as its length lies above that", "если длины сняты касанием, впишите в раздел `[tool]` профиля длину, которую стойка получила бы при касании самим торцом шпинделя, например `gauge_point_mm = -470.0`; инструмент длиннее ровно на разницу")));
+        return Err(words.refuse(refusal::shifts_by_a_length(name, z), span));
     }
     state.tool_length = length;
     Ok(())
 }
 
 /// The entry of the profile that gives a length.
-fn length_entry(number: u32, turning: bool) -> Entry {
-    let value = if turning { "[X, 0, Z]" } else { "120.0" };
+fn length_entry(number: u32, turning: Option<&Turning>) -> Entry {
+    let value = if turning.is_some() { "[X, 0, Z]" } else { "120.0" };
     Entry::new("tool", Some("lengths_mm"), format!("H{number}"), value)
 }
 
@@ -341,16 +233,7 @@ pub(crate) fn under_compensation_off(
             state.tool_length = ToolLength::Off;
             Ok(())
         }
-        LengthAfter::Unstated => {
-            let message = both!(
-                "{} while a tool length is in force",
-                "{} при действующей коррекции на длину",
-                words.text(span)
-            );
-            Err(words
-                .refuse(codes::TOOL_LENGTH, message, span, both!("ends every tool offset on some controls, cutter compensation alone on others", "на одних стойках отменяет все коррекции инструмента, на других только коррекцию на радиус"))
-                .help(both!("write the tool length (G43 and its H) again in this block, or what the control's manual says as tool_length.under_g40 in a copy of the grammar", "напишите коррекцию на длину (G43 и H) в этом кадре заново или укажите сказанное в руководстве стойки как tool_length.under_g40 в копии таблицы диалекта")))
-        }
+        LengthAfter::Unstated => Err(words.refuse_code(refusal::WHILE_TOOL_LENGTH_IN_FORCE, span)),
     }
 }
 
@@ -370,10 +253,7 @@ pub(crate) fn length(
             if env.dialect.length_under_g49 == LengthAfter::Unstated
                 && (!in_force.is_none() || words.has(H.or(Letters::of(b"D")))) =>
         {
-            let message = both!("{} with a tool length", "{} с коррекцией на длину", words.text(span));
-            return Err(words
-                .refuse(codes::TOOL_LENGTH, message, span, both!("adds a tool offset on some controls, ends the length on others", "на одних стойках прибавляет коррекцию инструмента, на других отменяет длину"))
-                .help(both!("end the length with G43 H0, or write what the control's manual says as tool_length.under_g49 in a copy of the grammar", "отмените длину кадром G43 H0 или укажите сказанное в руководстве стойки как tool_length.under_g49 в копии таблицы диалекта")));
+            return Err(words.refuse_code(refusal::WITH_TOOL_LENGTH, span));
         }
         (Some((Length::Off, _)), _) => {
             state.tool_length = ToolLength::Off;
@@ -391,48 +271,18 @@ pub(crate) fn length(
         (None, _) if loaded => match state.tool_loaded {
             Some(number) => number,
             None => {
-                let message = both!(
-                    "the length of the loaded tool, and no tool was loaded before",
-                    "длина инструмента в шпинделе, а до этого инструмент не устанавливали"
-                );
-                return Err(words
-                    .refuse(
-                        codes::TOOL_LENGTH,
-                        message,
-                        span,
-                        both!(
-                            "takes the tool in the spindle: which one?",
-                            "берёт инструмент в шпинделе: какой?"
-                        ),
-                    )
-                    .help(both!(
-                        "program T and M6 before it, or H in this block",
-                        "запрограммируйте перед ней T и M6 или H в этом кадре"
-                    )));
+                return Err(words.refuse(refusal::NO_TOOL_LOADED, span));
             }
         },
         (_, ToolLength::On { number, .. }) => number,
         (_, ToolLength::Off | ToolLength::Written { .. }) => {
-            let message = both!("tool length without H", "коррекция на длину без H");
-            return Err(words
-                .refuse(
-                    codes::TOOL_LENGTH,
-                    message,
-                    span,
-                    both!("an H word was expected in this block", "в этом кадре ожидалось слово H"),
-                )
-                .help(both!(
-                    "write the number of the length, e.g. H1; H0 is no length",
-                    "напишите номер длины, например H1; H0 — без длины"
-                )));
+            return Err(words.refuse(refusal::TOOL_LENGTH_WITHOUT_H, span));
         }
     };
     let Some(vector) = written(words, span, number, state)?.or_else(|| env.setup.tool(number)) else {
-        let message = both!("tool length H{number} is not given", "длина инструмента H{number} не задана");
         let at = if words.has(H) { words.span(H) } else { span };
-        return Err(words.refuse(codes::TOOL_LENGTH, message, at, both!("given by no profile, file or option", "его нет ни в профиле, ни в файлах, ни в ключах")).settled_by(length_entry(number, false)).help(
-            both!("`--tool H{number}=120` for a length of 120 mm, or `lengths_mm = {{ H{number} = 120.0 }}` under `[tool]` in the profile", "`--tool H{number}=120` для длины 120 мм или `lengths_mm = {{ H{number} = 120.0 }}` в разделе `[tool]` профиля"),
-        ));
+        let refused = words.refuse(refusal::tool_length_h_not_given(number), at);
+        return Err(Box::new(refused.settled_by(length_entry(number, None))));
     };
     let applied_mm = if negative { vector.map(|v| -v) } else { vector };
     let length = ToolLength::On { number, negative, applied_mm };
@@ -460,7 +310,7 @@ fn written(words: &Words<'_, '_, '_>, span: Span, number: u32, state: &Modal) ->
                 "write G10 {lacks} P{number} R0 too where there is no other part",
                 "напишите и G10 {lacks} P{number} R0, если другой части нет"
             );
-            Err(words.refuse(codes::TOOL_LENGTH, message, span, label).help(help))
+            Err(words.refuse(Refusal { code: codes::TOOL_LENGTH, message, label, help }, span))
         }
     }
 }
@@ -470,26 +320,13 @@ pub(crate) fn write(words: &Words<'_, '_, '_>, span: Span, l: u32, state: &mut M
     let unit_mm = state.units.mm();
     let value = words.coordinate(b'R', state.units == Units::Inch).map(|value| value * unit_mm);
     let (Some(number @ 1..), Some(value_mm)) = (words.whole(b'P')?, value) else {
-        let message = both!("{} L{l} without P and R", "{} L{l} без P и R", words.text(span));
-        let label = both!("which length, and how long?", "какая длина и сколько?");
-        return Err(words
-            .refuse(codes::TOOL_LENGTH, message, span, label)
-            .help(both!("write P1 for H1, and its length as R", "напишите P1 для H1 и длину словом R")));
+        return Err(words.refuse(refusal::l_without_p_and_r(&words.text(span), l), span));
     };
     if state.distance == Distance::Incremental {
-        let message = both!("{} L{l} under G91", "{} L{l} при G91", words.text(span));
-        let label = both!("adds to what the control has", "прибавляет к тому, что есть в стойке");
-        return Err(words
-            .refuse(codes::TOOL_LENGTH, message, span, label)
-            .help(both!("write the whole value in G90", "напишите всё значение при G90")));
+        return Err(words.refuse(refusal::l_under_g91(&words.text(span), l), span));
     }
     if matches!(state.tool_length, ToolLength::On { number: in_force, .. } if in_force == number) && l <= 11 {
-        let message = both!("H{number} is in force and is rewritten", "H{number} действует и переписывается");
-        let label = both!("from which block on? controls differ", "с какого кадра? у стоек по-разному");
-        return Err(words.refuse(codes::TOOL_LENGTH, message, span, label).help(both!(
-            "write it before G43, or end the length with G49",
-            "запишите её до G43 или отмените длину функцией G49"
-        )));
+        return Err(words.refuse(refusal::rewritten_in_force(number), span));
     }
     let part = match l {
         10 => 0,
@@ -543,15 +380,16 @@ pub(crate) fn from_words(
         frames::refresh(state);
         return Ok(());
     };
-    Err(words
-        .refuse(
-            codes::TOOL_LENGTH,
+    Err(words.refuse(
+        Refusal {
+            code: codes::TOOL_LENGTH,
             message,
-            span,
-            both!("the length is in the words of this block", "длина стоит в словах этого кадра"),
-        )
-        .help(both!(
-            "write it in a block of its own with X, Y and Z alone",
-            "напишите её отдельным кадром, только с X, Y и Z"
-        )))
+            label: both!("the length is in the words of this block", "длина стоит в словах этого кадра"),
+            help: both!(
+                "write it in a block of its own with X, Y and Z alone",
+                "напишите её отдельным кадром, только с X, Y и Z"
+            ),
+        },
+        span,
+    ))
 }

@@ -1,11 +1,12 @@
 //! What is different in a lathe's program: X words are diameters, there is no Y, arcs lie in X and Z.
 
-use diagnostic::{Text, both};
+use diagnostic::{Refusal, Text, both};
 use nc_syntax::dialect::{Action, GCode};
 use toolpath::{Motion, Plane, Shape};
 
 use crate::codes;
 use crate::modal::{Distance, Modal, MotionMode, XWords};
+use crate::refusals::turning as refusal;
 use crate::settings::{Demand, Environment, Owner};
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, LINEAR, Outcome, ROTARY_LETTERS, Words};
 use nc_syntax::Letters;
@@ -37,14 +38,7 @@ pub(crate) fn read(words: &mut Words<'_, '_, '_>, state: &mut Modal) -> Outcome<
     if let Some(code) = words.codes.iter().find(|code| code.entry.code == CONSTANT_SPEED) {
         state.speed_limited |= words.has(Letters::of(b"D"));
         if !state.speed_limited {
-            return Err(words
-                .refuse(
-                    codes::UNLIMITED_SPEED,
-                    both!("{} without a limit of the spindle's speed", "{} без ограничения частоты вращения шпинделя", words.text(code.span)),
-                    code.span,
-                    both!("towards the axis the speed rises without end", "к оси частота растёт без предела"),
-                )
-                .help(both!("write the limit before it: G50 S3000 (Fanuc system A), G92 S3000 (B and C), G96 D3000 (LinuxCNC), LIMS=3000 (Sinumerik)", "напишите перед ней ограничение: G50 S3000 (Fanuc, система A), G92 S3000 (B и C), G96 D3000 (LinuxCNC), LIMS=3000 (Sinumerik)")));
+            return Err(words.refuse_code(refusal::WITHOUT_LIMIT_OF_SPEED, code.span));
         }
     }
     Ok(())
@@ -71,7 +65,10 @@ fn no_increments_of_other_axes(words: &Words<'_, '_, '_>) -> Outcome<()> {
         )
     };
     let message = both!("{} on a lathe of two axes", "{} на двухосевом токарном станке", words.names(others));
-    Err(words.refuse(codes::NO_TURNING, message, words.span(others), label).help(off_the_axis()))
+    Err(words.refuse(
+        Refusal { code: codes::NO_TURNING, message, label, help: off_the_axis() },
+        words.span(others),
+    ))
 }
 
 /// What to do with words of axes that a lathe of two axes has not.
@@ -94,14 +91,7 @@ pub(crate) fn require_lead(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> 
         return Ok(());
     }
     let name = lead.first() as char;
-    Err(words
-        .refuse(
-            codes::NO_TURNING,
-            both!("a thread without {name}", "резьба без {name}"),
-            words.span(AXIS_LETTERS),
-            both!("{name} is its lead", "{name} — её ход"),
-        )
-        .help(both!("write {name} in this block", "напишите {name} в этом кадре")))
+    Err(words.refuse(refusal::thread_without(name), words.span(AXIS_LETTERS)))
 }
 
 /// A face that was corrected leaves its plane by less than this share of its way.
@@ -121,21 +111,10 @@ pub(crate) fn check_motions(words: &Words<'_, '_, '_>, state: &Modal, motions: &
         // A face that begins there is approached there.
         let most = if feed.shape == Shape::Line { FACES_PASS_MM } else { ON_THE_AXIS_MM };
         if along && start[0].min(end[0]) < -most {
-            return Err(words
-                .refuse(
-                    codes::BELOW_THE_AXIS,
-                    both!("turning below the axis", "точение ниже оси"),
-                    words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-                    both!(
-                        "X is negative here: {:.4} mm on the radius",
-                        "X здесь отрицателен: {:.4} мм по радиусу",
-                        start[0].min(end[0])
-                    ),
-                )
-                .help(both!(
-                    "a face may pass the centre; what is turned needs X above zero",
-                    "торец может зайти за центр, а для точения X должен быть больше нуля"
-                )));
+            return Err(words.refuse(
+                refusal::turning_below_axis(start[0].min(end[0])),
+                words.span(AXIS_LETTERS.or(ARC_LETTERS)),
+            ));
         }
     }
     Ok(())
@@ -167,48 +146,28 @@ pub(crate) fn check(
         } else {
             off_the_axis()
         };
-        return Err(words
-            .refuse(
-                codes::NO_TURNING,
+        return Err(words.refuse(
+            Refusal {
+                code: codes::NO_TURNING,
                 message,
-                words.span(absent),
-                both!("the axes are X and Z", "оси — X и Z"),
-            )
-            .help(help));
+                label: both!("the axes are X and Z", "оси — X и Z"),
+                help,
+            },
+            words.span(absent),
+        ));
     }
     if places && words.has(X) && state.x_words == XWords::Unstated {
-        return Err(words
-            .refuse(
-                codes::X_UNSTATED,
-                both!("whether X is a diameter or a radius is not said", "не сказано, диаметр X или радиус"),
-                words.span(X),
-                both!("half of what is written, or all of it?", "половина написанного или всё?"),
-            )
-            .help(both!("write `x = \"diameter\"` (or \"radius\") under `[program]` in the profile, or G7 or G8 where the control has them", "впишите `x = \"diameter\"` (или \"radius\") в раздел `[program]` профиля или G7, G8 в программу, если они есть у стойки")));
+        return Err(words.refuse(refusal::DIAMETER_OR_RADIUS, words.span(X)));
     }
     let increments = words.by_increment != [false; 3];
     if increments && matches!(demand.owner, Owner::Frame | Owner::MachineCoordinates | Owner::Length) {
         let named = [0, 2].into_iter().filter(|i| words.by_increment[*i]).map(|i| Letters::of(&[LINEAR[i]]));
         let span = words.span(named.fold(Letters::NONE, Letters::or));
-        return Err(words
-            .refuse(
-                codes::NO_TURNING,
-                both!("an increment where a place was expected", "приращение там, где ожидалась координата"),
-                span,
-                both!("U and W add to X and Z", "U и W прибавляются к X и Z"),
-            )
-            .help(both!("write the place with X and Z", "напишите координаты словами X и Z")));
+        return Err(words.refuse(refusal::INCREMENT_FOR_PLACE, span));
     }
     let arc = matches!(state.motion, MotionMode::Arc(..)) && demand.owner == Owner::Motion;
     if arc && words.has(AXIS_LETTERS.or(ARC_LETTERS)) && state.plane != Plane::Zx {
-        return Err(words
-            .refuse(
-                codes::NO_TURNING,
-                both!("an arc out of the plane of X and Z", "дуга не в плоскости X и Z"),
-                words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-                both!("a lathe turns arcs in G18", "на токарном станке дуги выполняются в G18"),
-            )
-            .help(both!("write G18 before it", "напишите перед ней G18")));
+        return Err(words.refuse(refusal::ARC_OUT_OF_PLANE, words.span(AXIS_LETTERS.or(ARC_LETTERS))));
     }
     Ok(())
 }

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic, Entry, Text, both};
+use diagnostic::{Diagnostic, Refusal, Text, both};
 use nc_syntax::dialect::{Action, CodeEntry, GCode, MCode, TWord};
 use nc_syntax::{Block, Dialect, Invalid, ItemKind, Letters, Number, Span, Value};
 use smallvec::SmallVec;
 
 use crate::codes;
+use crate::refusals::words as refusal;
 
 /// A refusal on its way out; boxed, so that the way of success stays small.
 pub(crate) type Outcome<T> = Result<T, Box<Diagnostic>>;
@@ -93,18 +94,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                     );
                 }
                 ItemKind::Word { letter, value: Value::Missing } => {
-                    let message = both!("{} has no number", "у {} нет числа", letter as char);
-                    return Err(words
-                        .refuse(
-                            codes::BAD_NUMBER,
-                            message,
-                            item.span,
-                            both!("a number was expected after it", "после буквы ожидалось число"),
-                        )
-                        .help(both!(
-                            "write the number, or remove the letter",
-                            "допишите число или уберите букву"
-                        )));
+                    return Err(words.refuse(refusal::no_number(letter as char), item.span));
                 }
                 ItemKind::Comment | ItemKind::Name => {}
                 ItemKind::Skip => {
@@ -112,47 +102,12 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                         || !words.m_codes.is_empty()
                         || !words.letters.without(Letters::of(b"NO")).is_empty()
                     {
-                        let message = both!(
-                            "block delete stands in the middle of a block",
-                            "знак пропуска стоит посреди кадра"
-                        );
-                        return Err(words
-                            .refuse(
-                                codes::BLOCK_DELETE,
-                                message,
-                                item.span,
-                                both!(
-                                    "only the rest may be skipped",
-                                    "пропустить можно было бы только остаток"
-                                ),
-                            )
-                            .help(both!(
-                                "write the words after `/` in a block of their own that starts with `/`",
-                                "напишите слова после `/` отдельным кадром, который начинается с `/`"
-                            )));
+                        return Err(words.refuse(refusal::BLOCK_DELETE_IN_MIDDLE, item.span));
                     }
                 }
                 ItemKind::Percent => words.percent = true,
                 ItemKind::CommaWord { letter, .. } => {
-                    let message = both!(
-                        "a corner by `,{}` cannot be resolved",
-                        "сопряжение `,{}` не развернуть",
-                        letter as char
-                    );
-                    return Err(words
-                        .refuse(
-                            codes::STRAY_ARC_WORD,
-                            message,
-                            item.span,
-                            both!(
-                                "its shape depends on the next block",
-                                "его форма зависит от следующего кадра"
-                            ),
-                        )
-                        .help(both!(
-                            "post roundings as arcs and chamfers as lines",
-                            "выводите скругления дугами, а фаски прямыми"
-                        )));
+                    return Err(words.refuse(refusal::corner_cannot_be_resolved(letter as char), item.span));
                 }
                 ItemKind::BracketCommand => words.command(item.span)?,
                 ItemKind::Flow => {
@@ -200,14 +155,15 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                     letter as char
                 );
                 let help = both!("write {} or {}", "напишите {} или {}", letter as char, own as char);
-                return Err(self
-                    .refuse(
-                        codes::LETTER_TWICE,
+                return Err(self.refuse(
+                    Refusal {
+                        code: codes::LETTER_TWICE,
                         message,
-                        span,
-                        both!("both say where one axis goes", "оба слова говорят, куда идёт одна ось"),
-                    )
-                    .help(help));
+                        label: both!("both say where one axis goes", "оба слова говорят, куда идёт одна ось"),
+                        help,
+                    },
+                    span,
+                ));
             }
             self.by_increment[axis] = true;
             self.at[usize::from(letter - b'A')] = std::mem::take(&mut self.at[at]);
@@ -301,16 +257,8 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
         match whole(number).and_then(|value| u32::try_from(value).ok()) {
             Some(value) => Ok(Some(value)),
             None => {
-                let message = both!(
-                    "{} is not a whole number from 0 to {}",
-                    "{} — не целое число от 0 до {}",
-                    self.text(span),
-                    u32::MAX
-                );
-                let label = both!("{} takes a whole number", "{} принимает целое число", letter as char);
                 Err(self
-                    .refuse(codes::BAD_NUMBER, message, span, label)
-                    .help(both!("write a whole number without sign", "напишите целое число без знака")))
+                    .refuse(refusal::not_a_whole_number(&self.text(span), u32::MAX, letter as char), span))
             }
         }
     }
@@ -338,8 +286,15 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
         String::from_utf8_lossy(self.block.text(span)).into_owned()
     }
 
-    pub(crate) fn refuse(&self, code: Code, message: Text, span: Span, label: Text) -> Refusal {
-        Refusal(Box::new(Diagnostic::error(code, message).at(self.file_span(span), label)))
+    pub(crate) fn refuse(&self, refusal: Refusal, span: Span) -> Box<Diagnostic> {
+        Box::new(refusal.at(self.file_span(span)))
+    }
+
+    /// The refusal of a code whose name begins the message.
+    pub(crate) fn refuse_code(&self, refusal: Refusal, span: Span) -> Box<Diagnostic> {
+        let what = refusal.message;
+        let message = both!("{} {what}", "{} {what:#}", self.text(span));
+        self.refuse(Refusal { message, ..refusal }, span)
     }
 
     fn file_span(&self, span: Span) -> Range<u64> {
@@ -351,35 +306,12 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
             return Err(refused);
         }
         if letter == b'N' && self.repeats_by_n() {
-            return Err(self
-                .refuse(
-                    codes::CYCLE_WORDS,
-                    both!("{} behind the words of its block", "{} после слов своего кадра", self.text(span)),
-                    span,
-                    both!("repeats the block so many times", "повторяет кадр столько раз"),
-                )
-                .help(both!(
-                    "write each repeat as a block of its own, and a block's number in front of its words",
-                    "напишите каждое повторение отдельным кадром, а номер кадра перед его словами"
-                )));
+            return Err(self.refuse_code(refusal::BEHIND_WORDS_OF_BLOCK, span));
         }
         let bit = Letters::of(&[letter]);
         if self.letters.any(bit) {
             let first = self.number(letter).map_or_else(String::new, |(_, first)| self.text(first));
-            let message = both!(
-                "{} stands twice in this block: {first} and {}",
-                "{} стоит в этом кадре дважды: {first} и {}",
-                letter as char,
-                self.text(span)
-            );
-            return Err(self
-                .refuse(
-                    codes::LETTER_TWICE,
-                    message,
-                    span,
-                    both!("{first} stands before it", "перед ним стоит {first}"),
-                )
-                .help(both!("remove one of the two", "уберите одно из двух")));
+            return Err(self.refuse(refusal::stands_twice(letter as char, first, &self.text(span)), span));
         }
         self.letters = self.letters.or(bit);
         self.at[usize::from(letter - b'A')] = index as u32 + 1;
@@ -401,8 +333,15 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
     /// The refusal of a code or a letter by its row of the table.
     pub(crate) fn refused_code(&self, span: Span, reason: &Text, help: &Text) -> Box<Diagnostic> {
         let message = both!("{} is refused: {reason}", "{} не принимается: {reason:#}", self.text(span));
-        self.refuse(codes::REFUSED_CODE, message, span, both!("not understood", "не исполняется"))
-            .help(help.clone())
+        self.refuse(
+            Refusal {
+                code: codes::REFUSED_CODE,
+                message,
+                label: both!("not understood", "не исполняется"),
+                help: help.clone(),
+            },
+            span,
+        )
     }
 
     /// An N here would repeat the block.
@@ -414,15 +353,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
     fn preparatory(&mut self, number: Number, span: Span) -> Outcome<()> {
         let entry = number.tenths().and_then(|tenths| self.dialect.code(GCode(tenths)));
         let Some(entry) = entry else {
-            let message = both!(
-                "{} is not in the table of dialect {}",
-                "{} нет в таблице диалекта {}",
-                self.text(span),
-                self.dialect.name
-            );
-            return Err(self.refuse(codes::UNKNOWN_CODE, message, span, both!("it may move an axis or the frame", "может двигать ось или сместить систему координат")).help(
-                both!("if it does neither, add a row for it to a copy of the grammar and pass that with `--dialect my.toml`", "если она не делает ни того, ни другого, добавьте для неё строку в копию таблицы диалекта и дайте её ключом `--dialect my.toml`"),
-            ));
+            return Err(self.refuse(refusal::not_in_table(&self.text(span), &self.dialect.name), span));
         };
         if let Some(other) = self.codes.iter().find(|other| conflict(other.entry, entry)) {
             let (first, second) = (self.text(other.span), self.text(span));
@@ -434,17 +365,18 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                     "{first} и {second} стоят в одном кадре и исключают друг друга"
                 )
             };
-            return Err(self
-                .refuse(
-                    codes::SAME_GROUP,
+            return Err(self.refuse(
+                Refusal {
+                    code: codes::SAME_GROUP,
                     message,
-                    span,
-                    both!("{first} stands before it", "перед ним стоит {first}"),
-                )
-                .help(both!(
-                    "write them in two blocks, or remove one",
-                    "напишите их двумя кадрами или уберите одну"
-                )));
+                    label: both!("{first} stands before it", "перед ним стоит {first}"),
+                    help: both!(
+                        "write them in two blocks, or remove one",
+                        "напишите их двумя кадрами или уберите одну"
+                    ),
+                },
+                span,
+            ));
         }
         self.codes.push(Preparatory { entry, span });
         Ok(())
@@ -456,11 +388,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
             let row = self.dialect.m_code(value);
             if let Some(what) = row.and_then(|row| row.switches.as_ref()) {
                 let code = GCode(value.saturating_mul(10)).to_string().replace('G', "M");
-                let message = both!("{code} is refused: {what}", "{code} не принимается: {what:#}");
-                return Err(self
-                    .refuse(codes::REFUSED_CODE, message, span, both!("what follows would run in another frame", "дальше всё шло бы в другой системе координат"))
-                    .help(both!("where it does nothing of the kind on this machine, write `harmless = [\"{code}\"]` under `[m_codes]` in the profile; where it switches tool centre point control, name it there under `[kinematics]`", "если на этом станке она ничего такого не делает, впишите `harmless = [\"{code}\"]` в раздел `[m_codes]` профиля; если она включает управление по вершине инструмента, назовите её там в разделе `[kinematics]`"
-                    )));
+                return Err(self.refuse(refusal::refused_by_table(code, what), span));
             }
             if let Some((reason, help)) = row.and_then(|row| row.refuse.as_ref()) {
                 return Err(self.refused_code(span, reason, help));
@@ -495,31 +423,22 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                 ),
             ),
         };
-        Err(self
-            .refuse(
-                codes::COMMAND,
+        Err(self.refuse(
+            Refusal {
+                code: codes::COMMAND,
                 message,
-                span,
-                both!("it may move the frame or an axis", "может сместить систему координат или двигать ось"),
-            )
-            .help(help))
+                label: both!(
+                    "it may move the frame or an axis",
+                    "может сместить систему координат или двигать ось"
+                ),
+                help,
+            },
+            span,
+        ))
     }
 
     fn not_static(&self, span: Span, what: &Text) -> Box<Diagnostic> {
-        let message = both!(
-            "{what} is known only while the program runs",
-            "{what:#} станет известно только при исполнении программы"
-        );
-        self.refuse(
-            codes::NOT_STATIC,
-            message,
-            span,
-            both!("a plain number was expected", "ожидалось простое число"),
-        )
-        .help(both!(
-            "post the program without variables and flow; values must be static",
-            "выведите программу без переменных и переходов, с постоянными числами"
-        ))
+        self.refuse(refusal::known_only_while_running(what), span)
     }
 }
 
@@ -553,20 +472,4 @@ pub(crate) const fn is_motion(action: &Action) -> bool {
 /// The value where it is a whole number that is not negative.
 fn whole(number: Number) -> Option<u64> {
     number.integer().and_then(|value| u64::try_from(value).ok())
-}
-
-/// A refusal that has still to say the way out.
-pub(crate) struct Refusal(Box<Diagnostic>);
-
-impl Refusal {
-    /// Says which entry of the profile settles it.
-    pub(crate) fn settled_by(mut self, entry: Entry) -> Self {
-        self.0.entries = Box::new([entry]);
-        self
-    }
-
-    pub(crate) fn help(mut self, help: Text) -> Box<Diagnostic> {
-        self.0.help = Some(help);
-        self.0
-    }
 }

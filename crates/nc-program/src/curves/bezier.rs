@@ -1,15 +1,16 @@
 //! G5 and G5.1: curves of one block.
 
-use diagnostic::{Text, both};
+use diagnostic::Text;
 use nc_syntax::Letters;
 use nc_syntax::dialect::CurveCode;
 use toolpath::{Bezier, Division, Feed, MOST_DEGREE, Motion, Position, Shape};
 
-use super::{CurvePart, is_curve, plane_axes, refuse};
+use super::{CurvePart, is_curve, plane_axes};
 use crate::frames::settle;
 use crate::modal::{Modal, MotionMode, Units};
 use crate::motion::{Moved, feed_rate};
 use crate::position::{end, require_frame, require_known};
+use crate::refusals::curves as refusal;
 use crate::settings::Environment;
 use crate::words::{AXIS_LETTERS, Outcome, Words};
 
@@ -48,68 +49,30 @@ pub(super) fn bezier(
         match (form, lengths(words, state, *b"IJ"), lengths(words, state, *b"PQ")) {
             (CurveCode::Quadratic, [Some(i), Some(j)], [None, None]) => (&[beside(&from, [i, j])], None),
             (CurveCode::Quadratic, [Some(_), Some(_)], _) => {
-                return Err(refuse(
-                    words,
-                    words.span(BACK),
-                    both!("P or Q in a quadratic curve", "P или Q в квадратичной кривой"),
-                    both!("it has one control point, I and J", "контрольная точка у неё одна, I и J"),
-                )
-                .help(both!("write G5 for a cubic curve", "для кубической кривой напишите G5")));
+                return Err(words.refuse(refusal::P_OR_Q_IN_QUADRATIC_CURVE, words.span(BACK)));
             }
             (CurveCode::Quadratic, ..) => {
-                return Err(refuse(
-                    words,
-                    words.span(AXIS_LETTERS.or(OFFSETS)),
-                    both!("{code} without both I and J", "{code} без I и J"),
-                    both!("the control point was expected", "ожидалась контрольная точка"),
-                )
-                .help(both!(
-                    "write I and J: from the start to the control point",
-                    "напишите I и J: от начала до контрольной точки"
-                )));
+                return Err(
+                    words.refuse(refusal::without_i_and_j(code), words.span(AXIS_LETTERS.or(OFFSETS)))
+                );
             }
             (_, offsets, [Some(p), Some(q)]) => {
                 let offset = match (offsets, before.curve_leaves_mm) {
                     ([Some(i), Some(j)], _) => [i, j],
                     ([None, None], Some(leaves)) => leaves,
                     ([None, None], None) => {
-                        return Err(refuse(
-                            words,
-                            words.span(AXIS_LETTERS),
-                            both!("the first {code} without I and J", "первый {code} без I и J"),
-                            both!(
-                                "no curve leads here that it could go on from",
-                                "сюда не ведёт кривая, которую он мог бы продолжить"
-                            ),
-                        )
-                        .help(both!(
-                            "write I and J: from the start to the first control point",
-                            "напишите I и J: от начала до первой контрольной точки"
-                        )));
+                        return Err(
+                            words.refuse(refusal::first_without_i_and_j(code), words.span(AXIS_LETTERS))
+                        );
                     }
                     _ => {
-                        return Err(refuse(
-                            words,
-                            words.span(OFFSETS),
-                            both!("{code} with only one of I and J", "{code} только с одним из I и J"),
-                            both!("both or neither were expected", "ожидались оба или ни одного"),
-                        )
-                        .help(both!("write both I and J", "напишите и I, и J")));
+                        return Err(words.refuse(refusal::only_one_of_i_and_j(code), words.span(OFFSETS)));
                     }
                 };
                 (&[beside(&from, offset), beside(&to, [p, q])], Some([-p, -q]))
             }
             _ => {
-                return Err(refuse(
-                    words,
-                    words.span(AXIS_LETTERS.or(BACK)),
-                    both!("{code} without both P and Q", "{code} без P и Q"),
-                    both!("the second control point was expected", "ожидалась вторая контрольная точка"),
-                )
-                .help(both!(
-                    "write P and Q: from the end to the second control point",
-                    "напишите P и Q: от конца до второй контрольной точки"
-                )));
+                return Err(words.refuse(refusal::without_p_and_q(code), words.span(AXIS_LETTERS.or(BACK))));
             }
         };
     let rate = feed_rate(words, state)?;

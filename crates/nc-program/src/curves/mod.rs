@@ -12,7 +12,7 @@ mod points;
 
 use std::ops::Range;
 
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Diagnostic, Refusal, Text, both};
 use nc_syntax::dialect::CurveCode;
 use nc_syntax::{Letters, Span};
 use toolpath::{Division, Feed, Motion, Nurbs, Plane, Position, Shape};
@@ -20,10 +20,9 @@ use toolpath::{Division, Feed, Motion, Nurbs, Plane, Position, Shape};
 use crate::codes;
 use crate::modal::{Axis, Distance, FeedMode, Modal, Naming};
 use crate::motion::{Moved, compensated, feed_rate};
+use crate::refusals::curves as refusal;
 use crate::settings::Environment;
-use crate::words::{
-    AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, Preparatory, ROTARY_LETTERS, Refusal, Words,
-};
+use crate::words::{AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, Preparatory, ROTARY_LETTERS, Words};
 
 /// What a block is of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,58 +90,40 @@ fn is_curve(code: &Preparatory<'_>) -> bool {
     matches!(code.entry.action, nc_syntax::dialect::Action::Curve(_))
 }
 
-fn refuse(words: &Words<'_, '_, '_>, span: Span, message: Text, label: Text) -> Refusal {
-    words.refuse(codes::CURVE, message, span, label)
-}
-
 /// What no curve goes together with, whatever its form.
 fn serves(words: &Words<'_, '_, '_>, before: &Modal, state: &Modal, span: Span) -> Outcome<()> {
     let lines = || both!("let the CAM write lines or arcs", "выводите из CAM прямые или дуги");
     if compensated(before, state) {
-        return Err(refuse(
-            words,
-            span,
-            both!("a curve under cutter compensation", "кривая при коррекции на радиус"),
-            both!("no control offsets it", "ни одна стойка не строит её эквидистанту"),
-        )
-        .help(both!(
-            "cancel the compensation with G40 before it, or let the CAM write the offset path",
-            "отмените перед ней коррекцию функцией G40 или выводите эквидистанту из CAM"
-        )));
+        return Err(words.refuse(refusal::CURVE_UNDER_CUTTER_COMPENSATION, span));
     }
     if words.has(ROTARY_LETTERS) {
-        return Err(refuse(
-            words,
+        return Err(words.refuse(
+            Refusal {
+                code: codes::CURVE,
+                message: both!("a rotary axis in a curve", "поворотная ось в кривой"),
+                label: both!("its path is not resolved", "такой путь не разворачивается"),
+                help: lines(),
+            },
             words.span(ROTARY_LETTERS),
-            both!("a rotary axis in a curve", "поворотная ось в кривой"),
-            both!("its path is not resolved", "такой путь не разворачивается"),
-        )
-        .help(lines()));
+        ));
     }
     if state.feed_mode == FeedMode::InverseTime {
-        return Err(refuse(
-            words,
-            span,
-            both!("a curve under G93", "кривая при G93"),
-            both!(
-                "the time of the whole curve or of its parts? controls differ",
-                "время всей кривой или её частей? у стоек по-разному"
-            ),
-        )
-        .help(both!("program the curve with G94", "запрограммируйте кривую при G94")));
+        return Err(words.refuse(refusal::CURVE_UNDER_G93, span));
     }
     if !state.transform.is_none() {
         let message = both!("a curve under {}", "кривая, пока действует {:#}", state.transform.name());
-        return Err(refuse(
-            words,
+        return Err(words.refuse(
+            Refusal {
+                code: codes::CURVE,
+                message,
+                label: both!(
+                    "controls forbid it, or differ in what it does",
+                    "стойки это запрещают или делают по-разному"
+                ),
+                help: lines(),
+            },
             span,
-            message,
-            both!(
-                "controls forbid it, or differ in what it does",
-                "стойки это запрещают или делают по-разному"
-            ),
-        )
-        .help(lines()));
+        ));
     }
     Ok(())
 }
@@ -151,31 +132,13 @@ fn serves(words: &Words<'_, '_, '_>, before: &Modal, state: &Modal, span: Span) 
 fn plane_axes(words: &Words<'_, '_, '_>, state: &Modal, form: CurveCode, span: Span) -> Outcome<Letters> {
     let only_xy = matches!(form, CurveCode::Cubic | CurveCode::Quadratic);
     if only_xy && state.plane != Plane::Xy {
-        return Err(refuse(
-            words,
-            span,
-            both!("{} outside the plane of G17", "{} не в плоскости G17", words.text(span)),
-            both!("this control cuts it in X and Y only", "эта стойка обрабатывает её только в X и Y"),
-        )
-        .help(both!(
-            "write G17 before it, or G5.2 for another plane",
-            "напишите перед ней G17, а для другой плоскости G5.2"
-        )));
+        return Err(words.refuse_code(refusal::OUTSIDE_G17, span));
     }
     let [first, second, normal] = state.plane.axes();
     let across = Letters::of(&[LINEAR[normal]]);
     if words.has(across) {
         let letter = LINEAR[normal] as char;
-        return Err(refuse(
-            words,
-            words.span(across),
-            both!("{letter} in a curve of another plane", "{letter} в кривой другой плоскости"),
-            both!("the control does not move it there", "стойка её здесь не перемещает"),
-        )
-        .help(both!(
-            "select the curve's plane with G17, G18 or G19, or move {letter} in a block of its own",
-            "выберите плоскость кривой функцией G17, G18 или G19 или переместите {letter} отдельным кадром"
-        )));
+        return Err(words.refuse(refusal::in_curve_another_plane(letter), words.span(across)));
     }
     Ok(Letters::of(&[LINEAR[first], LINEAR[second]]))
 }
@@ -183,16 +146,9 @@ fn plane_axes(words: &Words<'_, '_, '_>, state: &Modal, form: CurveCode, span: S
 impl Begun {
     fn add(&mut self, words: &Words<'_, '_, '_>, place_mm: [f64; 3], weight: f64) -> Outcome<()> {
         if self.points_mm.len() == MOST_POINTS {
-            return Err(refuse(
-                words,
-                words.span(LINEAR_LETTERS),
-                both!(
-                    "a curve of more than {MOST_POINTS} control points",
-                    "в кривой больше {MOST_POINTS} контрольных точек"
-                ),
-                both!("no control takes so many", "столько не принимает ни одна стойка"),
-            )
-            .help(both!("let the CAM write several curves", "выводите из CAM несколько кривых")));
+            return Err(
+                words.refuse(refusal::too_many_control_points(MOST_POINTS), words.span(LINEAR_LETTERS))
+            );
         }
         self.points_mm.push(place_mm);
         self.weights.push(weight);
@@ -207,19 +163,7 @@ impl Begun {
                 continue;
             }
             if *self.pointed.get_or_insert(number.has_point) != number.has_point {
-                return Err(refuse(
-                    words,
-                    span,
-                    both!(
-                        "knots and weights with and without a decimal point",
-                        "узлы и веса с десятичной точкой и без неё"
-                    ),
-                    both!(
-                        "without it some controls count thousandths",
-                        "без неё некоторые стойки считают тысячные"
-                    ),
-                )
-                .help(both!("write all of them with a decimal point", "пишите их все с десятичной точкой")));
+                return Err(words.refuse(refusal::DECIMAL_POINTS_MIXED, span));
             }
         }
         Ok(())
@@ -298,7 +242,7 @@ pub(crate) fn open(words: &Words<'_, '_, '_>, begun: &Begun, span: Span) -> Box<
             "закончите кривую функцией G5.3 до этого кадра"
         ),
     };
-    words.refuse(codes::CURVE_OPEN, begun.is_not_whole(), span, label).help(help)
+    words.refuse(Refusal { code: codes::CURVE_OPEN, message: begun.is_not_whole(), label, help }, span)
 }
 
 impl Begun {
@@ -323,13 +267,7 @@ fn not_skipped(words: &Words<'_, '_, '_>, span: Span) -> Outcome<()> {
     if words.block.switches() == 0 {
         return Ok(());
     }
-    Err(refuse(
-        words,
-        span,
-        both!("a block of a curve that may be skipped", "кадр кривой, который можно пропустить"),
-        both!("without it the curve is another", "без него кривая другая"),
-    )
-    .help(both!("write the curve in blocks without `/`", "напишите кривую кадрами без `/`")))
+    Err(words.refuse(refusal::SKIPPED_BLOCK_OF_CURVE, span))
 }
 
 fn belongs(code: &Preparatory<'_>, form: CurveCode) -> bool {

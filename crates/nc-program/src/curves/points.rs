@@ -1,16 +1,17 @@
 //! G5.2 and G5.3: a NURBS whose knots the control chooses.
 
-use diagnostic::{Text, both};
+use diagnostic::Text;
 use nc_syntax::dialect::CurveCode;
 use nc_syntax::{Letters, Span};
 use toolpath::{MOST_DEGREE, Nurbs};
 
 use super::faults::{order_refused, weight_refused};
-use super::{Begun, CurvePart, POINT_LETTERS, cut, not_skipped, plane_axes, refuse};
+use super::{Begun, CurvePart, POINT_LETTERS, cut, not_skipped, plane_axes};
 use crate::frames::settle;
 use crate::modal::{Modal, MotionMode};
 use crate::motion::Moved;
 use crate::position::{end, require_frame, require_known};
+use crate::refusals::curves as refusal;
 use crate::settings::Environment;
 use crate::words::{Outcome, Words};
 
@@ -60,13 +61,7 @@ pub(super) fn point(
         Some(weight) if weight > 0.0 => {}
         Some(_) => return Err(weight_refused(words, P)),
         None if words.has(place) => {
-            return Err(refuse(
-                words,
-                words.span(place),
-                both!("a control point without its weight P", "контрольная точка без веса P"),
-                both!("the control would take -1, or the last one", "стойка взяла бы -1 или прежний"),
-            )
-            .help(both!("write P1 for an even curve", "для обычной кривой напишите P1")));
+            return Err(words.refuse(refusal::CONTROL_POINT_WITHOUT_WEIGHT_P, words.span(place)));
         }
         None => {}
     }
@@ -78,19 +73,7 @@ pub(super) fn point(
         }
         Some(weight) if first => begun.weights[0] = weight,
         Some(_) => {
-            return Err(refuse(
-                words,
-                words.span(P),
-                both!("a weight without its control point", "вес без контрольной точки"),
-                both!(
-                    "only in a curve's first block it is that of the start",
-                    "только в первом кадре кривой он относится к её началу"
-                ),
-            )
-            .help(both!(
-                "write X, Y and P of each control point",
-                "пишите X, Y и P каждой контрольной точки"
-            )));
+            return Err(words.refuse(refusal::WEIGHT_WITHOUT_POINT, words.span(P)));
         }
         None => {}
     }
@@ -104,13 +87,7 @@ pub(super) fn both_axes(words: &Words<'_, '_, '_>, axes: Letters) -> Outcome<()>
     if !words.has(axes) || words.letters.and(axes) == axes {
         return Ok(());
     }
-    let message = both!(
-        "a control point with only one of {}",
-        "контрольная точка только с одним словом из {}",
-        axes.names()
-    );
-    Err(refuse(words, words.span(axes), message, both!("both were expected", "ожидались оба"))
-        .help(both!("write both of each control point", "пишите оба слова каждой контрольной точки")))
+    Err(words.refuse(refusal::half_a_control_point(&axes.names()), words.span(axes)))
 }
 
 /// G5.3: the curve is whole.
@@ -122,29 +99,11 @@ pub(super) fn whole_by_end(
 ) -> Outcome<()> {
     state.motion = MotionMode::None;
     let Some(begun) = state.curve.take() else {
-        return Err(refuse(
-            words,
-            span,
-            both!("{} without G5.2 before it", "{} без G5.2 перед ней", words.text(span)),
-            both!("no curve has begun", "кривая не начата"),
-        )
-        .help(both!(
-            "begin the curve with G5.2 and its control points",
-            "начните кривую функцией G5.2 и контрольными точками"
-        )));
+        return Err(words.refuse_code(refusal::WITHOUT_G5_2_BEFORE, span));
     };
     let others = POINT_LETTERS.or(Letters::of(b"IJQ"));
     if words.has(others) {
-        return Err(refuse(
-            words,
-            words.span(others),
-            both!("words beside {}", "слова рядом с {}", words.text(span)),
-            both!("the control would leave them out", "стойка бы их пропустила"),
-        )
-        .help(both!(
-            "write the last control point in a block before it",
-            "напишите последнюю контрольную точку кадром раньше"
-        )));
+        return Err(words.refuse(refusal::words_beside(&words.text(span)), words.span(others)));
     }
     let begun = *begun;
     let nurbs = Nurbs::uniform(begun.degree, begun.points_mm, begun.weights);

@@ -1,0 +1,144 @@
+//! Refusals of settings.
+
+use std::fmt::Display;
+
+use diagnostic::{Refusal, Text, both};
+
+use crate::codes;
+
+pub(crate) fn both_take_the_words(code: &str, code_2: &str) -> Refusal {
+    Refusal {
+        code: codes::WORDS_OF_TWO,
+        message: both!(
+            "{code} and {code_2} both take the words of this block",
+            "слова этого кадра принимают и {code}, и {code_2}"
+        ),
+        label: both!("whose are the axis words?", "чьи это слова осей?"),
+        help: both!("write the two codes in two blocks", "напишите эти две функции двумя кадрами"),
+    }
+}
+
+pub(crate) const WHILE_FRAME_IN_FORCE: Refusal = Refusal {
+    code: codes::FRAME,
+    message: Text::pair(
+        "while a frame of the program is in force",
+        "при действующей системе координат программы",
+    ),
+    label: Text::pair("does it end the frame too?", "отменяет ли она и её?"),
+    help: Text::pair(
+        "end the frame with TRANS alone before it",
+        "отмените перед этим систему координат: TRANS отдельным кадром",
+    ),
+};
+
+pub(crate) const WITHOUT_P: Refusal = Refusal {
+    code: codes::WORK_OFFSET,
+    message: Text::pair("without P", "без P"),
+    label: Text::pair("which of the numbered work offsets?", "какое из нумерованных смещений нуля?"),
+    help: Text::pair("write P1 for the first", "для первого напишите P1"),
+};
+
+pub(crate) fn p_of_two_codes(code: &str) -> Refusal {
+    Refusal {
+        code: codes::WORDS_OF_TWO,
+        message: both!(
+            "P beside {code} may belong to two codes",
+            "P рядом с {code} может относиться к двум функциям"
+        ),
+        label: both!(
+            "a work offset's number, or another code's P?",
+            "номер смещения нуля или P другой функции?"
+        ),
+        help: both!(
+            "write {code} and its P in a block of their own",
+            "напишите {code} и её P отдельным кадром"
+        ),
+    }
+}
+
+pub(crate) fn p_without_meaning(code: &str) -> Refusal {
+    Refusal {
+        code: codes::FRAME,
+        message: both!("P beside {code} has no meaning here", "P рядом с {code} здесь ничего не значит"),
+        label: both!("another work offset on some controls", "на некоторых стойках другое смещение нуля"),
+        help: both!(
+            "remove P, or write the numbered work offset in the form this control has",
+            "уберите P или напишите нумерованное смещение нуля так, как принято на этой стойке"
+        ),
+    }
+}
+
+pub(crate) const NO_WORK_OFFSET_P0: Refusal = Refusal {
+    code: codes::WORK_OFFSET,
+    message: Text::pair("there is no work offset P0", "смещения нуля P0 нет"),
+    label: Text::pair("they count from 1", "счёт идёт с 1"),
+    help: Text::pair("write the number of the work offset", "напишите номер смещения нуля"),
+};
+
+pub(crate) const UNDER_CUTTER_COMPENSATION: Refusal = Refusal {
+    code: codes::FRAME,
+    message: Text::pair("under cutter compensation", "при коррекции на радиус"),
+    label: Text::pair(
+        "the compensated path jumps with it",
+        "эквидистанта скачком сместилась бы вместе с ней",
+    ),
+    help: Text::pair(
+        "cancel the compensation with G40 before it",
+        "отмените перед ней коррекцию функцией G40",
+    ),
+};
+
+pub(crate) const WITHOUT_SHIFT_OF_THIS_PROGRAM: Refusal = Refusal {
+    code: codes::FRAME,
+    message: Text::pair("without a shift of this program", "без сдвига в этой программе"),
+    label: Text::pair(
+        "brings back what an earlier program left",
+        "возвращает то, что осталось от прежней программы",
+    ),
+    help: Text::pair(
+        "write the shift with G92 or G52, or use a work offset",
+        "задайте сдвиг функцией G92 или G52 или возьмите смещение нуля",
+    ),
+};
+
+pub(crate) fn changes_under_transform(what: &Text, name: &Text) -> Refusal {
+    Refusal {
+        code: codes::FRAME,
+        message: both!("the {what} changes under {name}", "{what:#} меняется, пока действует {name:#}"),
+        label: both!(
+            "controls differ in what the centre means then",
+            "что тогда значит центр, у стоек по-разному"
+        ),
+        help: both!(
+            "cancel the rotation, scaling or mirror before, and write it again afterwards",
+            "отмените до этого поворот, масштабирование или зеркальное отображение, а после напишите снова"
+        ),
+    }
+}
+
+pub(crate) fn changes_during_cycle(what: &Text) -> Refusal {
+    Refusal {
+        code: codes::CYCLE_WORDS,
+        message: both!(
+            "the {what} changes while a drilling cycle is in force",
+            "{what:#} меняется во время цикла сверления"
+        ),
+        label: both!("a cycle is running here", "здесь действует цикл"),
+        help: both!(
+            "cancel the cycle with G80 before, and write it again with R and Z afterwards",
+            "отмените цикл до этого функцией G80, а после напишите его снова, с R и Z"
+        ),
+    }
+}
+
+pub(crate) fn work_offset_not_given(name: impl Display) -> Refusal {
+    Refusal {
+        code: codes::WORK_OFFSET,
+        message: both!("work offset {name} is not given", "смещение нуля {name} не задано"),
+        label: both!("given by no profile, file or option", "его нет ни в профиле, ни в файлах, ни в ключах"),
+        help: both!(
+            "`--work-offset {name}=X,Y,Z` with the machine coordinates of the program's zero, or `{name} = [X, Y, Z]` under `[work_offsets_mm]` in the profile",
+            "`--work-offset {name}=X,Y,Z` с координатами станка, где лежит нуль программы, или `{name} = [X, Y, Z]` в разделе `[work_offsets_mm]` профиля"
+        ),
+    }
+}
