@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::io::ErrorKind;
 use std::rc::Rc;
 
-use diagnostic::{Text, both, of_system};
+use diagnostic::{Refusal, Text, both, of_system};
 use nc_syntax::dialect::{Macros, PointFree};
 
 use crate::codes;
@@ -13,6 +13,7 @@ use crate::flow::variables;
 use crate::jump::CallKind;
 use crate::o_word::{Label, OStatement, OWord};
 use crate::program::Source;
+use crate::refusals::calls as refusal;
 use crate::run::{Place, Run, Visit};
 use crate::statement::{Call, Control, Kind, Statement};
 use crate::value::{NameId, Program, Value};
@@ -70,17 +71,7 @@ impl<'a> Run<'a, '_> {
             if u32::try_from(program)
                 .is_ok_and(|number| source.programs.contains_key(&Program::Number(number)))
             {
-                return Err(say(
-                    codes::COMBINATION,
-                    both!(
-                        "P{program} is a program of this file, and {} times O{:04}",
-                        "P{program} — программа этого файла, но и O{1:04}, повторённая {0} раз",
-                        program / 10_000,
-                        program % 10_000
-                    ),
-                    both!("controls differ", "у стоек по-разному"),
-                    both!("write the count as an L word", "напишите число повторений словом L"),
-                ));
+                return Err(say(refusal::program_or_count(program, program / 10_000, program % 10_000)));
             }
             (passes, program) = (program / 10_000, program % 10_000);
         }
@@ -89,18 +80,7 @@ impl<'a> Run<'a, '_> {
             Some(words) => Some(self.arguments(words)?),
         };
         if arguments.is_some() && passes > 1 {
-            return Err(say(
-                codes::ARGUMENT,
-                both!(
-                    "G65 with L{passes}: whether the second pass starts with the arguments or with what the first left is not told",
-                    "G65 с L{passes}: начинается ли второй проход с аргументов или с того, что оставил первый, не сказано"
-                ),
-                both!("repeated with its own variables", "повторяется со своими переменными"),
-                both!(
-                    "write the call as often as it shall run",
-                    "напишите вызов столько раз, сколько он должен исполниться"
-                ),
-            ));
+            return Err(say(refusal::g65_with_count(passes)));
         }
         if passes == 0 {
             return Ok(());
@@ -130,7 +110,7 @@ impl<'a> Run<'a, '_> {
             return Ok(false);
         }
         match self.find_program(source, place.file, Program::Number(number)) {
-            Err(Stop::Said(said)) if said.0 == codes::PROGRAM_MISSING => Ok(true),
+            Err(Stop::Said(said)) if said.code == codes::PROGRAM_MISSING => Ok(true),
             _ => Ok(false),
         }
     }
@@ -151,18 +131,7 @@ impl<'a> Run<'a, '_> {
     ) -> Result<(), Stop> {
         let words = source.bytes(statement);
         if !self.are_untouched(&variables(words)) {
-            return Err(say(
-                codes::ARGUMENT,
-                both!(
-                    "an argument of a program that the control has is computed by this one",
-                    "аргумент программы, которая есть только в стойке, вычисляет эта программа"
-                ),
-                both!("the expanded program sets no variables", "развёрнутая программа переменных не задаёт"),
-                both!(
-                    "write the number, or give the called program's file with `--include DIR`",
-                    "напишите число или дайте файл вызываемой программы ключом `--include DIR`"
-                ),
-            ));
+            return Err(say(refusal::COMPUTED_ARGUMENT));
         }
         self.copy(source, statement, visit);
         self.note(statement);
@@ -198,29 +167,12 @@ impl<'a> Run<'a, '_> {
                 _ => match argument_variable(*letter) {
                     Some(variable) => variable,
                     None => {
-                        return Err(say(
-                            codes::ARGUMENT,
-                            both!(
-                                "{} is no argument of a macro",
-                                "{} — не аргумент макроса",
-                                *letter as char
-                            ),
-                            both!(
-                                "G, L, N, O and P are the call's own",
-                                "G, L, N, O и P принадлежат самому вызову"
-                            ),
-                            both!("pass the value with another letter", "передайте значение другой буквой"),
-                        ));
+                        return Err(say(refusal::no_argument(*letter as char)));
                     }
                 },
             };
             if variable > 33 {
-                return Err(say(
-                    codes::ARGUMENT,
-                    both!("more than ten groups of I, J and K", "больше десяти групп I, J и K"),
-                    both!("too many", "слишком много"),
-                    both!("pass fewer arguments", "передайте меньше аргументов"),
-                ));
+                return Err(say(refusal::TOO_MANY_GROUPS_OF_ARGUMENTS));
             }
             let mut value = self.evaluate(value)?;
             if let (false, Value::Number(number)) = (*point, value) {
@@ -238,16 +190,7 @@ impl<'a> Run<'a, '_> {
         }
         match letter {
             b'D' | b'H' | b'M' | b'S' | b'T' => Ok(number),
-            b'B' | b'E' | b'F' => Err(say(
-                codes::ARGUMENT,
-                both!(
-                    "argument {}{number} has no point: parameters of the control say what it counts",
-                    "у аргумента {}{number} нет точки: что он считает, решают параметры стойки",
-                    letter as char
-                ),
-                both!("0.001, 0.01 or 1?", "0.001, 0.01 или 1?"),
-                both!("write `{}{number}.`", "напишите `{}{number}.`", letter as char),
-            )),
+            b'B' | b'E' | b'F' => Err(say(refusal::argument_without_point(letter as char, number))),
             _ => {
                 let numbers = &self.dialect.numbers;
                 let decimals = if self.inch {
@@ -285,12 +228,7 @@ impl<'a> Run<'a, '_> {
             // What stands beside its number is executed too, and would be passed over here.
             Some(statement) if statement.flags.words => Err(words_beside(&written)),
             Some(_) => Ok(Place { file, statement: at + 1 }),
-            None => Err(say(
-                codes::PROGRAM_MISSING,
-                both!("{written} stands twice in one file", "{written} стоит в файле дважды"),
-                both!("which of the two is called?", "какая из двух вызвана?"),
-                both!("give one of them another number", "дайте одной из них другой номер"),
-            )),
+            None => Err(say(refusal::stands_twice(&written))),
         };
         if let Some(statement) = source.programs.get(&program) {
             return behind(file, source, *statement);
@@ -311,12 +249,7 @@ impl<'a> Run<'a, '_> {
                 source.statements.iter().position(|statement| !matches!(statement.kind, Kind::Percent));
             return Ok(Place { file, statement: first.unwrap_or(0) as u32 });
         }
-        Err(say(
-            codes::PROGRAM_MISSING,
-            both!("file {} holds no {written}", "в файле {} нет {written}", source.name),
-            both!("called here", "вызвана здесь"),
-            both!("correct the O number in that file", "исправьте номер O в том файле"),
-        ))
+        Err(say(refusal::file_holds(&source.name, &written)))
     }
 
     /// Names of the files in which a program may stand.
@@ -351,32 +284,20 @@ impl<'a> Run<'a, '_> {
                 }
                 Err(error) if error.kind() == ErrorKind::InvalidInput => return Err(leaves(name)),
                 Err(error) => {
-                    return Err(say(
-                        codes::UNREADABLE_FILE,
-                        both!(
-                            "subprogram file {name} cannot be read: {}",
-                            "файл подпрограммы {name} не читается: {:#}",
-                            of_system(&error)
-                        ),
-                        both!("called here", "вызвана здесь"),
-                        both!(
-                            "check the file in the folder given with `--include`",
-                            "проверьте файл в папке, заданной ключом `--include`"
-                        ),
-                    ));
+                    return Err(say(refusal::unreadable_file(name, &of_system(&error))));
                 }
                 Ok(text) => {
                     if let Err(diagnostic) = nc_syntax::looks_like_program(&text) {
-                        return Err(say(
-                            codes::UNREADABLE_FILE,
-                            both!(
+                        return Err(say(Refusal {
+                            code: codes::UNREADABLE_FILE,
+                            message: both!(
                                 "subprogram file {name}: {}",
                                 "файл подпрограммы {name}: {:#}",
                                 diagnostic.message
                             ),
-                            both!("called here", "вызвана здесь"),
-                            diagnostic.help.unwrap_or_default(),
-                        ));
+                            label: both!("called here", "вызвана здесь"),
+                            help: diagnostic.help.unwrap_or_default(),
+                        }));
                     }
                     let read = Source::read(name.clone(), Cow::Owned(text), self.dialect, &mut self.names);
                     let source =
@@ -392,15 +313,7 @@ impl<'a> Run<'a, '_> {
             [first, .., last] => format!("{first} … {last}"),
             [] => String::new(),
         };
-        Err(say(
-            codes::PROGRAM_MISSING,
-            both!(
-                "subprogram {what} is not in this file, and no file {looked} was found",
-                "подпрограммы {what} нет в этом файле, и файл {looked} не найден"
-            ),
-            both!("called here", "вызвана здесь"),
-            both!("`--include DIR` with the folder that holds it", "`--include DIR` с папкой, где она лежит"),
-        ))
+        Err(say(refusal::no_such_file(what, looked)))
     }
 
     /// True while the contour of a cycle is read.
@@ -565,62 +478,21 @@ impl<'a> Run<'a, '_> {
         let file = self.external(&[format!("{name}.ngc")], &format!("o<{name}>"))?;
         match self.sources[file].subroutines.get(&label) {
             Some(statement) => Ok(Place { file, statement: statement + 1 }),
-            None => Err(say(
-                codes::PROGRAM_MISSING,
-                both!("file {name}.ngc holds no o<{name}> sub", "в файле {name}.ngc нет o<{name}> sub"),
-                both!("called here", "вызвана здесь"),
-                both!(
-                    "the subroutine must have the name of its file",
-                    "имя подпрограммы должно совпадать с именем файла"
-                ),
-            )),
+            None => Err(say(refusal::file_without_its_sub(name))),
         }
     }
 }
 
 fn within_routine() -> Stop {
-    say(
-        codes::CONTOUR,
-        both!(
-            "a call, a return or a cycle within the contour of a cycle",
-            "вызов, возврат или цикл внутри контура цикла"
-        ),
-        both!("the interpreter only reads the contour", "контур интерпретатор только читает"),
-        both!(
-            "write the blocks of the contour themselves between `sub` and `endsub`",
-            "напишите между `sub` и `endsub` сами кадры контура"
-        ),
-    )
+    say(refusal::FLOW_WITHIN_CONTOUR)
 }
 
 fn words_beside(program: &str) -> Stop {
-    say(
-        codes::COMBINATION,
-        both!(
-            "words beside the number of {program}, which is called",
-            "слова рядом с номером {program}, которую вызывают"
-        ),
-        both!("called here", "вызвана здесь"),
-        both!(
-            "write {program} in a block of its own, and the words behind it in the next",
-            "напишите {program} отдельным кадром, а слова после неё — следующим"
-        ),
-    )
+    say(refusal::words_beside_call(program))
 }
 
 fn leaves(name: &str) -> Stop {
-    say(
-        codes::PATH,
-        both!(
-            "subprogram {name} leads out of the folder it is looked for in",
-            "имя подпрограммы {name} выводит из папки, где её ищут"
-        ),
-        both!("called here", "вызвана здесь"),
-        both!(
-            "name the file only, and give its folder with `--include DIR`",
-            "назовите только файл, а его папку задайте ключом `--include DIR`"
-        ),
-    )
+    say(refusal::name_leads_out_of_folder(name))
 }
 
 /// The local variable of an argument's letter.

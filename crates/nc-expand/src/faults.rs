@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Diagnostic, Refusal, Text, both};
 use nc_syntax::dialect::Macros;
 
 use crate::codes;
@@ -18,8 +18,8 @@ pub(crate) enum Stop {
     Unknown(Variable),
     /// There is no value.
     Fault(Fault),
-    /// Code, message, label, help; the place is the statement.
-    Said(Box<(Code, Text, Text, Text)>),
+    /// At the statement.
+    Said(Box<Refusal>),
     /// Ready, with its place.
     Diagnostic(Box<Diagnostic>),
     /// Ready, about another file that could not be read in.
@@ -27,18 +27,15 @@ pub(crate) enum Stop {
 }
 
 /// A stop in words.
-pub(crate) fn say(code: Code, message: Text, label: Text, help: Text) -> Stop {
-    Stop::Said(Box::new((code, message, label, help)))
+pub(crate) fn say(refusal: Refusal) -> Stop {
+    Stop::Said(Box::new(refusal))
 }
 
 /// The message, at the statement where execution ended.
 pub(crate) fn diagnostic(stop: &Stop, span: Range<u64>, names: &Names, macros: Macros) -> Diagnostic {
     match stop {
         Stop::Diagnostic(diagnostic) | Stop::InFile(diagnostic, ..) => (**diagnostic).clone(),
-        Stop::Said(said) => {
-            let (code, message, label, help) = &**said;
-            Diagnostic::error(*code, message.clone()).at(span, label.clone()).help(help.clone())
-        }
+        Stop::Said(refusal) => (**refusal).clone().at(span),
         Stop::Unknown(variable) => unknown(*variable, span, names, macros),
         Stop::Fault(fault) => arithmetic(fault, span),
     }
@@ -131,82 +128,82 @@ pub(crate) fn whole(what: &Text, value: f64) -> Result<u64, Stop> {
 }
 
 pub(crate) fn too_many_steps(limit: u64) -> Stop {
-    say(
-        codes::STEPS,
-        both!(
+    say(Refusal {
+        code: codes::STEPS,
+        message: both!(
             "the program is still running after {limit} repeated steps",
             "после {limit} повторных шагов программа всё ещё не кончилась"
         ),
-        both!("reached once more", "сюда попали ещё раз"),
-        both!(
+        label: both!("reached once more", "сюда попали ещё раз"),
+        help: both!(
             "a loop that never ends? correct its condition, or split the program",
             "цикл без конца? исправьте его условие или разделите программу"
         ),
-    )
+    })
 }
 
 pub(crate) fn too_long(limit: u64) -> Stop {
-    say(
-        codes::SIZE,
-        both!(
+    say(Refusal {
+        code: codes::SIZE,
+        message: both!(
             "the expanded program is longer than {limit} bytes",
             "развёрнутая программа длиннее {limit} байт"
         ),
-        both!("grows here", "растёт здесь"),
-        both!(
+        label: both!("grows here", "растёт здесь"),
+        help: both!(
             "calls or loops that multiply? correct the counts, or split the program",
             "вызовы или циклы умножают друг друга? исправьте числа повторений или разделите программу"
         ),
-    )
+    })
 }
 
 pub(crate) fn too_deep(limit: usize) -> Stop {
-    say(
-        codes::DEPTH,
-        both!("calls inside one another: more than {limit}", "вложенных вызовов больше {limit}"),
-        both!("one call too many", "лишний вызов"),
-        both!(
+    say(Refusal {
+        code: codes::DEPTH,
+        message: both!("calls inside one another: more than {limit}", "вложенных вызовов больше {limit}"),
+        label: both!("one call too many", "лишний вызов"),
+        help: both!(
             "a program that calls itself without end? controls refuse it too",
             "программа без конца вызывает себя? стойки этого тоже не примут"
         ),
-    )
+    })
 }
 
 /// * `what` – block number or label, as it is corrected
 pub(crate) fn label(shown: &str, what: &Text, why: &Text) -> Stop {
-    say(
-        codes::LABEL,
-        both!("{shown} cannot be gone to: {why}", "к {shown} не перейти: {why:#}"),
-        both!("leads there", "ведёт туда"),
-        both!("correct the {what}", "исправьте {what:#}"),
-    )
+    say(Refusal {
+        code: codes::LABEL,
+        message: both!("{shown} cannot be gone to: {why}", "к {shown} не перейти: {why:#}"),
+        label: both!("leads there", "ведёт туда"),
+        help: both!("correct the {what}", "исправьте {what:#}"),
+    })
 }
 
 pub(crate) fn endless() -> Stop {
-    say(
-        codes::RETURN,
-        both!(
+    say(Refusal {
+        code: codes::RETURN,
+        message: both!(
             "M99 in the main program: it starts again without end",
             "M99 в главной программе: она начинается снова без конца"
         ),
-        both!("no call to return from", "возвращаться не из чего"),
-        both!(
+        label: both!("no call to return from", "возвращаться не из чего"),
+        help: both!(
             "end the program with M30; correct it once and repeat it on the control",
             "закончите программу функцией M30; исправьте её один раз, а повторяйте на стойке"
         ),
-    )
+    })
 }
 
 pub(crate) fn no_call(what: &Text) -> Stop {
-    say(
-        codes::RETURN,
-        both!("{what}: there is no call to return from", "{what:#}: возвращаться не из чего"),
-        both!("reached here", "сюда дошло исполнение"),
-        both!(
+    say(Refusal {
+        code: codes::RETURN,
+        message: both!("{what}: there is no call to return from", "{what:#}: возвращаться не из чего"),
+        label: both!("reached here", "сюда дошло исполнение"),
+        help: both!(
             "`sub`, `endsub` and `return` belong together, and M98 and M99",
             "`sub`, `endsub` и `return` стоят вместе, как и M98 с M99"
         ),
-    )
+    })
 }
 
 pub(crate) fn no_return(names: &Names, kind: CallKind, macros: Macros) -> Stop {
@@ -218,24 +215,24 @@ pub(crate) fn no_return(names: &Names, kind: CallKind, macros: Macros) -> Stop {
         CallKind::Program(id) => (names.name(id).to_ascii_uppercase(), "M17"),
         CallKind::Name(id) | CallKind::Routine(id) => (format!("o<{}>", names.name(id)), "`endsub`"),
     };
-    say(
-        codes::RETURN,
-        both!("subprogram {name} ends without {way}", "подпрограмма {name} кончается без {way}"),
-        both!("the end of it", "её конец"),
-        both!("end the subprogram with {way}", "закончите подпрограмму: {way}"),
-    )
+    say(Refusal {
+        code: codes::RETURN,
+        message: both!("subprogram {name} ends without {way}", "подпрограмма {name} кончается без {way}"),
+        label: both!("the end of it", "её конец"),
+        help: both!("end the subprogram with {way}", "закончите подпрограмму: {way}"),
+    })
 }
 
 pub(crate) fn runs_into(program: &str) -> Stop {
-    say(
-        codes::RETURN,
-        both!("the main program runs into {program}", "главная программа переходит в {program}"),
-        both!("reached without a call", "дошло без вызова"),
-        both!(
+    say(Refusal {
+        code: codes::RETURN,
+        message: both!("the main program runs into {program}", "главная программа переходит в {program}"),
+        label: both!("reached without a call", "дошло без вызова"),
+        help: both!(
             "end the main program with M30 before it",
             "закончите перед ней главную программу функцией M30"
         ),
-    )
+    })
 }
 
 pub(crate) fn nothing_executed(span: Range<u64>) -> Diagnostic {
@@ -245,77 +242,83 @@ pub(crate) fn nothing_executed(span: Range<u64>) -> Diagnostic {
 }
 
 pub(crate) fn block_delete() -> Stop {
-    say(
-        codes::BLOCK_DELETE,
-        both!(
+    say(Refusal {
+        code: codes::BLOCK_DELETE,
+        message: both!(
             "flow behind block delete: the switch on the panel makes two programs of it",
             "ветвление в кадре с пропуском: переключатель на пульте делает из программы две"
         ),
-        both!("executed or not?", "исполнять или нет?"),
-        both!(
+        label: both!("executed or not?", "исполнять или нет?"),
+        help: both!(
             "remove the `/`, or the statement, and correct the program you mean to run",
             "уберите `/` или оператор и исправляйте ту программу, которую будете исполнять"
         ),
-    )
+    })
 }
 
 pub(crate) fn no_code(letter: char, value: f64) -> Stop {
-    say(
-        codes::BAD_VALUE,
-        both!(
+    say(Refusal {
+        code: codes::BAD_VALUE,
+        message: both!(
             "{letter} with the computed value {value} is not taken",
             "{letter} с вычисленным значением {value} не принимается"
         ),
-        both!("computed here", "вычисляется здесь"),
-        both!("write the code or the count as a plain number", "напишите функцию или счётчик простым числом"),
-    )
+        label: both!("computed here", "вычисляется здесь"),
+        help: both!(
+            "write the code or the count as a plain number",
+            "напишите функцию или счётчик простым числом"
+        ),
+    })
 }
 
 pub(crate) fn too_large(letter: char, value: f64) -> Stop {
-    say(
-        codes::BAD_VALUE,
-        both!(
+    say(Refusal {
+        code: codes::BAD_VALUE,
+        message: both!(
             "{letter} with the computed value {value} has more than 15 digits",
             "у {letter} с вычисленным значением {value} больше 15 цифр"
         ),
-        both!("computed here", "вычисляется здесь"),
-        both!(
+        label: both!("computed here", "вычисляется здесь"),
+        help: both!(
             "correct the expression, or the values given with `--set`",
             "исправьте выражение или значения, заданные ключом `--set`"
         ),
-    )
+    })
 }
 
 pub(crate) fn protected(protected: Protected, variable: Variable, names: &Names) -> Stop {
     let shown = names.show(variable);
     match protected {
-        Protected::Alarm => say(
-            codes::ALARM,
-            both!(
+        Protected::Alarm => say(Refusal {
+            code: codes::ALARM,
+            message: both!(
                 "the program stops itself with an alarm here",
                 "программа здесь сама выдаёт аварийное сообщение и останавливается"
             ),
-            both!("reached with the values given", "при заданных значениях исполнение доходит сюда"),
-            both!(
+            label: both!("reached with the values given", "при заданных значениях исполнение доходит сюда"),
+            help: both!(
                 "give the values the program expects with `--set`, or remove the line",
                 "задайте ключом `--set` те значения, которых ждёт программа, или уберите строку"
             ),
-        ),
-        Protected::System => say(
-            codes::SYSTEM_WRITE,
-            both!(
+        }),
+        Protected::System => say(Refusal {
+            code: codes::SYSTEM_WRITE,
+            message: both!(
                 "the program writes {shown}, which the control acts on",
                 "программа записывает {shown}, а стойка по ней действует"
             ),
-            both!("an offset, a position or a switch", "коррекция, положение или переключатель"),
-            both!("set it on the control, and remove the line", "задайте её на стойке и уберите строку"),
-        ),
-        Protected::None => say(
-            codes::SYSTEM_WRITE,
-            both!("{shown} cannot be written", "{shown} записать нельзя"),
-            both!("no such variable", "такой переменной нет"),
-            both!("correct the number of the variable", "исправьте номер переменной"),
-        ),
+            label: both!("an offset, a position or a switch", "коррекция, положение или переключатель"),
+            help: both!(
+                "set it on the control, and remove the line",
+                "задайте её на стойке и уберите строку"
+            ),
+        }),
+        Protected::None => say(Refusal {
+            code: codes::SYSTEM_WRITE,
+            message: both!("{shown} cannot be written", "{shown} записать нельзя"),
+            label: both!("no such variable", "такой переменной нет"),
+            help: both!("correct the number of the variable", "исправьте номер переменной"),
+        }),
     }
 }
 

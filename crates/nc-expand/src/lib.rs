@@ -46,6 +46,7 @@ mod okuma;
 mod one_reader;
 mod output;
 mod program;
+mod refusals;
 mod returns;
 mod run;
 mod shorthand;

@@ -11,15 +11,15 @@
 //! back to what is drilled less a clearance), rapid to the level. Fagor CNC 8055 M Programming Manual, chapter 9, G81. The
 //! numbers written have 6 decimals.
 
-use diagnostic::{Text, both};
+use diagnostic::Refusal;
 use nc_program::modal::ReturnLevel;
 use nc_syntax::dialect::{Action, CycleBack, CycleCode, WrittenCycles};
 use nc_syntax::{Block, Dialect, ItemKind, Letters, Span, Value};
 use toolpath::{MOST_PECKS, Plane, Retreat, Stroke, peck_depths, strokes, whole_pecks};
 
-use crate::codes;
 use crate::known::Rewriting;
 use crate::lowering::{Came, Fault, Lower};
+use crate::refusals::called as refusal;
 use crate::shorthand::{AXES, Words, actions, add, line_of, number, shown};
 
 /// Words that a block of a cycle may have beside those of its levels.
@@ -72,19 +72,7 @@ impl<'d> Lower<'d> for Writer<'d> {
             return self.begin(came);
         }
         if ends && self.cycle.is_some() && words.skipped() {
-            return Err(self.refuse(
-                &words,
-                words.whole(),
-                both!(
-                    "a cycle that ends behind block delete",
-                    "цикл, который заканчивается в кадре с пропуском"
-                ),
-                both!(
-                    "what follows drills or not, by a switch",
-                    "дальше сверлят или нет, решает переключатель"
-                ),
-                both!("remove the `/`, or the block", "уберите `/` или кадр"),
-            ));
+            return Err(words.fault(refusal::END_BEHIND_BLOCK_DELETE, words.whole()));
         }
         // A code between its holes would change what its numbers mean.
         let codes_between = words.actions().next().is_some();
@@ -96,13 +84,7 @@ impl<'d> Lower<'d> for Writer<'d> {
             self.cycle = None;
         }
         if self.open && moves && words.actions().all(|(action, _)| !owns(action)) {
-            return Err(self.refuse(
-                &words,
-                words.whole(),
-                both!("a move behind a cycle without its code", "ход после цикла без своей функции"),
-                both!("a rapid or a feed?", "быстрый или рабочий?"),
-                both!("write G0 or G1 in this block", "напишите в этом кадре G0 или G1"),
-            ));
+            return Err(words.fault(refusal::MOVE_WITHOUT_ITS_CODE, words.whole()));
         }
         if let Some((_, span)) = words.actions().find(|(action, _)| **action == Action::ReturnLevel) {
             self.out.wake();
@@ -140,25 +122,14 @@ impl<'d> Writer<'d> {
             && !words.skipped();
         match self.length(words, b'Z').filter(|_| alone) {
             Some(level) => Ok(level),
-            None => Err(self.refuse(
-                words,
-                span,
-                both!("a return level that is not certain", "неоднозначная плоскость отвода"),
-                both!("G71 and Z alone were expected, in G90", "ожидались одни G71 и Z, при G90"),
-                both!(
-                    "write G71 with Z in a block of its own, G90 in force",
-                    "напишите G71 и Z отдельным кадром при G90"
-                ),
-            )),
+            None => Err(words.fault(refusal::RETURN_LEVEL_NOT_CERTAIN, span)),
         }
     }
 
     /// A block with the code of a cycle.
     fn begin(&mut self, came: &Came<'_>) -> Result<(), Fault> {
         let (block, words) = (&came.block, &Words::of(came, self.dialect));
-        let refuse = |span: Span, message: Text, label: Text, help: Text| {
-            Err(self.refuse(words, span, message, label, help))
-        };
+        let refuse = |refusal: Refusal, span: Span| Err(words.fault(refusal, span));
         let mut kind = None;
         for (action, span) in words.actions() {
             match action {
@@ -166,12 +137,7 @@ impl<'d> Writer<'d> {
                 Action::Absolute | Action::Plane(_) => {}
                 Action::ReturnInitial | Action::ReturnR if self.rule.back == CycleBack::ByG => {}
                 _ => {
-                    return refuse(
-                        span,
-                        both!("a cycle beside another code", "цикл рядом с другой функцией"),
-                        both!("which comes first?", "что из них первое?"),
-                        both!("write them in two blocks", "напишите их двумя кадрами"),
-                    );
+                    return refuse(refusal::CYCLE_BESIDE_ANOTHER_CODE, span);
                 }
             }
         }
@@ -181,18 +147,7 @@ impl<'d> Writer<'d> {
             return Ok(());
         };
         if !here.says_places() || here.plane != Plane::Xy || words.skipped() {
-            return refuse(
-                span,
-                both!("a cycle that cannot be written out", "цикл, который нельзя расписать"),
-                both!(
-                    "G90 and G17 were expected, and no block delete",
-                    "ожидались G90 и G17 без пропуска кадра"
-                ),
-                both!(
-                    "write it in G90 and G17, or let the CAM write the moves",
-                    "напишите его при G90 и G17 или выводите из CAM ходы"
-                ),
-            );
+            return refuse(refusal::CYCLE_THAT_CANNOT_BE_WRITTEN_OUT, span);
         }
         let back = match self.rule.back {
             CycleBack::ByM => self.back(words, span)?,
@@ -202,22 +157,7 @@ impl<'d> Writer<'d> {
         let (bottom, near) = match (self.length(words, depth), self.length(words, level)) {
             (Some(bottom), Some(near)) if bottom < near => (bottom, near),
             _ => {
-                return refuse(
-                    span,
-                    both!("a cycle without its levels", "цикл без своих уровней"),
-                    both!(
-                        "{} below {} was expected in this block",
-                        "в этом кадре ожидалось {} ниже {}",
-                        depth as char,
-                        level as char
-                    ),
-                    both!(
-                        "write {} and {} beside the cycle",
-                        "напишите рядом с циклом {} и {}",
-                        depth as char,
-                        level as char
-                    ),
-                );
+                return refuse(refusal::cycle_without_levels(depth as char, level as char), span);
             }
         };
         let peck = match (kind, self.length(words, b'Q')) {
@@ -225,37 +165,18 @@ impl<'d> Writer<'d> {
                 Some(peck)
             }
             (CycleCode::PeckFull, _) => {
-                return refuse(
-                    span,
-                    both!("pecks without their depth", "проходы без своей глубины"),
-                    both!("Q above zero was expected", "ожидалось Q больше нуля"),
-                    both!("write the depth of a peck as Q", "напишите глубину прохода словом Q"),
-                );
+                return refuse(refusal::PECKS_WITHOUT_DEPTH, span);
             }
             (_, None) => None,
             (_, Some(_)) => {
-                return refuse(
-                    span,
-                    both!("Q beside a cycle without pecks", "Q рядом с циклом без проходов"),
-                    both!("what does it say?", "что оно значит?"),
-                    both!("write G83, or remove Q", "напишите G83 или уберите Q"),
-                );
+                return refuse(refusal::Q_WITHOUT_PECKS, span);
             }
         };
         let back = match back {
             Back::R => near,
             Back::Level(back) if back >= near => back,
             Back::Level(_) => {
-                return refuse(
-                    span,
-                    both!("a return level below {}", "плоскость отвода ниже {}", level as char),
-                    both!("the tool would not return", "инструмент не отошёл бы"),
-                    both!(
-                        "write a return level above {}, or go there before the cycle",
-                        "напишите плоскость отвода выше {} или отойдите туда до цикла",
-                        level as char
-                    ),
-                );
+                return refuse(refusal::return_level_below(level as char), span);
             }
         };
         self.only_known(words)?;
@@ -276,19 +197,7 @@ impl<'d> Writer<'d> {
             && words.block.words().all(|word| matches!(word.letter, b'N' | b'X' | b'Y'))
             && !words.skipped();
         if !plain {
-            return Err(self.refuse(
-                words,
-                words.whole(),
-                both!(
-                    "a block under a cycle that is not certain",
-                    "неоднозначный кадр при действующем цикле"
-                ),
-                both!("X and Y alone were expected", "ожидались одни X и Y"),
-                both!(
-                    "write the cycle anew, with all of its words",
-                    "напишите цикл заново, со всеми его словами"
-                ),
-            ));
+            return Err(words.fault(refusal::BLOCK_UNDER_CYCLE_NOT_CERTAIN, words.whole()));
         }
         self.out.comment(shown(words.block), words.from);
         self.hole(words, b"G0".to_vec())
@@ -339,26 +248,8 @@ impl<'d> Writer<'d> {
         match (code(53), code(54), self.level) {
             (true, false, Some(level)) => Ok(Back::Level(level)),
             (false, true, _) => Ok(Back::R),
-            (true, false, None) => Err(self.refuse(
-                words,
-                span,
-                both!("M53 without a level", "M53 без уровня"),
-                both!("no G71 stands before it", "перед ним нет G71"),
-                both!("write G71 with the level before the cycle", "напишите перед циклом G71 с уровнем"),
-            )),
-            _ => Err(self.refuse(
-                words,
-                span,
-                both!("a cycle that does not say where it returns", "цикл не говорит, куда отводится"),
-                both!(
-                    "M53 (the level of G71) or M54 (R) was expected in this block",
-                    "в этом кадре ожидалось M53 (уровень из G71) или M54 (R)"
-                ),
-                both!(
-                    "write G71 with the level before the cycle and M53 beside it",
-                    "напишите перед циклом G71 с уровнем, а рядом с ним M53"
-                ),
-            )),
+            (true, false, None) => Err(words.fault(refusal::M53_WITHOUT_LEVEL, span)),
+            _ => Err(words.fault(refusal::RETURN_NOT_SAID, span)),
         }
     }
 
@@ -367,20 +258,10 @@ impl<'d> Writer<'d> {
         match (level, self.out.known.modal().places()[2]) {
             (ReturnLevel::R, _) => Ok(Back::R),
             (ReturnLevel::Initial, Some(stands)) => Ok(Back::Level(stands)),
-            (ReturnLevel::Initial, None) => Err(self.refuse(
-                words,
-                span,
-                both!("a cycle that returns to nobody knows where", "цикл отводится неизвестно куда"),
-                both!("no word says where Z stands", "ни одно слово не говорит, где стоит Z"),
-                both!("write the level with Z before the cycle", "напишите уровень словом Z до цикла"),
-            )),
-            (ReturnLevel::Unsaid | ReturnLevel::Undecided { .. }, _) => Err(self.refuse(
-                words,
-                span,
-                both!("a cycle that does not say where it returns", "цикл не говорит, куда отводится"),
-                both!("G98 or G99 was expected", "ожидалась G98 или G99"),
-                both!("write G98 or G99 in this block", "напишите G98 или G99 в этом кадре"),
-            )),
+            (ReturnLevel::Initial, None) => Err(words.fault(refusal::RETURN_TO_UNKNOWN_LEVEL, span)),
+            (ReturnLevel::Unsaid | ReturnLevel::Undecided { .. }, _) => {
+                Err(words.fault(refusal::G98_OR_G99_NOT_SAID, span))
+            }
         }
     }
 
@@ -402,26 +283,10 @@ impl<'d> Writer<'d> {
                 _ => false,
             };
             if !known {
-                return Err(self.refuse(
-                    words,
-                    item.span,
-                    both!("a word beside a cycle that is not certain", "неоднозначное слово рядом с циклом"),
-                    both!(
-                        "before the hole or behind it, and in which unit?",
-                        "до отверстия или после, и в каких единицах?"
-                    ),
-                    both!(
-                        "write it in a block of its own, a dwell as moves and G4",
-                        "напишите его отдельным кадром, выдержку — ходами и G4"
-                    ),
-                ));
+                return Err(words.fault(refusal::WORD_BESIDE_CYCLE_NOT_CERTAIN, item.span));
             }
         }
         Ok(())
-    }
-
-    fn refuse(&self, words: &Words<'_, '_>, span: Span, message: Text, label: Text, help: Text) -> Fault {
-        words.fault(codes::CALLED_CYCLE, span, message, label, help)
     }
 }
 

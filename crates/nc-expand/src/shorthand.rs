@@ -13,17 +13,17 @@
 //!
 //! The numbers written have 6 decimals; what that neglects is half a nanometre.
 
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Refusal, Text, both};
 use nc_program::Owner;
 use nc_program::modal::{Modal, Units};
 use nc_syntax::dialect::{Action, Called, CornerForm, GCode};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Number, Span, Value};
 use units::math;
 
-use crate::codes;
 use crate::known::{Known, Motion, Rewriting, motion};
 use crate::lowering::{Came, Fault, Held, Refused};
 use crate::output::{From, Style, word};
+use crate::refusals::drawings as refusal;
 
 /// X, Y, Z.
 pub(crate) const AXES: [u8; 3] = *b"XYZ";
@@ -184,28 +184,19 @@ impl Words<'_, '_> {
     pub(crate) fn idle(&self) -> bool {
         self.block.items.iter().all(|item| matches!(item.kind, ItemKind::Comment | ItemKind::Name))
     }
-    fn refuse(&self, span: Span, message: Text, label: Text, help: Text) -> Fault {
-        self.fault(codes::SHORTHAND, span, message, label, help)
-    }
     pub(crate) fn whole(&self) -> Span {
         whole(self.block)
     }
-    pub(crate) fn fault(&self, code: Code, span: Span, message: Text, label: Text, help: Text) -> Fault {
+    pub(crate) fn fault(&self, refusal: Refusal, span: Span) -> Fault {
         let place = self.from.place(u64::from(span.start)..u64::from(span.end));
-        let diagnostic = Diagnostic::error(code, message).at(place, label).help(help);
-        Box::new(Refused { diagnostic, file: self.from.file })
+        Box::new(Refused { diagnostic: refusal.at(place), file: self.from.file })
     }
 }
 
-const NO_NEXT: Text = Text::pair("a corner without a next line", "сопряжение без следующей прямой");
-const NO_CORNER: Text =
-    Text::pair("a corner that cannot be written out", "сопряжение, которое нельзя развернуть");
 const NOT_KNOWN: Text = Text::pair(
     "where the line starts or ends is not known",
     "неизвестно, где начинается или кончается прямая",
 );
-const POST_IT: Text =
-    Text::pair("post roundings as arcs and chamfers as lines", "выводите скругления дугами, а фаски прямыми");
 
 /// Writes drawings' words out, block by block.
 #[derive(Debug)]
@@ -292,7 +283,7 @@ impl<'d> Corners<'d> {
             let came = corner.block.came();
             let words = Words::of(&came, self.out.dialect);
             let label = both!("nothing follows", "дальше ничего нет");
-            Err(words.refuse(corner.place, NO_NEXT, label, POST_IT))
+            Err(words.fault(refusal::without_next_line(label), corner.place))
         });
         (self.out, ended)
     }
@@ -323,15 +314,7 @@ impl<'d> Corners<'d> {
     fn rotation(&mut self, words: &Words<'_, '_>, span: Span) -> Result<(), Fault> {
         let ([first, second, _], at) = (self.plane(), self.out.known.modal().places());
         let [Some(u), Some(v)] = [at[first], at[second]] else {
-            return Err(words.refuse(
-                span,
-                both!("a rotation without its centre", "поворот без центра"),
-                both!(
-                    "it turns about where the tool stands, which is not known: name both axes of the plane before it, in G90",
-                    "он идёт вокруг места, где стоит инструмент, а оно неизвестно: назовите до него обе оси плоскости при G90"
-                ),
-                both!("write the centre beside it", "напишите рядом центр"),
-            ));
+            return Err(words.fault(refusal::ROTATION_WITHOUT_CENTRE, span));
         };
         let block = words.block;
         let mut centre = b" ".to_vec();
@@ -354,10 +337,10 @@ impl<'d> Corners<'d> {
     ) -> Result<Corner<'d>, Fault> {
         let (block, words) = (&came.block, Words::of(came, self.dialect()));
         let Some(item) = words.corner() else {
-            return Err(words.refuse(Span { start: 0, end: 0 }, NO_NEXT, Text::EMPTY, POST_IT));
+            return Err(words.fault(refusal::without_next_line(Text::EMPTY), Span { start: 0, end: 0 }));
         };
         let span = item.span;
-        let refuse = |label: Text| words.refuse(span, NO_CORNER, label, POST_IT);
+        let refuse = |label: Text| words.fault(refusal::corner(label), span);
         let mut behind = known;
         let here = behind.codes(block).map(|(modal, _)| modal);
         let Some((form, size)) = words.corner_size(item, behind.modal().units) else {
@@ -420,7 +403,7 @@ impl<'d> Corners<'d> {
         } else {
             return Ok(());
         };
-        Err(words.refuse(span, NO_CORNER, label, POST_IT))
+        Err(words.fault(refusal::corner(label), span))
     }
 
     /// Writes the line with the corner, what lies between, the corner, and this line.
@@ -434,9 +417,7 @@ impl<'d> Corners<'d> {
         let Some((here, _)) = corner.behind.codes(block) else {
             let mut behind = corner.behind.clone();
             behind.block(came);
-            return Err(behind
-                .refused()
-                .unwrap_or_else(|| words.refuse(whole, NO_CORNER, NOT_KNOWN, POST_IT)));
+            return Err(behind.refused().unwrap_or_else(|| words.fault(refusal::corner(NOT_KNOWN), whole)));
         };
         self.plain_line(&words, &here, whole)?;
         let [first, second, _] = here.plane.axes();
@@ -448,7 +429,7 @@ impl<'d> Corners<'d> {
                 "the lines are too short for it, or go straight on or back",
                 "прямые для него слишком коротки или идут прямо вперёд или назад"
             );
-            return Err(at.refuse(corner.place, NO_CORNER, label, POST_IT));
+            return Err(at.fault(refusal::corner(label), corner.place));
         };
         let mut line = if corner.behind_corner { b"G1 ".to_vec() } else { Vec::new() };
         self.point(&mut line, shape.from);
@@ -484,14 +465,7 @@ impl<'d> Corners<'d> {
     /// A block under G16, or the one that switches it on.
     fn polar(&mut self, came: &Came<'_>, on: Option<Span>) -> Result<(), Fault> {
         let words = &Words::of(came, self.dialect());
-        let refuse = |span: Span, label: Text| {
-            words.refuse(
-                span,
-                both!("polar words that cannot be written out", "полярные слова, которые нельзя развернуть"),
-                label,
-                both!("write the points in X and Y, G15 in force", "напишите точки в X и Y, при G15"),
-            )
-        };
+        let refuse = |span: Span, label: Text| words.fault(refusal::polar(label), span);
         let plane = self.plane();
         let axis_word =
             |axes: &[usize]| axes.iter().find_map(|axis| words.number(AXES[*axis])).map(|(_, span)| span);

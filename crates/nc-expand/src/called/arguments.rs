@@ -4,7 +4,7 @@ use diagnostic::{Text, both};
 use nc_syntax::Span;
 
 use super::Fault;
-use crate::codes;
+use crate::refusals::called as refusal;
 use crate::shorthand::Words;
 
 /// The arguments of a call, by place; one that is left out is none.
@@ -32,16 +32,7 @@ impl Arguments {
                 ("", _) => None,
                 (_, Some(value)) => Some(value),
                 (_, None) => {
-                    return Err(words.fault(
-                        codes::CALLED_CYCLE,
-                        span,
-                        both!("`{written}` in the brackets of {name}", "`{written}` в скобках {name}"),
-                        both!("plain numbers were expected", "ожидались простые числа"),
-                        both!(
-                            "write the numbers in the place of expressions and texts",
-                            "напишите числа вместо выражений и текстов"
-                        ),
-                    ));
+                    return Err(words.fault(refusal::in_brackets(written, &name), span));
                 }
             });
         }
@@ -93,27 +84,11 @@ impl Arguments {
         };
         let Some(found) = (place..self.values.len()).find(chooses) else { return Ok(()) };
         let (value, number) = (self.or_zero(found), found + 1);
-        Err(words.fault(
-            codes::CALLED_CYCLE,
-            self.span,
-            both!("{} with {value} as argument {number}", "{} с {value} в аргументе {number}", self.name),
-            both!("chooses how the control reads the others", "решает, как стойка прочтёт остальные"),
-            both!(
-                "write {} with its first {place} arguments, which posts do with extended cycles off, or the holes as G0 and G1",
-                "напишите {} с первыми аргументами ({place}), как постпроцессоры без расширенных циклов, или отверстия кадрами G0 и G1",
-                self.name
-            ),
-        ))
+        Err(words.fault(refusal::with_as_argument(&self.name, value, number, place), self.span))
     }
 
     pub(super) fn fault(&self, words: &Words<'_, '_>, message: Text, label: Text) -> Fault {
-        words.fault(
-            codes::CALLED_CYCLE,
-            self.span,
-            message,
-            label,
-            both!("write the holes as G0 and G1", "напишите отверстия кадрами G0 и G1"),
-        )
+        words.fault(refusal::hole(message, label), self.span)
     }
 }
 

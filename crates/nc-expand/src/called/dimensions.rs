@@ -1,6 +1,6 @@
 //! `X=AC()`, `X=IC()`, `TURN=` and `AR=` in a block, written out.
 
-use diagnostic::{Text, both};
+use diagnostic::{Refusal, Text, both};
 use nc_program::Owner;
 use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Called};
@@ -26,14 +26,19 @@ impl Writer<'_> {
         let owned = matches!(owner, Owner::Motion | Owner::DwellP);
         let refuse = |span: Span, label: Text| {
             words.fault(
-                codes::CALLED_CYCLE,
+                Refusal {
+                    code: codes::CALLED_CYCLE,
+                    message: both!(
+                        "a dimension that cannot be written out",
+                        "размер, который нельзя расписать"
+                    ),
+                    label,
+                    help: both!(
+                        "write the word without AC or IC, in G90 or G91",
+                        "напишите слово без AC и IC, при G90 или G91"
+                    ),
+                },
                 span,
-                both!("a dimension that cannot be written out", "размер, который нельзя расписать"),
-                label,
-                both!(
-                    "write the word without AC or IC, in G90 or G91",
-                    "напишите слово без AC и IC, при G90 или G91"
-                ),
             )
         };
         let mut text: Vec<u8> = Vec::new();
@@ -163,11 +168,13 @@ impl Writer<'_> {
     ) -> Result<(), Fault> {
         let refuse = |label: Text| {
             words.fault(
-                codes::CALLED_CYCLE,
+                Refusal {
+                    code: codes::CALLED_CYCLE,
+                    message: both!("turns that cannot be written out", "обороты, которые нельзя расписать"),
+                    label,
+                    help: both!("let the CAM write each turn", "выводите из CAM каждый оборот"),
+                },
                 span,
-                both!("turns that cannot be written out", "обороты, которые нельзя расписать"),
-                label,
-                both!("let the CAM write each turn", "выводите из CAM каждый оборот"),
             )
         };
         if motion(here) != Motion::Arc {
@@ -240,11 +247,16 @@ impl Writer<'_> {
 
 fn refuse_angle(words: &Words<'_, '_>, span: Span, label: Text) -> Fault {
     words.fault(
-        codes::CALLED_CYCLE,
+        Refusal {
+            code: codes::CALLED_CYCLE,
+            message: both!(
+                "an arc by its angle that cannot be written out",
+                "дуга по углу, которую нельзя расписать"
+            ),
+            label,
+            help: both!("write the arc with I, J, K", "напишите дугу словами I, J, K"),
+        },
         span,
-        both!("an arc by its angle that cannot be written out", "дуга по углу, которую нельзя расписать"),
-        label,
-        both!("write the arc with I, J, K", "напишите дугу словами I, J, K"),
     )
 }
 

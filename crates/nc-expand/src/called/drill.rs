@@ -1,6 +1,6 @@
 //! The moves of a hole where the axes stand, and what a cycle leaves in force.
 
-use diagnostic::both;
+use diagnostic::{Refusal, both};
 use nc_program::Owner;
 use nc_syntax::dialect::Action;
 
@@ -9,6 +9,7 @@ use super::{Writer, names_axes};
 use crate::codes;
 use crate::known::{Motion, motion};
 use crate::lowering::Fault;
+use crate::refusals::called as refusal;
 use crate::shorthand::{AXES, Words, line_of, number};
 
 impl Writer<'_> {
@@ -46,11 +47,13 @@ impl Writer<'_> {
             return Ok(());
         };
         Err(words.fault(
-            codes::CALLED_CYCLE,
+            Refusal {
+                code: codes::CALLED_CYCLE,
+                message: both!("{message} is not known", "неизвестно, {message:#}"),
+                label: both!("the cycle's manual does not say", "в руководстве цикла этого нет"),
+                help,
+            },
             words.whole(),
-            both!("{message} is not known", "неизвестно, {message:#}"),
-            both!("the cycle's manual does not say", "в руководстве цикла этого нет"),
-            help,
         ))
     }
 
@@ -58,13 +61,7 @@ impl Writer<'_> {
     pub(super) fn drill(&mut self, words: &Words<'_, '_>, hole: &Hole) -> Result<(), Fault> {
         let (plane, hole_at) = (self.plane(), self.modal().places());
         if !self.modal().says_places() {
-            return Err(words.fault(
-                codes::CALLED_CYCLE,
-                words.whole(),
-                both!("a cycle under G91", "цикл при G91"),
-                both!("its moves are places", "его ходы заданы координатами"),
-                both!("write G90 before it", "напишите перед ним G90"),
-            ));
+            return Err(words.fault(refusal::CYCLE_UNDER_G91, words.whole()));
         }
         self.needs(words, hole.takes_feed, !hole.leaves_spindle)?;
         self.unsaid.feed |= hole.leaves_feed;
@@ -100,15 +97,8 @@ impl Writer<'_> {
 
     /// Where an axis stands.
     fn place(&self, words: &Words<'_, '_>, axis: usize) -> Result<f64, Fault> {
-        self.modal().places()[axis].ok_or_else(|| {
-            words.fault(
-                codes::CALLED_CYCLE,
-                words.whole(),
-                both!("where {} stands is not known", "неизвестно, где стоит {}", AXES[axis] as char),
-                both!("the cycle moves by increments from there", "цикл отходит оттуда на приращения"),
-                both!("name it before the cycle, in G90", "назовите её до цикла, при G90"),
-            )
-        })
+        self.modal().places()[axis]
+            .ok_or_else(|| words.fault(refusal::place_not_known(AXES[axis] as char), words.whole()))
     }
 
     /// The motion code that was in force before a cycle.
@@ -116,16 +106,7 @@ impl Writer<'_> {
         match before {
             Motion::Rapid | Motion::None => Ok(()),
             Motion::Line => self.out.line(b"G1", words.from),
-            Motion::Arc | Motion::Cycle => Err(words.fault(
-                codes::CALLED_CYCLE,
-                words.whole(),
-                both!("a cycle while an arc is in force", "цикл, пока действует дуга"),
-                both!(
-                    "the words behind it would be an arc's again",
-                    "слова после него снова относились бы к дуге"
-                ),
-                both!("write G0 before the cycle", "напишите G0 до цикла"),
-            )),
+            Motion::Arc | Motion::Cycle => Err(words.fault(refusal::CYCLE_WHILE_ARC_IN_FORCE, words.whole())),
         }
     }
 }

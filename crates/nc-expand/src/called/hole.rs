@@ -10,6 +10,7 @@ use toolpath::{MOST_PECKS, Retreat, Stroke, strokes};
 
 use super::arguments::Arguments;
 use crate::lowering::Fault;
+use crate::refusals::called as refusal;
 use crate::shorthand::Words;
 
 /// How far chip breaking goes back where no argument says it, mm.
@@ -88,24 +89,13 @@ impl Planes {
         let bottom = match (call.at(3), call.or_zero(4).abs()) {
             (Some(bottom), 0.0) => bottom,
             (None, 0.0) => {
-                return Err(call.fault(
-                    words,
-                    both!("{} without a depth", "{} без глубины", call.name),
-                    both!("argument 4 or 5 was expected", "ожидался аргумент 4 или 5"),
-                ));
+                return Err(words.fault(refusal::without_depth(&call.name), call.span));
             }
             (bottom, deep) => {
                 // The retraction plane lies on the side that the tool comes from.
                 let relative = reference - deep * (out - reference).signum();
                 if bottom.is_some_and(|bottom| bottom != 0.0 && (bottom - relative).abs() > NOTHING) {
-                    return Err(call.fault(
-                        words,
-                        both!("{} with two depths", "{} с двумя глубинами", call.name),
-                        both!(
-                            "arguments 4 and 5 contradict each other",
-                            "аргументы 4 и 5 противоречат друг другу"
-                        ),
-                    ));
+                    return Err(words.fault(refusal::with_two_depths(&call.name), call.span));
                 }
                 relative
             }
@@ -113,11 +103,7 @@ impl Planes {
         let inwards = (bottom - reference).signum();
         let near = reference - inwards * safety;
         if bottom == reference || (out - near) * inwards > NOTHING {
-            return Err(call.fault(
-                words,
-                both!("{} whose planes are out of order", "{}: плоскости стоят не по порядку", call.name),
-                both!("retraction plane, reference plane with its safety distance and depth were expected in this order", "ожидались по порядку плоскость отвода, базовая плоскость с безопасным расстоянием и глубина"),
-            ));
+            return Err(words.fault(refusal::planes_out_of_order(&call.name), call.span));
         }
         Ok(Self { out, reference, near, bottom, inwards })
     }
@@ -174,11 +160,7 @@ fn bore(
         if feed > 0.0 {
             return Ok(feed);
         }
-        Err(call.fault(
-            words,
-            both!("{} with a feed of {feed}", "{} с подачей {feed}", call.name),
-            both!("argument {}: above zero was expected", "аргумент {}: ожидалось больше нуля", place + 1),
-        ))
+        Err(words.fault(refusal::with_feed(&call.name, feed, place + 1), call.span))
     };
     let inwards = feed(6, both!("the feed inwards", "подачи внутрь"))?;
     let outwards = feed(7, both!("the feed outwards", "подачи наружу"))?;
@@ -202,15 +184,7 @@ fn oriented(
         3.0 => 3,
         4.0 => 4,
         other => {
-            return Err(call.fault(
-                words,
-                both!(
-                    "{} with a spindle direction of {other}",
-                    "{} с направлением шпинделя {other}",
-                    call.name
-                ),
-                both!("argument 7: 3 or 4 was expected", "аргумент 7: ожидалось 3 или 4"),
-            ));
+            return Err(words.fault(refusal::with_spindle_direction(&call.name, other), call.span));
         }
     };
     call.chooses_nothing(words, 11, &[(13, in_seconds(call.or_zero(5)))])?;
@@ -251,46 +225,21 @@ fn pecks(
     };
     let less = call.or_zero(7);
     if first <= 0.0 || less < 0.0 {
-        return Err(call.fault(
-            words,
-            both!("CYCLE83 with pecks that shrink by a factor, or a first peck that leads out", "CYCLE83, где проходы убывают в несколько раз или первый проход выводит наружу"),
-            both!("arguments 6, 7 and 8: a first depth inside the hole, and what each next peck is shorter by", "аргументы 6, 7 и 8: первая глубина внутри отверстия и на сколько короче каждый следующий проход"),
-        ));
+        return Err(words.fault(refusal::CYCLE83_WITH_SHRINKING_PECKS, call.span));
     }
     let factor = call.at(10).unwrap_or(1.0);
     if factor != 0.0 && factor != 1.0 {
-        return Err(call.fault(
-            words,
-            both!("CYCLE83 with a feed factor", "CYCLE83 с коэффициентом подачи"),
-            both!(
-                "argument 11: the feed of the first peck alone",
-                "аргумент 11: подача только первого прохода"
-            ),
-        ));
+        return Err(words.fault(refusal::CYCLE83_WITH_FEED_FACTOR, call.span));
     }
     let along = call.or_zero(12);
     if along != 0.0 && along != (axis + 1) as f64 {
-        return Err(call.fault(
-            words,
-            both!("CYCLE83 along another axis", "CYCLE83 вдоль другой оси"),
-            both!(
-                "argument 13: the axis upright on the plane was expected",
-                "аргумент 13: ожидалась ось, перпендикулярная плоскости"
-            ),
-        ));
+        return Err(words.fault(refusal::CYCLE83_ALONG_ANOTHER_AXIS, call.span));
     }
     let chips_out = match call.or_zero(11) {
         0.0 => false,
         1.0 => true,
         _ => {
-            return Err(call.fault(
-                words,
-                both!("CYCLE83 of an unknown kind", "CYCLE83 неизвестного вида"),
-                both!(
-                    "argument 12: 0 breaks chips, 1 removes them",
-                    "аргумент 12: 0 — дробление стружки, 1 — её вывод"
-                ),
-            ));
+            return Err(words.fault(refusal::CYCLE83_OF_UNKNOWN_KIND, call.span));
         }
     };
     let stay = [8, 9, 15].map(|place| call.or_zero(place));
@@ -312,13 +261,8 @@ fn pecks(
         0.0 => deep_mm / unit_mm,
         own => own.abs(),
     };
-    let lengths = lengths(whole, first.min(whole), less).ok_or_else(|| {
-        call.fault(
-            words,
-            both!("CYCLE83 of more than {MOST_PECKS} pecks", "CYCLE83 больше чем в {MOST_PECKS} проходов"),
-            both!("arguments 6 to 8", "аргументы 6–8"),
-        )
-    })?;
+    let lengths = lengths(whole, first.min(whole), less)
+        .ok_or_else(|| words.fault(refusal::too_many_pecks(MOST_PECKS), call.span))?;
     // Strokes count from the reference plane, depths from where the drill comes to.
     let mut deep = (near - reference).abs();
     let mut depths: Vec<f64> = lengths

@@ -27,9 +27,9 @@ use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Called};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Span, Value};
 
-use crate::codes;
 use crate::known::{Rewriting, motion};
 use crate::lowering::{Came, Fault, Lower};
+use crate::refusals::called as refusal;
 use crate::shorthand::{AXES, Corners, Words, numbers, shown};
 use crate::siemens;
 use arguments::Arguments;
@@ -155,22 +155,7 @@ impl<'d> Writer<'d> {
                         .iter()
                         .any(|item| item.kind == ItemKind::BracketCommand && item.span != *span)
                 {
-                    return Err(words.fault(
-                        codes::CALLED_CYCLE,
-                        *span,
-                        both!(
-                            "a call that stays of something unknown",
-                            "модальный вызов чего-то неизвестного"
-                        ),
-                        both!(
-                            "a cycle from CYCLE81 to CYCLE83, CYCLE85 or CYCLE86 was expected behind MCALL",
-                            "после MCALL ожидался цикл от CYCLE81 до CYCLE83, CYCLE85 или CYCLE86"
-                        ),
-                        both!(
-                            "let the CAM write the holes as G0 and G1",
-                            "выводите из CAM отверстия кадрами G0 и G1"
-                        ),
-                    ));
+                    return Err(words.fault(refusal::MODAL_CALL_OF_UNKNOWN, *span));
                 }
                 self.modal = None;
                 self.out.comment(&comment, words.from)?;
@@ -182,14 +167,7 @@ impl<'d> Writer<'d> {
             [(Called::HolesRow | Called::HolesCircle, span)] => {
                 let call = Arguments::read(&words, *span)?;
                 let Some(hole) = self.modal.clone() else {
-                    return Err(call.fault(
-                        &words,
-                        both!("{} without a cycle", "{} без цикла", call.name),
-                        both!(
-                            "MCALL and a cycle were expected before it",
-                            "перед ней ожидались MCALL и цикл"
-                        ),
-                    ));
+                    return Err(words.fault(refusal::without_cycle(&call.name), call.span));
                 };
                 let places = if calls[0].0 == Called::HolesRow {
                     self.row(&words, &call)?
@@ -214,13 +192,7 @@ impl<'d> Writer<'d> {
                 self.restore(&words, motion)?;
             }
             [.., (_, span)] => {
-                return Err(words.fault(
-                    codes::CALLED_CYCLE,
-                    *span,
-                    both!("two calls in one block", "два вызова в одном кадре"),
-                    both!("in which order?", "в каком порядке?"),
-                    both!("write them in two blocks", "напишите их двумя кадрами"),
-                ));
+                return Err(words.fault(refusal::TWO_CALLS_IN_ONE_BLOCK, *span));
             }
             [] => {}
         }
@@ -268,13 +240,7 @@ impl<'d> Writer<'d> {
         });
         match other {
             None => Ok(()),
-            Some(item) => Err(words.fault(
-                codes::CALLED_CYCLE,
-                item.span,
-                both!("something beside the call of a cycle", "что-то рядом с вызовом цикла"),
-                both!("before or behind the cycle?", "до цикла или после?"),
-                both!("write it in a block of its own", "напишите отдельным кадром"),
-            )),
+            Some(item) => Err(words.fault(refusal::WORDS_BESIDE_CALL, item.span)),
         }
     }
 
@@ -293,19 +259,7 @@ impl<'d> Writer<'d> {
         }
         let (motion, places) = (motion(self.modal()), self.modal().places());
         if !moves || self.plane()[..2].iter().any(|axis| places[*axis].is_none()) {
-            return Err(at.fault(
-                codes::CALLED_CYCLE,
-                at.whole(),
-                both!("what MCALL drills here is not known", "неизвестно, что здесь сверлит MCALL"),
-                both!(
-                    "the frame, the tool or machine coordinates in a block under MCALL",
-                    "в кадре при MCALL меняются система координат, инструмент или стоят координаты станка"
-                ),
-                both!(
-                    "end the call with MCALL alone before it",
-                    "закончите вызов до него: MCALL отдельным кадром"
-                ),
-            ));
+            return Err(at.fault(refusal::MCALL_NOT_KNOWN, at.whole()));
         }
         self.drill(at, &hole)?;
         self.restore(at, motion)
@@ -319,13 +273,7 @@ impl<'d> Writer<'d> {
 
 /// Refuses what is done or not, by a switch.
 fn skipped(words: &Words<'_, '_>, message: Text) -> Fault {
-    words.fault(
-        codes::BLOCK_DELETE,
-        words.whole(),
-        message,
-        both!("two programs in one", "две программы в одной"),
-        both!("remove the `/`, or the block", "уберите `/` или кадр"),
-    )
+    words.fault(refusal::skipped(message), words.whole())
 }
 
 /// The block has words that a motion takes: rotary axes move too, and a full circle names its centre alone.

@@ -6,6 +6,7 @@ use units::math;
 use super::Writer;
 use super::arguments::Arguments;
 use crate::lowering::Fault;
+use crate::refusals::called as refusal;
 use crate::shorthand::Words;
 
 /// Holes of one pattern; more are a wrong count.
@@ -26,24 +27,13 @@ impl Writer<'_> {
         let mut places: Vec<[f64; 2]> = (0..count).map(at).collect();
         let ([u, v, _], stands) = (self.plane(), self.modal().places());
         let (Some(a), Some(b)) = (stands[u], stands[v]) else {
-            return Err(call.fault(
-                words,
-                both!("HOLES1 from a place that is not known", "HOLES1 из неизвестного положения"),
-                both!(
-                    "it begins at the nearer end: name both axes of the plane before it",
-                    "он начинается с ближнего конца: назовите до него обе оси плоскости"
-                ),
-            ));
+            return Err(words.fault(refusal::HOLES1_FROM_UNKNOWN_PLACE, call.span));
         };
         let far = |p: &[f64; 2]| math::hypot(p[0] - a, p[1] - b);
         if let [first, .., last] = places.as_slice() {
             let (to_first, to_last) = (far(first), far(last));
             if (to_first - to_last).abs() < SAME {
-                return Err(call.fault(
-                    words,
-                    both!("HOLES1 whose ends are equally near", "HOLES1, концы которого одинаково близки"),
-                    both!("it begins at the nearer one", "он начинается с ближнего"),
-                ));
+                return Err(words.fault(refusal::HOLES1_ENDS_EQUALLY_NEAR, call.span));
             }
             if to_last < to_first {
                 places.reverse();
@@ -72,11 +62,7 @@ pub(super) fn circle(words: &Words<'_, '_>, call: &Arguments) -> Result<Vec<[f64
 fn count(words: &Words<'_, '_>, call: &Arguments, place: usize) -> Result<usize, Fault> {
     let count = call.needed(words, place, &both!("a number of holes", "числа отверстий"))?;
     if !(1.0..=MOST_HOLES).contains(&count) || count.fract() != 0.0 {
-        return Err(call.fault(
-            words,
-            both!("{} of {count} holes", "{}: отверстий {count}", call.name),
-            both!("a whole number from 1 was expected", "ожидалось целое число от 1"),
-        ));
+        return Err(words.fault(refusal::number_of_holes(&call.name, count), call.span));
     }
     Ok(count as usize)
 }

@@ -8,13 +8,14 @@
 //! pass the tool stands off the drive line by what is still to be cut. The tool ends on the drive line at Z. Tapers at the
 //! ends (L, E) are refused: their parts have other leads, and each would have to be a thread of its own.
 
-use diagnostic::{Text, both};
+use diagnostic::Refusal;
 use nc_syntax::Span;
 use units::math;
 
 use super::emit::Code;
 use super::{MILLION, Spot, Writer};
 use crate::lowering::Fault;
+use crate::refusals::threads as refusal;
 
 /// Passes of one thread; more are a wrong infeed.
 const MOST_PASSES: u32 = 1000;
@@ -22,22 +23,13 @@ const MOST_PASSES: u32 = 1000;
 impl Writer<'_, '_, '_> {
     pub(super) fn compound_thread(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
-        let refuse =
-            |message: Text, label: Text, help: Text| Err(words.cycle_fault(span, message, label, help));
+        let refuse = |refusal: Refusal| Err(words.fault(refusal, span));
         let start = self.standing(&words, span)?;
         for letter in *b"LE" {
             if let Some((number, span)) = words.number(letter)
                 && number.to_f64() != 0.0
             {
-                return Err(words.cycle_fault(
-                    span,
-                    both!("a thread with tapered ends", "резьба с коническими концами"),
-                    both!("each end is a thread of another lead", "каждый конец — резьба с другим ходом"),
-                    both!(
-                        "leave L and E out, or let the CAM write the passes",
-                        "уберите L и E или выводите проходы из CAM"
-                    ),
-                ));
+                return Err(words.fault(refusal::THREAD_WITH_TAPERED_ENDS, span));
             }
         }
         let length = |letter: u8| self.length(&words, letter).map(|value| value as f64);
@@ -45,44 +37,17 @@ impl Writer<'_, '_, '_> {
         let (Some((_, lead)), Some(end), Some(crest), Some(first), Some(height)) =
             (words.number(b'P'), self.length(&words, b'Z'), length(b'I'), length(b'J'), length(b'K'))
         else {
-            return refuse(
-                both!("a thread without P, Z, I, J or K", "резьба без P, Z, I, J или K"),
-                both!(
-                    "lead, end, crest, first infeed and height were expected",
-                    "ожидались ход, конец, вершина профиля, первое врезание и высота"
-                ),
-                both!(
-                    "write all of them, as in `G76 P1.5 Z-20 I-2 J0.6 K1.84`",
-                    "напишите их все, например `G76 P1.5 Z-20 I-2 J0.6 K1.84`"
-                ),
-            );
+            return refuse(refusal::THREAD_WITHOUT_ITS_WORDS);
         };
         let degression = plain(b'R').unwrap_or(1.0);
         let angle = plain(b'Q').unwrap_or_default();
         let springs = words.number(b'H').map_or(Some(0), |(number, _)| number.integer());
         let Some(springs) = springs.filter(|springs| (0..=i64::from(MOST_PASSES)).contains(springs)) else {
-            return refuse(
-                both!("a number of spring passes that is none", "неверное число зачистных проходов"),
-                both!("H counts passes", "H считает проходы"),
-                both!("write a whole number", "напишите целое число"),
-            );
+            return refuse(refusal::NUMBER_OF_SPRING_PASSES);
         };
         let fits = first > 0.0 && height >= first && crest != 0.0 && degression >= 1.0;
         if !fits || !self.here.says_places() || end >= start[1] || !(0.0..=80.0).contains(&angle) {
-            return refuse(
-                both!(
-                    "a thread of several passes that is not certain",
-                    "многопроходная резьба, о которой не всё известно"
-                ),
-                both!(
-                    "expected G90, Z below the start, J above 0 and no more than K, I other than 0, R from 1, Q from 0 to 80",
-                    "ожидались G90, Z ниже начала, J больше 0 и не больше K, I не 0, R от 1, Q от 0 до 80"
-                ),
-                both!(
-                    "correct these words, or let the CAM write the passes",
-                    "исправьте эти слова или выводите проходы из CAM"
-                ),
-            );
+            return refuse(refusal::PASSES_NOT_CERTAIN);
         }
         let outside = if crest < 0.0 { 1.0 } else { -1.0 };
         let (crest, whole) = (crest.abs(), crest.abs() + height);
@@ -97,11 +62,7 @@ impl Writer<'_, '_, '_> {
             depths.push(depth);
         }
         if depths.len() == MOST_PASSES as usize {
-            return refuse(
-                both!("more than 1000 passes", "больше 1000 проходов"),
-                both!("the first infeed is too small", "первое врезание слишком мало"),
-                both!("correct J and R", "исправьте J и R"),
-            );
+            return refuse(refusal::TOO_MANY_PASSES);
         }
         depths.extend((0..=springs).map(|_| whole));
         let mut further = b"K".to_vec();

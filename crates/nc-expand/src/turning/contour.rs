@@ -12,8 +12,8 @@ use super::drawing::{self, Drawing};
 use super::emit::Code;
 use super::place::may_stand_beside;
 use super::{Spot, Writer, cycle_of};
-use crate::codes;
 use crate::lowering::{Came, Fault, Held};
+use crate::refusals::contours as refusal;
 use crate::shorthand::Words;
 
 /// Ends and centres of programs are rounded: so far may a contour turn back, mm or inches.
@@ -211,11 +211,7 @@ impl Writer<'_, '_, '_> {
         let last = self.numbered(cycle, b'Q')?;
         if last < first {
             let span = words.number(b'Q').map_or_else(|| words.whole(), |(_, span)| span);
-            return Err(words.contour_fault(
-                span,
-                both!("the block of Q stands before the block of P", "кадр Q стоит раньше кадра P"),
-                both!("Q ends the contour", "Q завершает контур"),
-            ));
+            return Err(words.fault(refusal::Q_BEFORE_P, span));
         }
         let blocks = self.drawn(words, first..=last)?;
         let mut ahead = self.out.known.clone();
@@ -237,14 +233,7 @@ impl Writer<'_, '_, '_> {
             compensated = compensated.or(compensates.then_some(index));
             if !block.names_a_place() {
                 if index == 0 {
-                    return Err(block.contour_fault(
-                        block.whole(),
-                        both!("the contour does not begin with a move", "контур не начинается с движения"),
-                        both!(
-                            "G0 or G1 with X or Z was expected in the block of P",
-                            "в кадре P ожидалось G0 или G1 с X или Z"
-                        ),
-                    ));
+                    return Err(block.fault(refusal::BEGINS_WITHOUT_MOVE, block.whole()));
                 }
                 continue;
             }
@@ -253,23 +242,12 @@ impl Writer<'_, '_, '_> {
                 _ if !retract.is_empty() => {
                     let rapid = blocks[retract[0].block].came();
                     let rapid = Words::of(&rapid, self.dialect);
-                    return Err(rapid.contour_fault(
-                        rapid.whole(),
-                        both!("a rapid within the contour", "быстрый ход внутри контура"),
-                        both!(
-                            "feeds were expected, rapids behind the last of them only",
-                            "ожидались рабочие ходы, быстрые — только после последнего из них"
-                        ),
-                    ));
+                    return Err(rapid.fault(refusal::RAPID_WITHIN_CONTOUR, rapid.whole()));
                 }
                 Some(Code::Line) => Code::Line,
                 Some(arc @ (Code::Clockwise | Code::CounterClockwise)) if !pieces.is_empty() => arc,
                 _ => {
-                    return Err(block.contour_fault(
-                        block.whole(),
-                        both!("the contour does not begin with G0 or G1", "контур не начинается с G0 или G1"),
-                        both!("the block of P must say which", "кадр P должен сказать, с какой"),
-                    ));
+                    return Err(block.fault(refusal::BEGINS_WITHOUT_G0_OR_G1, block.whole()));
                 }
             };
             let of_an_arc = matches!(code, Code::Clockwise | Code::CounterClockwise);
@@ -279,11 +257,7 @@ impl Writer<'_, '_, '_> {
                 return Err(corner_fault(&block, span));
             }
             let [Some(x), Some(z)] = block.target(ahead.modal(), at.map(Some)) else {
-                return Err(block.contour_fault(
-                    block.whole(),
-                    both!("where the contour leads here is not known", "неизвестно, куда здесь ведёт контур"),
-                    both!("another frame, or above 400 km", "другая система координат или больше 400 км"),
-                ));
+                return Err(block.fault(refusal::LEADS_TO_UNKNOWN_PLACE, block.whole()));
             };
             if index == 0 {
                 let named = |letters: [u8; 2]| letters.iter().any(|letter| block.number(*letter).is_some());
@@ -311,11 +285,7 @@ impl Writer<'_, '_, '_> {
         let entry = pieces.remove(0);
         if pieces.is_empty() {
             let span = words.number(b'Q').map_or_else(|| words.whole(), |(_, span)| span);
-            return Err(words.contour_fault(
-                span,
-                both!("the contour ends where it begins", "контур кончается там, где начинается"),
-                both!("one move only leads to it", "к нему ведёт одно движение"),
-            ));
+            return Err(words.fault(refusal::ENDS_WHERE_IT_BEGINS, span));
         }
         Ok(Contour { first, last, blocks, start, entry, pieces, retract, names_both, says_feed, compensated })
     }
@@ -345,12 +315,7 @@ impl Writer<'_, '_, '_> {
     pub(super) fn numbered(&self, cycle: usize, letter: u8) -> Result<usize, Fault> {
         let (words, name) = (&self.words(cycle), letter as char);
         let Some((number, span)) = words.number(letter) else {
-            let message = both!("a cycle without {name}", "цикл без {name}");
-            return Err(words.contour_fault(
-                words.whole(),
-                message,
-                both!("P and Q name the blocks of its contour", "P и Q называют кадры его контура"),
-            ));
+            return Err(words.fault(refusal::cycle_without(name), words.whole()));
         };
         let found = number.integer().and_then(|number| self.numbers.get(&number));
         let (found, one_place) = found.map_or((&[][..], true), |(found, one_place)| (&found[..], *one_place));
@@ -363,26 +328,8 @@ impl Writer<'_, '_, '_> {
         };
         match (nearest.filter(|_| one_place), found.first()) {
             (Some(nearest), _) => Ok(*nearest),
-            (None, None) => {
-                let message = both!(
-                    "no block N{} for {name} of the cycle",
-                    "нет кадра N{} для {name} цикла",
-                    number.to_f64()
-                );
-                Err(words.contour_fault(
-                    span,
-                    message,
-                    both!("this program has none", "в этой программе его нет"),
-                ))
-            }
-            (None, Some(_)) => {
-                let message = both!(
-                    "two blocks N{} for {name} of the cycle",
-                    "два кадра N{} для {name} цикла",
-                    number.to_f64()
-                );
-                Err(words.contour_fault(span, message, both!("which of the two?", "какой из двух?")))
-            }
+            (None, None) => Err(words.fault(refusal::no_such_block(number.to_f64(), name), span)),
+            (None, Some(_)) => Err(words.fault(refusal::two_such_blocks(number.to_f64(), name), span)),
         }
     }
 
@@ -391,7 +338,10 @@ impl Writer<'_, '_, '_> {
         let in_finishing = self.turning.cycles.nose_in_finishing;
         let refuse = |span: Span, label: Text| {
             let text = String::from_utf8_lossy(words.block.text(span)).into_owned();
-            Err(words.contour_fault(span, both!("{text} within a contour", "{text} внутри контура"), label))
+            Err(words.fault(
+                refusal::contour(both!("{text} within a contour", "{text} внутри контура"), label),
+                span,
+            ))
         };
         for item in &words.block.items {
             match item.kind {
@@ -419,12 +369,8 @@ impl Writer<'_, '_, '_> {
                             continue;
                         }
                         return Err(words.fault(
-                            codes::CONTOUR,
+                            refusal::within_contour(&String::from_utf8_lossy(words.block.text(item.span))),
                             item.span,
-                            both!("{} within a contour", "{} внутри контура", String::from_utf8_lossy(words.block.text(item.span))),
-                            both!("whether roughing heeds it controls differ", "учитывает ли её черновая обработка, у стоек по-разному"),
-                            both!("write `contour_compensation = \"finishing\"` under `[program]` in the profile where it may hold in G70 \
-                             alone: roughing then leaves its allowance at the tip as programmed", "впишите `contour_compensation = \"finishing\"` в раздел `[program]` профиля, если она действует только в G70: тогда черновая обработка оставляет припуск от запрограммированной вершины"),
                         ));
                     }
                     if !fits {
@@ -476,7 +422,10 @@ impl Writer<'_, '_, '_> {
         clockwise: bool,
     ) -> Result<Arc, Fault> {
         let refuse = |label: Text| {
-            Err(words.contour_fault(words.whole(), both!("an arc that cannot be", "невозможная дуга"), label))
+            Err(words.fault(
+                refusal::contour(both!("an arc that cannot be", "невозможная дуга"), label),
+                words.whole(),
+            ))
         };
         let value = |letter: u8| words.length(letter, self.here.units);
         let centre = match (value(b'R'), value(b'I'), value(b'K')) {
@@ -531,14 +480,7 @@ impl Writer<'_, '_, '_> {
                     let block = Words::of(&came, self.dialect);
                     let name = ["X", "Z"][axis];
                     let cycle = String::from_utf8_lossy(words.block.bytes.trim_ascii()).into_owned();
-                    return Err(block.contour_fault(
-                        block.whole(),
-                        both!(
-                            "the contour turns back along {name} (cycle `{cycle}`)",
-                            "контур возвращается назад по {name} (цикл `{cycle}`)"
-                        ),
-                        both!("by {:.4} in this block", "на {:.4} в этом кадре", furthest - here),
-                    ));
+                    return Err(block.fault(refusal::turns_back(name, cycle, furthest - here), block.whole()));
                 }
                 furthest = furthest.max(here);
             }
@@ -550,18 +492,7 @@ impl Writer<'_, '_, '_> {
 /// A corner of a drawing, or a slip: roughing that passed over it would cut into a rounded corner.
 fn corner_fault(words: &Words<'_, '_>, span: Span) -> Fault {
     let text = String::from_utf8_lossy(words.block.text(span)).into_owned();
-    words.fault(
-        codes::CONTOUR,
-        span,
-        both!("{text} on a line of a contour", "{text} на прямой контура"),
-        both!("a corner, by a parameter of the control (3405.4)", "сопряжение по параметру стойки (3405.4)"),
-        both!(
-            "write `drawing_words = \"plain\"` under `[program]` in the profile where A, C and R of lines are angles, chamfers and \
-             roundings without a comma, or remove it",
-            "впишите `drawing_words = \"plain\"` в раздел `[program]` профиля, если A, C и R прямых без запятой — углы, фаски и \
-             скругления, или уберите слово"
-        ),
-    )
+    words.fault(refusal::word_on_a_line(text), span)
 }
 
 fn math_sqrt(square: f64) -> f64 {

@@ -17,9 +17,9 @@ use super::contour::Point;
 use super::emit::Code;
 use super::place::{diameters, plane, spot, standing};
 use super::{AXES, MILLION, Spot, cycle_of};
-use crate::codes;
 use crate::known::{Known, Rewriting};
 use crate::lowering::{Came, Fault};
+use crate::refusals::drawings;
 use crate::shorthand::{Shape, Words, add, number, shown};
 
 /// Two lines whose directions differ by less have no certain crossing, rad.
@@ -435,14 +435,5 @@ fn crossing(a: Point, a_rad: Option<f64>, b: Point, b_rad: Option<f64>) -> Optio
 }
 
 fn refusal(words: &Words<'_, '_>, span: Span, label: Text) -> Fault {
-    words.fault(
-        codes::SHORTHAND,
-        span,
-        both!("a drawing's word that cannot be written out", "слово чертежа, которое нельзя развернуть"),
-        label,
-        both!(
-            "post roundings as arcs, chamfers and slopes as lines with X and Z",
-            "выводите скругления дугами, фаски и уклоны прямыми с X и Z"
-        ),
-    )
+    words.fault(drawings::drawing(label), span)
 }

@@ -8,7 +8,7 @@
 //! Controls that follow Fanuc take it for a place in system A too: the profile may say so, and has to where a way of R would
 //! lead off the hole. The manual's W counts from R, a word of the block from where the tool stands: with W alone nobody knows.
 
-use diagnostic::{Text, both};
+use diagnostic::{Refusal, both};
 use nc_program::modal::ReturnLevel;
 use nc_syntax::dialect::{DrillPecks, DrillR};
 use nc_syntax::{Item, ItemKind, Number, Span, Value};
@@ -18,6 +18,7 @@ use super::emit::{Code, Moves};
 use super::{Spot, Writer};
 use crate::lowering::Fault;
 use crate::output::{Style, word};
+use crate::refusals::turning as refusal;
 use crate::shorthand::Words;
 
 /// A hole on the axis, Z in millionths of the unit.
@@ -50,12 +51,7 @@ impl Writer<'_, '_, '_> {
             if peck < hole.deep { self.peck_rules(&words, span)? } else { Retreat::Back { by: 0.0 } };
         let pecks = hole.deep as f64 / peck as f64;
         if pecks > MOST_PECKS {
-            return Err(words.cycle_fault(
-                span,
-                both!("a hole of more than 2000 pecks", "отверстие больше чем в 2000 проходов"),
-                both!("Q counts least increments where it has no point", "Q без точки считает дискреты"),
-                both!("correct Z and Q", "исправьте Z и Q"),
-            ));
+            return Err(words.fault(refusal::TOO_MANY_PECKS, span));
         }
         let mut moves = self.begin(&words, start, b"XZUWRQPK")?;
         self.go(&mut moves, Code::Rapid, [hole.x, hole.start]);
@@ -86,15 +82,7 @@ impl Writer<'_, '_, '_> {
         let feed = self.feed(&words).filter(|_| !self.unsure_feed || words.number(b'F').is_some());
         let of_feed = |percent: f64| feed.and_then(|feed| feed_word(feed.to_f64() * percent / 100.0, feed));
         let (Some(back), Some(out)) = (of_feed(100.0), of_feed(percent)) else {
-            return Err(words.cycle_fault(
-                span,
-                both!(
-                    "a boring feed that is not known, or has no point",
-                    "подача расточки неизвестна или без точки"
-                ),
-                both!("out of the hole it is {percent} per cent of F", "на выходе она {percent} % от F"),
-                both!("write F with a point in this block", "напишите в этом кадре F с точкой"),
-            ));
+            return Err(words.fault(refusal::boring_feed_not_known(percent), span));
         };
         let mut moves = self.begin(&words, start, b"XZUWRPK")?;
         self.go(&mut moves, Code::Rapid, [hole.x, hole.start]);
@@ -122,54 +110,19 @@ impl Writer<'_, '_, '_> {
 
     /// Where the hole lies, what cannot be one refused.
     fn hole(&self, words: &Words<'_, '_>, span: Span, start: Spot) -> Result<Hole, Fault> {
-        let refuse = |what: Text, label: Text, help: Text| Err(words.cycle_fault(span, what, label, help));
+        let refuse = |refusal: Refusal| Err(words.fault(refusal, span));
         if let Some((number, span)) = words.number(b'K').filter(|(number, _)| number.integer() != Some(1)) {
-            return Err(words.cycle_fault(
-                span,
-                both!("a hole drilled {} times", "отверстие сверлится раз: {}", number.to_f64()),
-                both!(
-                    "K counts the holes, and on the axis there is one",
-                    "K считает отверстия, а на оси оно одно"
-                ),
-                both!("leave K out", "уберите K"),
-            ));
+            return Err(words.fault(refusal::hole_drilled_again(number.to_f64()), span));
         }
         let [x, target] = self.known_target(words, span)?;
         if x != 0 {
-            return refuse(
-                both!("a hole off the axis", "отверстие не на оси"),
-                both!(
-                    "beside the axis of a workpiece that turns nothing is drilled",
-                    "вне оси вращающейся детали не сверлят"
-                ),
-                both!(
-                    "write X0; correct the turning apart from what is drilled with a driven tool",
-                    "напишите X0; исправляйте точение отдельно от сверления приводным инструментом"
-                ),
-            );
+            return refuse(refusal::HOLE_OFF_THE_AXIS);
         }
         let Some(r) = self.length(words, b'R') else {
-            return refuse(
-                both!("a hole without a depth, or without R", "отверстие без глубины или без R"),
-                both!("R says where drilling begins", "R говорит, где начинается сверление"),
-                both!(
-                    "write Z and R, as in `G83 Z-30. R-3. F0.1`",
-                    "напишите Z и R, например `G83 Z-30. R-3. F0.1`"
-                ),
-            );
+            return refuse(refusal::HOLE_WITHOUT_DEPTH_OR_R);
         };
         if words.number(b'W').is_some() && r != 0 {
-            return refuse(
-                both!(
-                    "a hole whose depth W counts from an unknown place",
-                    "отверстие, глубина W которого отсчитывается неизвестно откуда"
-                ),
-                both!(
-                    "from R by the manual, from the start as every other W does",
-                    "по руководству от R, а как любое W — от начала цикла"
-                ),
-                both!("write the bottom as a place, with Z", "напишите дно координатой Z"),
-            );
+            return refuse(refusal::DEPTH_FROM_UNKNOWN_PLACE);
         }
         let sign_to =
             |level: i64| (if self.here.says_places() { target - level } else { target - start[1] }).signum();
@@ -179,19 +132,10 @@ impl Writer<'_, '_, '_> {
         let bottom = if self.here.says_places() { target } else { target - start[1] + level };
         let sign = (bottom - level).signum();
         if sign == 0 || sign != sign_to(start[1]) {
-            return refuse(
-                both!("R does not lie above the bottom", "R лежит не над дном отверстия"),
-                both!(
-                    "from Z {} it would lead to {}",
-                    "от Z {} он привёл бы к {}",
-                    start[1] as f64 / super::MILLION,
-                    level as f64 / super::MILLION
-                ),
-                both!(
-                    "in system A it counts from the start, with its sign: R-3. goes 3 mm along -Z",
-                    "в системе A отсчитывается от начала, со знаком: R-3. — это 3 мм вдоль -Z"
-                ),
-            );
+            return refuse(refusal::r_not_above_bottom(
+                start[1] as f64 / super::MILLION,
+                level as f64 / super::MILLION,
+            ));
         }
         Ok(Hole { x, start: start[1], level, sign, deep: (bottom - level) * sign })
     }

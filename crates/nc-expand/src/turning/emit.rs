@@ -1,6 +1,5 @@
 //! Blocks out: what a cycle's block sets, then its moves.
 
-use diagnostic::both;
 use nc_program::modal::Modal;
 use nc_syntax::dialect::Action;
 use nc_syntax::{Item, ItemKind, Span, Value};
@@ -9,6 +8,7 @@ use super::place::{may_stand_beside, millionths};
 use super::{AXES, MILLION, Spot, Writer};
 use crate::lowering::Fault;
 use crate::output::From;
+use crate::refusals::turning as refusal;
 use crate::shorthand::{Words, add, number, shown};
 
 /// What a written move is.
@@ -93,12 +93,7 @@ impl Writer<'_, '_, '_> {
             match item.kind {
                 ItemKind::Word { letter, value: Value::Number(number) } if own.contains(&letter) => {
                     if millionths(number.decimal).is_none() {
-                        return Err(words.cycle_fault(
-                            item.span,
-                            both!("a number that is none of a cycle's", "число, какого в цикле не бывает"),
-                            both!("above 400 km", "больше 400 км"),
-                            both!("correct it", "исправьте его"),
-                        ));
+                        return Err(words.fault(refusal::NUMBER_THAT_IS_NONE, item.span));
                     }
                 }
                 ItemKind::Word { letter: b'G', value: Value::Number(_) } => {
@@ -189,24 +184,11 @@ fn setting(words: &Words<'_, '_>, span: Span) -> Result<bool, Fault> {
     match action {
         Some(Action::Turning(_)) => Ok(false),
         Some(action) if may_stand_beside(action) => Ok(true),
-        _ => Err(words.cycle_fault(
-            span,
-            both!("another code beside a cycle", "другая функция рядом с циклом"),
-            both!("whose are the words of this block?", "чьи слова этого кадра?"),
-            both!("write it in a block of its own", "напишите отдельным кадром"),
-        )),
+        _ => Err(words.fault(refusal::ANOTHER_CODE_BESIDE_CYCLE, span)),
     }
 }
 
 fn stray(words: &Words<'_, '_>, item: &Item) -> Fault {
     let text = String::from_utf8_lossy(words.block.text(item.span)).into_owned();
-    words.cycle_fault(
-        item.span,
-        both!("{text} beside a cycle", "{text} рядом с циклом"),
-        both!("it is no word of this cycle", "это не слово этого цикла"),
-        both!(
-            "write it in a block of its own before the cycle, or remove it",
-            "напишите отдельным кадром до цикла или уберите"
-        ),
-    )
+    words.fault(refusal::beside_cycle(text), item.span)
 }

@@ -31,15 +31,15 @@ mod rough;
 mod routine;
 mod threads;
 
-use diagnostic::{Text, both};
+use diagnostic::Text;
 use nc_program::Compensation;
 use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
 use nc_syntax::{Block, Dialect, Number, Span};
 
-use crate::codes;
 use crate::known::Rewriting;
 use crate::lowering::{Came, Fault, Held, Lower};
+use crate::refusals::turning as refusal;
 use crate::shorthand::{Words, actions};
 use drawing::Drawing;
 use pass::Pass;
@@ -174,32 +174,10 @@ impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
             return Ok(at + 1);
         };
         if words.skipped() {
-            return Err(words.cycle_fault(
-                span,
-                both!("a cycle behind block delete", "цикл в кадре с пропуском"),
-                both!(
-                    "two programs in one: what follows starts from two places",
-                    "две программы в одной: дальнейшее начинается из двух мест"
-                ),
-                both!(
-                    "write it without `/`, or let the CAM write the moves",
-                    "напишите без `/` или выводите движения из CAM"
-                ),
-            ));
+            return Err(words.fault(refusal::CYCLE_BEHIND_BLOCK_DELETE, span));
         }
         if self.out.known.modal().compensation != Compensation::Off {
-            return Err(words.cycle_fault(
-                span,
-                both!("a cycle under compensation of the nose", "цикл при коррекции на радиус при вершине"),
-                both!(
-                    "which of its moves are compensated, controls differ",
-                    "на каких его ходах она действует, у стоек по-разному"
-                ),
-                both!(
-                    "write G40 before it; finish the contour as blocks of its own under G41 or G42",
-                    "напишите перед ним G40; чистовой контур напишите отдельными кадрами при G41 или G42"
-                ),
-            ));
+            return Err(words.fault(refusal::CYCLE_UNDER_COMPENSATION, span));
         }
         match cycle {
             TurningCycle::TurnPass | TurningCycle::ThreadPass | TurningCycle::FacePass => {
@@ -232,18 +210,7 @@ impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
     fn plain(&mut self, at: usize) -> Result<(), Fault> {
         let words = &self.words(at);
         if self.pass.is_none() && self.open && words.names_a_place() && !words.owns_motion() {
-            return Err(words.cycle_fault(
-                words.whole(),
-                both!(
-                    "axis words without a motion code behind a cycle",
-                    "слова осей без функции движения после цикла"
-                ),
-                both!(
-                    "which code is in force behind it the manual leaves open",
-                    "какая функция действует после него, руководство не говорит"
-                ),
-                both!("write G0 or G1 in this block", "напишите в этом кадре G0 или G1"),
-            ));
+            return Err(words.fault(refusal::AXIS_WORDS_WITHOUT_MOTION_CODE, words.whole()));
         }
         self.said(words);
         self.out.block(&self.blocks[at]);
@@ -275,18 +242,7 @@ impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
         if let [Some(x), Some(z)] = standing(self.out.known.modal()) {
             return Ok([x, z]);
         }
-        Err(words.cycle_fault(
-            span,
-            both!("where the cycle starts is not known", "неизвестно, откуда начинается цикл"),
-            both!(
-                "it starts, and ends, where the tool stands",
-                "он начинается и кончается там, где стоит инструмент"
-            ),
-            both!(
-                "before it name X and Z in a rapid, as in `G0 X60. Z2.`",
-                "назовите перед ним X и Z в быстром ходе, например `G0 X60. Z2.`"
-            ),
-        ))
+        Err(words.fault(refusal::START_NOT_KNOWN, span))
     }
 
     /// Where the words of the block in hand lead.
@@ -299,12 +255,7 @@ impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
         if let [Some(x), Some(z)] = self.target(words) {
             return Ok([x, z]);
         }
-        Err(words.cycle_fault(
-            span,
-            both!("where the cycle leads is not known", "неизвестно, куда ведёт цикл"),
-            both!("above 400 km", "больше 400 км"),
-            both!("correct X and Z", "исправьте X и Z"),
-        ))
+        Err(words.fault(refusal::END_NOT_KNOWN, span))
     }
 
     /// A length in millionths of the unit.
@@ -332,49 +283,12 @@ impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
         if diameters(&self.here).is_some() {
             return Ok(());
         }
-        Err(words.cycle_fault(
-            span,
-            both!("whether X is a diameter or a radius is not said", "не сказано, диаметр X или радиус"),
-            both!("depths and tapers are radii", "глубины и конусы задаются по радиусу"),
-            both!(
-                "write `x = \"diameter\"` (or \"radius\") under `[program]` in the profile",
-                "впишите `x = \"diameter\"` (или \"radius\") в раздел `[program]` профиля"
-            ),
-        ))
+        Err(words.fault(refusal::DIAMETER_OR_RADIUS, span))
     }
 }
 
 impl Words<'_, '_> {
-    fn cycle_fault(&self, span: Span, message: Text, label: Text, help: Text) -> Fault {
-        self.fault(codes::TURNING_CYCLE, span, message, label, help)
-    }
-
-    fn contour_fault(&self, span: Span, message: Text, label: Text) -> Fault {
-        self.fault(
-            codes::CONTOUR,
-            span,
-            message,
-            label,
-            both!(
-                "write the contour between N of P and N of Q, or let the CAM write the moves",
-                "напишите контур между кадрами N из P и N из Q или выводите движения из CAM"
-            ),
-        )
-    }
-
     fn parameter_fault(&self, span: Span, what: &Text, key: &str, value: &str) -> Fault {
-        self.fault(
-            codes::CYCLE_PARAMETER,
-            span,
-            both!(
-                "{what} is a parameter of the control, and nobody says it",
-                "{what:#} — параметр стойки, и его никто не назвал"
-            ),
-            both!("it decides how the cycle moves", "от него зависят движения цикла"),
-            both!(
-                "write `{key} = {value}` with the control's value under `[program]` in the profile",
-                "впишите `{key} = {value}` со значением стойки в раздел `[program]` профиля"
-            ),
-        )
+        self.fault(refusal::parameter_of_the_control(what, key, value), span)
     }
 }

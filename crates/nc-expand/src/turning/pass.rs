@@ -17,6 +17,7 @@ use units::math;
 use super::emit::{Code, Moves};
 use super::{MILLION, Spot, Writer};
 use crate::lowering::Fault;
+use crate::refusals::turning as refusal;
 use crate::shorthand::{Words, shown};
 
 /// What a pass holds.
@@ -44,27 +45,14 @@ impl Writer<'_, '_, '_> {
                 self.idle_pass(at);
                 return Ok(());
             }
-            return Err(words.cycle_fault(
-                span,
-                both!("a cycle without a place", "цикл без конечной точки"),
-                both!("in G-code system A this code is a single pass, with X and Z", "в системе A эта функция — один проход, с X и Z"),
-                both!("write X and Z; where the control has system B or C, write it as `g_code_system` under `[program]` in the profile", "напишите X и Z; если у стойки система B или C, назовите её ключом `g_code_system` раздела `[program]` профиля"),
-            ));
+            return Err(words.fault(refusal::CYCLE_WITHOUT_PLACE, span));
         }
         self.require_diameters(&words, span)?;
         let start = self.standing(&words, span)?;
         let held = self.pass;
         let tapered = held.is_some_and(|pass| pass.taper != 0);
         if tapered && taper_word(&words, cycle).is_none() {
-            return Err(words.cycle_fault(
-                span,
-                both!("a taper that may still be in force", "конус, который может ещё действовать"),
-                both!(
-                    "R of the pass before holds until another is written",
-                    "R прошлого прохода действует, пока не написано другое"
-                ),
-                both!("write R in this block, R0 for none", "напишите R в этом кадре, R0 — без конуса"),
-            ));
+            return Err(words.fault(refusal::TAPER_MAY_BE_IN_FORCE, span));
         }
         let to = held.map_or([None; 2], |pass| if pass.cycle == cycle { pass.to } else { [None; 2] });
         self.pass = Some(Pass { cycle, start, to, taper: 0 });
@@ -122,21 +110,7 @@ impl Writer<'_, '_, '_> {
         let Some(mut pass) = self.pass else { return Ok(()) };
         let taper = taper_word(&words, pass.cycle);
         if words.skipped() || (!words.names_a_place() && taper.is_none()) {
-            return Err(words.cycle_fault(
-                span,
-                both!(
-                    "a block without a place while a single pass is in force",
-                    "кадр без конечной точки, пока действует однопроходный цикл"
-                ),
-                both!(
-                    "whether the control repeats the pass here is not certain",
-                    "повторит ли стойка здесь проход, неясно"
-                ),
-                both!(
-                    "end the passes with G0 or G1 before it",
-                    "закончите проходы функцией G0 или G1 перед ним"
-                ),
-            ));
+            return Err(words.fault(refusal::BLOCK_WITHOUT_PLACE, span));
         }
         let target = words.target(&self.here, pass.start.map(Some));
         let letters = [(b'X', b'U'), (b'Z', b'W')];
@@ -149,15 +123,7 @@ impl Writer<'_, '_, '_> {
             pass.taper = self.length(&words, letter).unwrap_or_default();
         }
         let [Some(x), Some(z)] = pass.to else {
-            return Err(words.cycle_fault(
-                span,
-                both!("a single pass with one place only", "однопроходный цикл только с одной координатой"),
-                both!(
-                    "X and Z were expected, until each has been named once",
-                    "ожидались X и Z, пока каждая не названа хотя бы раз"
-                ),
-                both!("write X and Z of the end of the cut", "напишите X и Z конца резания"),
-            ));
+            return Err(words.fault(refusal::PASS_WITH_ONE_PLACE, span));
         };
         (self.pass, self.passed) = (Some(pass), true);
         let own: &[u8] = match pass.cycle {
@@ -247,12 +213,7 @@ impl Writer<'_, '_, '_> {
             (false, ..) => 0.0,
             (true, Some(lead), None) => leads * lead.to_f64(),
             (true, ..) => {
-                return Err(words.cycle_fault(
-                    words.whole(),
-                    both!("a thread whose lead is not certain", "резьба, ход которой неясен"),
-                    both!("its chamfer is so many leads long", "её сбег длиной в столько-то ходов"),
-                    both!("write F with a point in this block", "напишите в этом кадре F с точкой"),
-                ));
+                return Err(words.fault(refusal::THREAD_WHOSE_LEAD_NOT_CERTAIN, words.whole()));
             }
         };
         let ([r0, z0], [r1, z1]) = (self.plane(start), self.plane(to));
@@ -267,15 +228,7 @@ impl Writer<'_, '_, '_> {
         let share = 1.0 - length / whole;
         let begins = [r0 + share * (r1 - r0), z0 + share * (z1 - z0)];
         if share < 0.0 {
-            return Err(words.cycle_fault(
-                words.whole(),
-                both!("a thread shorter than its chamfer", "резьба короче своего сбега"),
-                both!("its chamfer is {length} long", "длина сбега {length}"),
-                both!(
-                    "correct `thread_chamfer_leads` in the profile, or start further out",
-                    "исправьте `thread_chamfer_leads` в профиле или начните дальше от детали"
-                ),
-            ));
+            return Err(words.fault(refusal::thread_shorter_than_chamfer(length), words.whole()));
         }
         // Where the cycle starts nothing stands along the thread: every pass comes back there in a rapid. A chamfer that gets
         // there before its end goes on along it.

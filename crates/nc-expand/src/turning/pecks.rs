@@ -6,14 +6,16 @@
 //! to the start. P and Q are radius or Z, without a point least increments. R of the second block, the relief at the
 //! bottom, is refused: at the first groove there is no room for it, and what a control does there the manual leaves open.
 
-use diagnostic::both;
+use diagnostic::{Refusal, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::TurningCycle;
 use toolpath::{Retreat, peck_depths, whole_pecks};
 
 use super::emit::Code;
 use super::{Spot, Writer};
+use crate::codes;
 use crate::lowering::Fault;
+use crate::refusals::turning as refusal;
 
 /// Pecks of one cycle at all its places; more are a wrong step.
 const MOST: i64 = 10_000;
@@ -27,15 +29,7 @@ impl Writer<'_, '_, '_> {
         let along = 1 - down;
         if !words.names_a_place() {
             let Some(back) = self.length(&words, b'R') else {
-                return Err(words.cycle_fault(
-                    span,
-                    both!("a cycle without a place", "цикл без конечной точки"),
-                    both!("neither X and Z nor a return", "ни X и Z, ни отвода"),
-                    both!(
-                        "write X and Z, or R alone in its first block",
-                        "напишите X и Z или одно R в его первом кадре"
-                    ),
-                ));
+                return Err(words.fault(refusal::CYCLE_WITHOUT_X_OR_Z, span));
             };
             let moves = self.begin(&words, [0; 2], b"R")?;
             self.end(moves);
@@ -44,15 +38,7 @@ impl Writer<'_, '_, '_> {
         }
         let start = self.standing(&words, span)?;
         if let Some((number, span)) = words.number(b'R').filter(|(number, _)| number.to_f64() != 0.0) {
-            return Err(words.cycle_fault(
-                span,
-                both!("a relief of {} at the bottom", "отвод {} на дне", number.to_f64()),
-                both!(
-                    "what the control does at the first groove, where there is no room, is not certain",
-                    "что сделает стойка на первой канавке, где места нет, неясно"
-                ),
-                both!("leave R out of this block", "уберите R из этого кадра"),
-            ));
+            return Err(words.fault(refusal::relief_at_bottom(number.to_f64()), span));
         }
         let to = self.known_target(&words, span)?;
         let whole = [to[0] - start[0], to[1] - start[1]];
@@ -64,31 +50,26 @@ impl Writer<'_, '_, '_> {
         };
         let (peck, across) = (step(down), step(along));
         if whole[along] != 0 && words.number(letters[along]).is_none() {
-            return Err(words.cycle_fault(
-                span,
-                both!("a groove wider than the tool without its step", "канавка шире резца без шага"),
-                both!("how far from one place to the next?", "на сколько смещаться?"),
-                if along == 0 {
-                    both!("write P, the step along X (radius)", "напишите P — шаг вдоль X (по радиусу)")
-                } else {
-                    both!("write Q, the step along Z", "напишите Q — шаг вдоль Z")
+            return Err(words.fault(
+                Refusal {
+                    code: codes::TURNING_CYCLE,
+                    message: both!(
+                        "a groove wider than the tool without its step",
+                        "канавка шире резца без шага"
+                    ),
+                    label: both!("how far from one place to the next?", "на сколько смещаться?"),
+                    help: if along == 0 {
+                        both!("write P, the step along X (radius)", "напишите P — шаг вдоль X (по радиусу)")
+                    } else {
+                        both!("write Q, the step along Z", "напишите Q — шаг вдоль Z")
+                    },
                 },
+                span,
             ));
         }
         let (pecks, places) = (1 + whole[down].abs() / peck.max(1), 1 + whole[along].abs() / across.max(1));
         if whole[down] == 0 || pecks.saturating_mul(places) > MOST {
-            return Err(words.cycle_fault(
-                span,
-                both!(
-                    "a cycle without a depth, or of more than 10000 pecks",
-                    "цикл без глубины или больше чем в 10000 проходов"
-                ),
-                both!(
-                    "P and Q count least increments where they have no point",
-                    "P и Q без точки считают дискреты"
-                ),
-                both!("correct X, Z, P and Q", "исправьте X, Z, P и Q"),
-            ));
+            return Err(words.fault(refusal::DEPTH_OR_PECKS, span));
         }
         let needs_return = whole[down].abs() > peck;
         let said = self.first_blocks.peck_return[down].map(|back| back * twice[down]);

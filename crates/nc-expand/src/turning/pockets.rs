@@ -16,14 +16,13 @@
 //!
 //! W shifts one wall of a pocket into the other, so with pockets it has to be zero; U must lead away from the workpiece.
 
-use diagnostic::both;
-
 use super::Writer;
 use super::contour::{Axis, Contour, Point, Way};
 use super::emit::{Code, Moves};
 use super::rough::{MOST_PASSES, Passes, SAME};
 use crate::lowering::Fault;
 use crate::output::{Style, word};
+use crate::refusals::contours as refusal;
 use crate::shorthand::Words;
 
 /// A piece of the contour that turns back along neither axis.
@@ -244,18 +243,9 @@ impl Writer<'_, '_, '_> {
                     (piece.way.to[along] - off[along] - ridge.point[along]) * passes.forwards >= -SAME
                 });
                 let block = self.words(piece.map_or(contour.first, |piece| piece.block));
-                return Err(block.contour_fault(
-                    block.whole(),
-                    both!(
-                        "the contour rises beyond the start of its cycle",
-                        "контур поднимается выше начала своего цикла"
-                    ),
-                    both!(
-                        "the tool would go across it in a rapid, {:.4} too low",
-                        "инструмент прошёл бы его на быстром ходу слишком низко, на {:.4}",
-                        -chain.depth(ridge.point)
-                    ),
-                ));
+                return Err(
+                    block.fault(refusal::rises_beyond_start(-chain.depth(ridge.point)), block.whole())
+                );
             }
         }
         let deepest = chain.parts.iter().map(|part| chain.depth(part.way.to)).fold(0.0, f64::max);
@@ -296,34 +286,12 @@ impl Writer<'_, '_, '_> {
         if off[along] != 0.0 && turns_back {
             let span = words.number(names[along]).map_or_else(|| words.whole(), |(_, span)| span);
             let name = names[along] as char;
-            return Err(words.cycle_fault(
-                span,
-                both!(
-                    "an allowance {name} on a contour with pockets",
-                    "припуск {name} на контуре с карманами"
-                ),
-                both!(
-                    "it moves one wall of each pocket into the finished contour",
-                    "он сдвигает одну из стенок кармана внутрь готового контура"
-                ),
-                both!("write {name}0 in this block", "напишите {name}0 в этом кадре"),
-            ));
+            return Err(words.fault(refusal::allowance_with_pockets(name), span));
         }
         if off[passes.down] * passes.sign > 0.0 {
             let name = names[passes.down] as char;
             let span = words.number(names[passes.down]).map_or_else(|| words.whole(), |(_, span)| span);
-            return Err(words.cycle_fault(
-                span,
-                both!(
-                    "an allowance {name} that leads into the workpiece",
-                    "припуск {name} направлен в деталь"
-                ),
-                both!(
-                    "roughing would cut below the finished contour",
-                    "черновая обработка зарезала бы готовый контур"
-                ),
-                both!("change its sign", "смените его знак"),
-            ));
+            return Err(words.fault(refusal::allowance_into_workpiece(name), span));
         }
         Ok(())
     }

@@ -20,6 +20,7 @@ use super::contour::{Axis, Contour, Piece, Point};
 use super::emit::{Code, Moves};
 use super::{MILLION, Spot, Writer, cycle_of};
 use crate::lowering::{Fault, Held};
+use crate::refusals::{contours, turning as refusal};
 use crate::shorthand::{Words, shown};
 
 /// Passes of one cycle; more are a wrong depth.
@@ -77,29 +78,12 @@ impl Writer<'_, '_, '_> {
         let contour = self.contour(at, start)?;
         let between = at + 1..contour.first;
         if contour.first < at || between.into_iter().any(|index| self.words(index).block.acts()) {
-            return Err(words.contour_fault(
-                span,
-                both!("the contour does not stand behind its cycle", "контур стоит не после своего цикла"),
-                both!(
-                    "where the program goes on behind the cycle is certain only there",
-                    "только там ясно, откуда программа продолжится после цикла"
-                ),
-            ));
+            return Err(words.fault(contours::CONTOUR_ELSEWHERE, span));
         }
         if let Some(block) = contour.compensated.filter(|_| !self.is_finished(&contour)) {
             let came = contour.blocks[block].came();
             let block = Words::of(&came, self.dialect);
-            return Err(block.contour_fault(
-                block.whole(),
-                both!(
-                    "compensation of the nose in a contour that no G70 finishes",
-                    "коррекция на радиус при вершине в контуре, который не обрабатывает ни одна G70"
-                ),
-                both!(
-                    "it would hold nowhere: roughing leaves it out here",
-                    "она нигде бы не действовала: черновая обработка здесь её не учитывает"
-                ),
-            ));
+            return Err(block.fault(contours::COMPENSATION_WITHOUT_FINISHING, block.whole()));
         }
         let last_feed = self.out.known.modal().feed;
         let own: &[u8] = if cycle == TurningCycle::RoughPattern { b"PQUWDIK" } else { b"PQUWD" };
@@ -142,14 +126,7 @@ impl Writer<'_, '_, '_> {
         if let Some((letter, (_, at))) =
             others.iter().find_map(|letter| Some((*letter as char, words.number(*letter)?)))
         {
-            return Err(words.contour_fault(
-                at,
-                both!("a cycle without P and Q", "цикл без P и Q"),
-                both!(
-                    "{letter} is of the block that cuts: which contour?",
-                    "{letter} относится к кадру, который режет: какой контур?"
-                ),
-            ));
+            return Err(words.fault(contours::cycle_without_p_and_q(letter), at));
         }
         let length = |letter: u8| self.length(words, letter);
         let mut set = self.first_blocks;
@@ -161,12 +138,7 @@ impl Writer<'_, '_, '_> {
                 if let Some((number, span)) = words.number(b'R') {
                     set.cuts = number.integer();
                     if set.cuts.is_none() {
-                        return Err(words.cycle_fault(
-                            span,
-                            both!("a number of cuts that is none", "неверное число проходов"),
-                            both!("R counts the cuts here", "R здесь считает проходы"),
-                            both!("write a whole number, like R3", "напишите целое число, например R3"),
-                        ));
+                        return Err(words.fault(refusal::NUMBER_OF_CUTS, span));
                     }
                 }
             }
@@ -179,15 +151,7 @@ impl Writer<'_, '_, '_> {
         }
         let said = b"URW".iter().any(|letter| words.number(*letter).is_some());
         if !said {
-            return Err(words.cycle_fault(
-                span,
-                both!("a cycle without P and Q", "цикл без P и Q"),
-                both!("neither a contour nor a setting", "ни контура, ни установки"),
-                both!(
-                    "write P and Q of its contour, or U, W and R of its first block",
-                    "напишите P и Q его контура или U, W и R его первого кадра"
-                ),
-            ));
+            return Err(words.fault(refusal::CYCLE_WITHOUT_CONTOUR, span));
         }
         let moves = self.begin(words, [0; 2], b"UWR")?;
         self.end(moves);
@@ -218,12 +182,7 @@ impl Writer<'_, '_, '_> {
             (self.first_blocks.relief, self.first_blocks.cuts)
         };
         let (Some(relief), Some(cuts)) = (relief, cuts.filter(|cuts| (2..=MOST_CUTS).contains(cuts))) else {
-            return Err(words.cycle_fault(
-                span,
-                both!("the relief or the number of cuts is not said, or there are less than two", "не сказан припуск или число проходов, или их меньше двух"),
-                both!("parameters of the control would say them", "их задали бы параметры стойки"),
-                both!("write U, W and R in a block of this cycle before it: relief along X (radius) and Z, and number of cuts", "напишите перед ним U, W и R в кадре этого цикла: припуск вдоль X (по радиусу) и Z и число проходов"),
-            ));
+            return Err(words.fault(refusal::RELIEF_OR_CUTS_NOT_SAID, span));
         };
         // The relief along X is a radius, X words may be diameters.
         let twice = self.twice();
@@ -261,11 +220,7 @@ impl Writer<'_, '_, '_> {
             let came = contour.blocks[0].came();
             let block = Words::of(&came, self.dialect);
             let name = ["X", "Z"][down];
-            return Err(block.contour_fault(
-                block.whole(),
-                both!("the contour does not begin with the infeed", "контур не начинается с врезания"),
-                both!("a move along {name} was expected in the block of P, and a way along the other axis behind it", "в кадре P ожидался ход вдоль {name}, а дальше — путь вдоль другой оси"),
-            ));
+            return Err(block.fault(contours::begins_without_infeed(name), block.whole()));
         }
         self.require_monotone(words, contour, along, forwards)?;
         let back = self.require_monotone(words, contour, down, -sign);
@@ -339,15 +294,7 @@ impl Writer<'_, '_, '_> {
         let depth = words.depth(&self.here, b'D').or(self.first_blocks.depth[down]);
         let Some(depth) = depth.filter(|depth| *depth != 0) else {
             let letter = ["U", "W"][down];
-            return Err(words.cycle_fault(
-                span,
-                both!("a depth of cut that nobody says", "глубина прохода, которой никто не назвал"),
-                both!("a parameter of the control would", "её задал бы параметр стойки"),
-                both!(
-                    "write {letter} and R in a block of this cycle before it, or D in this one",
-                    "напишите перед ним {letter} и R в кадре этого цикла или D в этом"
-                ),
-            ));
+            return Err(words.fault(refusal::depth_of_cut_not_said(letter), span));
         };
         // The series 10 and 11, with D, leave the escape to the parameter.
         let said = self.first_blocks.escape[down].filter(|_| words.number(b'D').is_none());
@@ -383,41 +330,16 @@ impl Writer<'_, '_, '_> {
         let contour = self.contour(at, start)?;
         let next = (at + 1..self.blocks.len()).find(|index| self.words(*index).block.acts());
         if (contour.first..=contour.last).contains(&at) || next == Some(contour.first) {
-            return Err(words.contour_fault(
-                span,
-                both!(
-                    "the contour stands behind its finishing",
-                    "контур стоит после своей чистовой обработки"
-                ),
-                both!(
-                    "whether the control makes it once more is not certain",
-                    "пройдёт ли стойка его ещё раз, неясно"
-                ),
-            ));
+            return Err(words.fault(contours::BEHIND_ITS_FINISHING, span));
         }
         let stale = |held: &&Held| !held.from.exact && held.from.assigned != words.from.assigned;
         if let Some(held) = contour.blocks.iter().find(stale) {
             let came = held.came();
             let block = Words::of(&came, self.dialect);
-            return Err(block.contour_fault(
-                block.whole(),
-                both!("a contour with values that are assigned anew", "контур, значения которого присвоены заново"),
-                both!(
-                    "finishing reads it once more, with the values of then: here it stands with those of before",
-                    "чистовая обработка прочтёт его ещё раз, с новыми значениями; здесь стоят прежние"
-                ),
-            ));
+            return Err(block.fault(contours::VALUES_ASSIGNED_ANEW, block.whole()));
         }
         if !contour.says_feed && words.number(b'F').is_none() && self.unsure_feed {
-            return Err(words.cycle_fault(
-                span,
-                both!("a finishing without F", "чистовая обработка без F"),
-                both!(
-                    "the last F stood in a roughing block, which does not hold here",
-                    "последнее F стояло в черновом кадре и здесь не действует"
-                ),
-                both!("write F in this block, or in the contour", "напишите F в этом кадре или в контуре"),
-            ));
+            return Err(words.fault(refusal::FINISHING_WITHOUT_F, span));
         }
         let mut moves = self.begin(&words, start, b"PQUW")?;
         // The cycle's block is done when the tool is back.
@@ -432,14 +354,7 @@ impl Writer<'_, '_, '_> {
         }
         let last = self.words(contour.last);
         if self.out.known.modal().compensation != Compensation::Off {
-            return Err(last.contour_fault(
-                last.whole(),
-                both!("compensation is in force behind the contour", "после контура действует коррекция"),
-                both!(
-                    "the way back to the start of the cycle would be compensated",
-                    "она действовала бы на возврате к началу цикла"
-                ),
-            ));
+            return Err(last.fault(contours::COMPENSATION_STAYS, last.whole()));
         }
         let end = self.standing(&last, span)?;
         let mut back = Moves::new(words.from, end, self.out.known.modal()).with_behind(behind);
@@ -467,15 +382,7 @@ impl Writer<'_, '_, '_> {
 }
 
 pub(super) fn too_many(words: &Words<'_, '_>, span: Span) -> Fault {
-    words.cycle_fault(
-        span,
-        both!("more than 10000 passes", "больше 10000 проходов"),
-        both!("the depth of cut is too small", "глубина прохода слишком мала"),
-        both!(
-            "correct the depth of cut: a length without a point may count least increments",
-            "исправьте глубину прохода: размер без точки может считать дискреты"
-        ),
-    )
+    words.fault(refusal::TOO_MANY_PASSES, span)
 }
 
 /// The axis of the infeed: X of G71, Z of G72.

@@ -10,7 +10,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Text, both};
+use diagnostic::{Refusal, both};
 use nc_program::modal::{ArcCentres, FeedMode};
 use nc_syntax::dialect::{Action, TurningCycle};
 use nc_syntax::{ItemKind, Span, Value};
@@ -22,6 +22,7 @@ use super::profile::{Misfit, Profile, Round, Segment, Stroke};
 use super::{MILLION, Spot, Writer};
 use crate::codes;
 use crate::lowering::Fault;
+use crate::refusals::routines as refusal;
 use crate::shorthand::{Words, numbers, shown};
 
 /// Passes of G70; more are a wrong P.
@@ -33,20 +34,11 @@ impl Writer<'_, '_, '_> {
     /// Writes the cycle, and says which block is next.
     pub(super) fn routine(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<usize, Fault> {
         let words = self.words(at);
-        let refuse =
-            |message: Text, label: Text, help: Text| Err(words.cycle_fault(span, message, label, help));
+        let refuse = |refusal: Refusal| Err(words.fault(refusal, span));
         self.require_diameters(&words, span)?;
         for letter in *b"UW" {
             if let Some((_, span)) = words.number(letter) {
-                return Err(words.cycle_fault(
-                    span,
-                    both!("{} beside this cycle", "{} рядом с этим циклом", letter as char),
-                    both!(
-                        "the interpreter takes it for an axis that a lathe does not have",
-                        "интерпретатор принимает его за ось, которой у токарного станка нет"
-                    ),
-                    both!("write the distance that stays as D", "напишите остающийся припуск словом D"),
-                ));
+                return Err(words.fault(refusal::beside_cycle(letter as char), span));
             }
         }
         if !self.here.says_places()
@@ -54,14 +46,7 @@ impl Writer<'_, '_, '_> {
             || self.here.feed_mode == FeedMode::InverseTime
             || self.here.arc_centres == ArcCentres::Absolute
         {
-            return refuse(
-                both!("a cycle outside G18 G90 G91.1 and G94 or G95", "цикл вне G18 G90 G91.1 и G94 или G95"),
-                both!(
-                    "the interpreter starts in G17, and takes it in G18 and G90 alone",
-                    "интерпретатор начинает с G17, а цикл принимает только при G18 и G90"
-                ),
-                both!("write `G18 G90 G91.1` in a block before it", "напишите кадром раньше `G18 G90 G91.1`"),
-            );
+            return refuse(refusal::CYCLE_UNDER_OTHER_MODES);
         }
         let named = *b"XZ";
         let both_named = named.iter().all(|letter| words.number(*letter).is_some());
@@ -72,19 +57,13 @@ impl Writer<'_, '_, '_> {
         };
         let Some(blocks) = self.blocks_behind(at) else {
             let number = words.number(b'Q').map(|(number, _)| number.to_f64());
-            return Err(words.fault(
-                codes::CONTOUR,
-                words.number(b'Q').map_or(span, |(_, span)| span),
-                match number {
+            return Err(words.fault(Refusal { code: codes::CONTOUR, message: match number {
                     Some(number) => both!("no subroutine O{number} before this block", "до этого кадра нет подпрограммы O{number}"),
                     None => both!("a cycle without Q", "цикл без Q"),
-                },
-                both!("Q is the number of the contour's subroutine", "Q — номер подпрограммы контура"),
-                both!(
+                }, label: both!("Q is the number of the contour's subroutine", "Q — номер подпрограммы контура"), help: both!(
                     "write the contour before the cycle, as `O100 SUB` … `O100 ENDSUB`, and its number as Q100",
                     "напишите контур до цикла, как `O100 SUB` … `O100 ENDSUB`, а его номер — как Q100"
-                ),
-            ));
+                ) }, words.number(b'Q').map_or(span, |(_, span)| span)));
         };
         let pieces = self.pieces(&words, start, blocks.clone())?;
         let own: &[u8] = if cycle == TurningCycle::FinishRoutine { b"XZQDEP" } else { b"XZQDIR" };
@@ -95,17 +74,7 @@ impl Writer<'_, '_, '_> {
         let passes = passes.filter(|passes| (1..=MOST_PASSES).contains(passes));
         let (distance, depth, escape) = (length(b'D', 0.0), length(b'I', 1.0), length(b'R', 0.5));
         let Some(passes) = passes.filter(|_| distance >= 0.0 && depth > 0.0 && escape >= 0.0) else {
-            return refuse(
-                both!(
-                    "a distance, a depth or a number of passes that is none",
-                    "неверный припуск, глубина или число проходов"
-                ),
-                both!(
-                    "expected D and R from 0, I above 0, P from 1 to 1000",
-                    "ожидались D и R от 0, I больше 0, P от 1 до 1000"
-                ),
-                both!("correct these words", "исправьте эти слова"),
-            );
+            return refuse(refusal::DISTANCE_THAT_IS_NONE);
         };
         let profile = Profile::new(&pieces);
         let strokes = match cycle {
@@ -164,28 +133,19 @@ impl Writer<'_, '_, '_> {
         let (mut at, mut pieces) = (self.plane(start), Vec::new());
         for index in blocks {
             let words = self.words(index);
-            let refuse = |message: Text, label: Text| Err(words.routine_fault(words.whole(), message, label));
+            let refuse = |refusal: Refusal| Err(words.fault(refusal, words.whole()));
             words.check_routine_block()?;
             motion = words.motion().or(motion);
             let clockwise = motion == Some(Code::Clockwise);
             let arc = clockwise || motion == Some(Code::CounterClockwise);
             if !words.names_a_place() {
                 if arc && b"IK".iter().any(|letter| words.number(*letter).is_some()) {
-                    return refuse(
-                        both!("an arc without an end", "дуга без конечной точки"),
-                        both!(
-                            "the interpreter leaves it out of the contour",
-                            "интерпретатор не берёт её в контур"
-                        ),
-                    );
+                    return refuse(refusal::ARC_WITHOUT_END);
                 }
                 continue;
             }
             let [Some(x), Some(z)] = words.target(&self.here, spot.map(Some)) else {
-                return refuse(
-                    both!("where the contour leads here is not known", "неизвестно, куда здесь ведёт контур"),
-                    both!("another frame, or above 400 km", "другая система координат или больше 400 км"),
-                );
+                return refuse(refusal::LEADS_TO_UNKNOWN_PLACE);
             };
             spot = [x, z];
             let to = self.plane(spot);
@@ -193,35 +153,17 @@ impl Writer<'_, '_, '_> {
                 continue;
             }
             if motion.is_none() || (arc && pieces.is_empty()) {
-                return refuse(
-                    both!("the contour does not begin with G0 or G1", "контур не начинается с G0 или G1"),
-                    both!(
-                        "its first block leads to it from the start of the cycle",
-                        "его первый кадр ведёт к нему от начала цикла"
-                    ),
-                );
+                return refuse(refusal::BEGINS_WITHOUT_G0_OR_G1);
             }
             let says_itself = words.actions().any(|(action, _)| *action == Action::ArcCounterClockwise);
             if arc && !clockwise && !says_itself {
-                return refuse(
-                    both!("an arc without its G3", "дуга без своей G3"),
-                    both!(
-                        "in a contour the interpreter takes it for G2",
-                        "внутри контура интерпретатор принимает её за G2"
-                    ),
-                );
+                return refuse(refusal::ARC_WITHOUT_G3);
             }
             let round = if arc {
                 let radius = words.length(b'R', self.here.units);
                 let half = 0.5 * units::math::hypot(to[0] - at[0], to[1] - at[1]);
                 if radius.is_some_and(|radius| radius * radius - half * half < HALF_CIRCLE || radius < 0.0) {
-                    return refuse(
-                        both!("an arc whose R is not certain", "дуга, у которой R не даёт верного центра"),
-                        both!(
-                            "its sign is not heeded, and at half a circle and below there is no centre",
-                            "знак не учитывается, а при полуокружности и меньше центра нет"
-                        ),
-                    );
+                    return refuse(refusal::ARC_WHOSE_R_NOT_CERTAIN);
                 }
                 Some(Round { centre: self.arc(&words, at, to, clockwise)?.centre(), counter: !clockwise })
             } else {
@@ -231,10 +173,9 @@ impl Writer<'_, '_, '_> {
             at = to;
         }
         if pieces.len() < 2 {
-            return Err(cycle.routine_fault(
+            return Err(cycle.fault(
+                refusal::ENDS_WHERE_IT_BEGINS,
                 cycle.number(b'Q').map_or_else(|| cycle.whole(), |(_, span)| span),
-                both!("the contour ends where it begins", "контур кончается там, где начинается"),
-                both!("one move only leads to it", "к нему ведёт одно движение"),
             ));
         }
         Ok(pieces)
@@ -242,19 +183,6 @@ impl Writer<'_, '_, '_> {
 }
 
 impl Words<'_, '_> {
-    fn routine_fault(&self, span: Span, message: Text, label: Text) -> Fault {
-        self.fault(
-            codes::CONTOUR,
-            span,
-            message,
-            label,
-            both!(
-                "correct the subroutine of the contour, or let the CAM write the moves",
-                "исправьте подпрограмму контура или выводите движения из CAM"
-            ),
-        )
-    }
-
     /// Refuses what the interpreter reads in a contour and does not do.
     fn check_routine_block(&self) -> Result<(), Fault> {
         for item in &self.block.items {
@@ -273,14 +201,7 @@ impl Words<'_, '_> {
             };
             if !fits {
                 let text = String::from_utf8_lossy(self.block.text(item.span)).into_owned();
-                return Err(self.routine_fault(
-                    item.span,
-                    both!("{text} within a contour", "{text} внутри контура"),
-                    both!(
-                        "the interpreter reads the contour and executes none of its codes but G0 to G3",
-                        "интерпретатор читает контур и из его функций исполняет только G0–G3"
-                    ),
-                ));
+                return Err(self.fault(refusal::within_contour(text), item.span));
             }
         }
         Ok(())
@@ -345,6 +266,6 @@ impl Misfit {
                 ),
             ),
         };
-        words.routine_fault(span, message, label)
+        words.fault(refusal::routine(message, label), span)
     }
 }

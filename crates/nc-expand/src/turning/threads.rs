@@ -13,7 +13,7 @@
 //! its depth times the tangent of half the angle. From where that counts the manual shows in a figure and says in no
 //! sentence; the profile has to say it ([`FlankFrom`]).
 
-use diagnostic::{Text, both};
+use diagnostic::{Refusal, Text, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::FlankFrom;
 use units::math;
@@ -21,6 +21,7 @@ use units::math;
 use super::emit::Code;
 use super::{Spot, Writer};
 use crate::lowering::Fault;
+use crate::refusals::threads as refusal;
 use crate::shorthand::Words;
 
 /// Passes of one thread; more are a wrong infeed.
@@ -44,35 +45,17 @@ impl Writer<'_, '_, '_> {
             return self.set_thread(at, span);
         }
         let start = self.standing(&words, span)?;
-        let refuse =
-            |message: Text, label: Text, help: Text| Err(words.cycle_fault(span, message, label, help));
+        let refuse = |refusal: Refusal| Err(words.fault(refusal, span));
         let in_one_block = words.number(b'K').is_some();
         let settings = if in_one_block {
             self.settings_of_control(&words, span)?
         } else if let Some(settings) = self.first_blocks.thread {
             settings
         } else {
-            return refuse(
-                both!(
-                    "a thread of several passes without its first block",
-                    "многопроходная резьба без первого кадра"
-                ),
-                both!(
-                    "finishing passes, chamfer, angle and infeeds are parameters of the control then",
-                    "чистовые проходы, сбег, угол и врезания — тогда параметры стойки"
-                ),
-                both!(
-                    "write the first block, as in `G76 P020000 Q100 R0.05`",
-                    "напишите первый кадр, например `G76 P020000 Q100 R0.05`"
-                ),
-            );
+            return refuse(refusal::WITHOUT_FIRST_BLOCK);
         };
         let [Some(x), Some(z)] = self.target(&words) else {
-            return refuse(
-                both!("where the thread ends is not known", "неизвестно, где кончается резьба"),
-                both!("X and Z were expected", "ожидались X и Z"),
-                both!("write X and Z", "напишите X и Z"),
-            );
+            return refuse(refusal::END_NOT_KNOWN);
         };
         let (height, first) = if in_one_block {
             (self.length(&words, b'K'), words.depth(&self.here, b'D'))
@@ -80,56 +63,22 @@ impl Writer<'_, '_, '_> {
             (words.depth(&self.here, b'P'), words.depth(&self.here, b'Q'))
         };
         let (Some(height), Some(first)) = (height.filter(|h| *h > 0), first.filter(|q| *q > 0)) else {
-            return refuse(
-                both!(
-                    "a thread without its height or its first infeed",
-                    "резьба без высоты или без первого врезания"
-                ),
-                if in_one_block {
-                    both!("K and D above zero were expected", "ожидались K и D больше нуля")
-                } else {
-                    both!("P and Q above zero were expected", "ожидались P и Q больше нуля")
-                },
-                both!(
-                    "write the height of the thread and the first infeed, both of the radius",
-                    "напишите высоту резьбы и первое врезание, оба по радиусу"
-                ),
-            );
+            let letters = if in_one_block { ['K', 'D'] } else { ['P', 'Q'] };
+            return refuse(refusal::thread_without_height(letters));
         };
         if words.number(b'F').is_none() {
-            return refuse(
-                both!("a thread without its lead", "резьба без хода"),
-                both!("F was expected", "ожидалось F"),
-                both!("write F, the lead, in this block", "напишите F — ход резьбы — в этом кадре"),
-            );
+            return refuse(refusal::THREAD_WITHOUT_LEAD);
         }
         let taper = self.length(&words, if in_one_block { b'I' } else { b'R' }).unwrap_or_default();
         let twice = self.twice();
         // Outside threads start above their root.
         let outwards = (start[0] - (x + twice * taper)).signum();
         if outwards == 0 || (start[0] - x) * outwards < twice * height || start[1] == z {
-            return refuse(
-                both!(
-                    "a thread that starts within its own height",
-                    "резьба начинается внутри собственной высоты"
-                ),
-                both!(
-                    "between start and root there is less than the height",
-                    "между началом и впадиной меньше, чем высота"
-                ),
-                both!(
-                    "start it further out, or correct X, Z, R and P",
-                    "начните дальше от детали или исправьте X, Z, R и P"
-                ),
-            );
+            return refuse(refusal::STARTS_WITHIN_ITS_HEIGHT);
         }
         let depths = depths(height, first, &settings);
         let Some(depths) = depths else {
-            return refuse(
-                both!("more than 1000 passes", "больше 1000 проходов"),
-                both!("the infeeds are too small", "врезания слишком малы"),
-                both!("correct Q of both blocks", "исправьте Q обоих кадров"),
-            );
+            return refuse(refusal::TOO_MANY_INFEEDS);
         };
         let flank = self.flank(&words, span, &settings, &depths)?;
         let own: &[u8] = if in_one_block { b"XZUWIKDA" } else { b"XZUWPQR" };
@@ -212,12 +161,7 @@ impl Writer<'_, '_, '_> {
         )?;
         let tip_deg = words.number(b'A').map_or(0.0, |(number, _)| number.to_f64());
         if !(0.0..=120.0).contains(&tip_deg) {
-            return Err(words.cycle_fault(
-                span,
-                both!("a tip of {tip_deg} degrees", "угол вершины {tip_deg} градусов"),
-                both!("0 to 120 were expected", "ожидалось от 0 до 120"),
-                both!("correct A", "исправьте A"),
-            ));
+            return Err(words.fault(refusal::tip_angle(tip_deg), span));
         }
         Ok(Settings {
             finishing_passes: passes as i64,
@@ -237,18 +181,7 @@ impl Writer<'_, '_, '_> {
         let (Some(digits), Some(least), Some(allowance)) =
             (digits.filter(|p| (0..1_000_000).contains(p)), least, allowance)
         else {
-            return Err(words.cycle_fault(
-                span,
-                both!("the first block of a thread without P, Q or R", "первый кадр резьбы без P, Q или R"),
-                both!(
-                    "what it leaves out parameters of the control say",
-                    "опущенное задают параметры стойки"
-                ),
-                both!(
-                    "write all of them, as in `G76 P020000 Q100 R0.05`",
-                    "напишите их все, например `G76 P020000 Q100 R0.05`"
-                ),
-            ));
+            return Err(words.fault(refusal::FIRST_BLOCK_WITHOUT_SETTINGS, span));
         };
         let moves = self.begin(&words, [0; 2], b"PQR")?;
         self.end(moves);

@@ -172,7 +172,7 @@ pub(crate) const POINTS_ON_ONE_LINE: Refusal = Refusal {
     help: Text::pair("write three points that span the plane", "напишите три точки не на одной прямой"),
 };
 
-pub(crate) fn vectors_not_square(to_degrees: f64) -> Refusal {
+pub(crate) fn vectors_not_square(angle_deg: f64) -> Refusal {
     Refusal {
         code: codes::TILTED_PLANE,
         message: both!(
@@ -180,8 +180,8 @@ pub(crate) fn vectors_not_square(to_degrees: f64) -> Refusal {
             "два вектора наклонной плоскости не под прямым углом"
         ),
         label: both!(
-            "by {to_degrees:.4} degrees: which of the two stays is not certain",
-            "на {to_degrees:.4} градуса: какой из двух остаётся, неясно"
+            "by {angle_deg:.4} degrees: which of the two stays is not certain",
+            "на {angle_deg:.4} градуса: какой из двух остаётся, неясно"
         ),
         help: both!(
             "write the vectors with more decimals, or the plane by angles or points",
