@@ -5,9 +5,8 @@ use std::ops::Range;
 
 use diagnostic::{Code, Diagnostic, Text, both};
 use nc_syntax::dialect::{
-    Action, CodeEntry, Colon, Command, CycleBack, CycleLevels, Flow, FrameRules, GCode, LatheSign,
-    LengthAfter, LengthAtChange, MCode, Macros, Numbers, OffsetL20, Output, Paren, PointFree, RefusedWord,
-    RotaryFeed, Semicolon, System, TWord, Turning, TurningParameters, WrittenCycles,
+    Action, CodeEntry, Command, Flow, FrameRules, GCode, LatheSign, LengthAfter, MCode, Numbers, Output,
+    Paren, RefusedWord, System, Turning, TurningParameters, WrittenCycles,
 };
 use nc_syntax::path_control::{Keeps, PathCode, PathKey};
 use nc_syntax::{Dialect, Letters};
@@ -18,9 +17,9 @@ use crate::checks::{self, wide};
 use crate::inherited;
 use crate::russian;
 use crate::table::{
-    self, Alone, AtChange, BackRule, CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, LeadName,
-    Levels, MRow, MacroLanguage, PercentRule, RotaryFeedName, RoundBrackets, SemicolonRule, StartUnit,
-    TurningRules, UnderG40, UnderG49, WithoutH, WithoutPoint, ZeroRepeats,
+    Alone, CodeRow, CommandRow, FlowRules, Frames, Grammar, LatheRow, LeadName, MRow, OutputRules,
+    PercentRule, RoundBrackets, StartUnit, TurningRules, UnderG40, UnderG49, WithoutH, WordRow, WrittenOut,
+    ZeroRepeats,
 };
 
 /// Reads a grammar.
@@ -201,11 +200,10 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
     let Rows { words, dwell_time, codes, m_codes, commands, path_control, lathe, turning } = rows;
     let mut letters = text.letters.into_inner().into_bytes();
     letters.sort_unstable();
-    let called = commands.iter().any(|command| matches!(command.action, Some(Action::Called(_))));
     let mut long_words: Vec<(String, u8)> =
         text.long_words.into_iter().map(|(name, letter)| (name, letter.into_inner() as u8)).collect();
     long_words.sort();
-    let polar_words = codes.iter().any(|entry| entry.action == Action::PolarOn);
+    let peck_mm = [cycles.peck_clearance_mm, cycles.chip_retreat_mm].map(Spanned::into_inner);
     Dialect {
         name: name.to_owned(),
         title,
@@ -217,18 +215,11 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             RoundBrackets::NestedComment => Paren::Comment { nested: true },
             RoundBrackets::Command => Paren::Command,
         },
-        semicolon: match text.semicolon {
-            SemicolonRule::None => Semicolon::None,
-            SemicolonRule::Comment => Semicolon::Comment,
-        },
+        semicolon: text.semicolon,
         end_of_block: text.end_of_block.and_then(byte),
         percent_words: text.percent == PercentRule::NameAndWords,
         skip: text.block_delete.and_then(byte),
-        colon: match text.colon {
-            ColonRule::None => Colon::None,
-            ColonRule::Number => Colon::Number,
-            ColonRule::Comment => Colon::Comment,
-        },
+        colon: text.colon,
         long_words,
         labels: text.labels,
         equals_words: text.equals_words,
@@ -236,51 +227,21 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
         refused_words: words,
         dwell_time,
         numbers: Numbers {
-            point_free: match numbers.without_point {
-                WithoutPoint::Unit => PointFree::Unit,
-                WithoutPoint::LeastIncrement => PointFree::LeastIncrement,
-            },
+            point_free: numbers.without_point,
             least_increment_decimals_mm: numbers.least_increment_decimals_mm.into_inner(),
             least_increment_decimals_inch: numbers.least_increment_decimals_inch.into_inner(),
             spaces_inside: numbers.spaces_inside,
         },
-        codes: codes.into(),
-        m_codes,
-        commands,
         initial,
         path_control,
         unit_is_kept: start.unit == StartUnit::Kept,
         lathe,
         turning,
-        flow: Flow {
-            macros: match flow.macros {
-                MacroLanguage::None => Macros::None,
-                MacroLanguage::Fanuc => Macros::Fanuc,
-                MacroLanguage::Linuxcnc => Macros::LinuxCnc,
-                MacroLanguage::Siemens => Macros::Siemens,
-                MacroLanguage::Okuma => Macros::Okuma,
-            },
-            packed_repeats: flow.packed_repeats,
-            full_circle_atan: flow.full_circle_atan,
-            corner_words: flow.corner_words,
-            local_calls: flow.local_calls,
-            one_value_atan: flow.one_value_atan,
-            written_cycles: cycles.written_out.map(|rule| WrittenCycles {
-                levels: [rule.level, rule.bottom].map(|letter| letter.into_inner() as u8),
-                back: match rule.back {
-                    BackRule::ByM => CycleBack::ByM,
-                    BackRule::ByG => CycleBack::ByG,
-                },
-            }),
-            control_programs: flow.control_programs,
-            polar_words,
-            called,
-        },
-        cycle_levels: match cycles.levels {
-            Levels::Held => CycleLevels::Held,
-            Levels::Reread => CycleLevels::Reread,
-            Levels::Unstated => CycleLevels::Unstated,
-        },
+        flow: flow_rules(&flow, cycles.written_out, &codes, &commands),
+        codes: codes.into(),
+        m_codes,
+        commands,
+        cycle_levels: cycles.levels,
         cycle_repeats: cycles.repeats.into_bytes(),
         zero_repeats_define: cycles.zero_repeats == ZeroRepeats::Define,
         bottom_lies_below_r: cycles.bottom_lies_below_r,
@@ -295,51 +256,68 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             UnderG49::Unstated => LengthAfter::Unstated,
         },
         length_shifts: tool_length.alone == Alone::Shifts,
-        t_word: match tool_length.t_word {
-            table::TWord::Selects => TWord::Selects,
-            table::TWord::MayChange => TWord::MayChange,
-            table::TWord::Changes => TWord::Changes,
-        },
-        length_at_change: match tool_length.at_change {
-            AtChange::Stays => LengthAtChange::Stays,
-            AtChange::LoadedTool => LengthAtChange::LoadedTool,
-            AtChange::Unsaid => LengthAtChange::Unsaid,
-        },
+        t_word: tool_length.t_word,
+        length_at_change: tool_length.at_change,
         writes_lengths: tool_length.writes_lengths,
         edge_in_d: tool_length.edge_in_d,
         calls: Vec::new(),
-        frames: FrameRules {
-            p_selects_numbered: frames.p_selects_numbered,
-            l20: match frames.l20 {
-                L20::NumberedOffset => OffsetL20::Numbered,
-                L20::Position => OffsetL20::Position,
-            },
-            local_is_preset: frames.local_is_preset,
-            scaling_step: frames.scaling_step.into_inner(),
-            arc_turns: frames.arc_turns,
-            rotation_about_tool: frames.rotation_about_tool,
-            machine_words_stand_alone: frames.machine_words_stand_alone,
-            increments_carry_shift: frames.increments_carry_shift,
-        },
-        output: Output {
-            decimals_inch: output.decimals_inch.into_inner(),
-            decimals_feed: output.decimals_feed.into_inner(),
-            max_block_bytes: output.max_block_bytes,
-            number_inserted_blocks: output.number_inserted_blocks,
-            max_block_number: output.max_block_number.into_inner(),
-            centre_words: output.centre_words,
-            radius_word: output.radius_word,
-            arc_radius_tolerance_mm: output.arc_radius_tolerance_mm.into_inner(),
-            arc_radius_tolerance_inch: output.arc_radius_tolerance_inch.map(Spanned::into_inner),
-            arc_radius_tolerance_share: output.arc_radius_tolerance_share.map_or(0.0, Spanned::into_inner),
-            rotary_feed: output.rotary_feed.map(|counts| match counts {
-                RotaryFeedName::LinearAxes => RotaryFeed::LinearAxes,
-                RotaryFeedName::AllAxes => RotaryFeed::AllAxes,
-            }),
-            largest_inverse_feed: output.largest_inverse_feed.map_or(FIVE_DIGITS, Spanned::into_inner),
-            peck_clearance_mm: cycles.peck_clearance_mm.into_inner(),
-            chip_retreat_mm: cycles.chip_retreat_mm.into_inner(),
-        },
+        frames: frame_rules(frames),
+        output: output_rules(output, peck_mm),
+    }
+}
+
+fn flow_rules(
+    flow: &FlowRules,
+    written_out: Option<WrittenOut>,
+    codes: &[CodeEntry],
+    commands: &[Command],
+) -> Flow {
+    Flow {
+        macros: flow.macros,
+        packed_repeats: flow.packed_repeats,
+        full_circle_atan: flow.full_circle_atan,
+        corner_words: flow.corner_words,
+        local_calls: flow.local_calls,
+        one_value_atan: flow.one_value_atan,
+        written_cycles: written_out.map(|rule| WrittenCycles {
+            levels: [rule.level, rule.bottom].map(|letter| letter.into_inner() as u8),
+            back: rule.back,
+        }),
+        control_programs: flow.control_programs,
+        polar_words: codes.iter().any(|entry| entry.action == Action::PolarOn),
+        called: commands.iter().any(|command| matches!(command.action, Some(Action::Called(_)))),
+    }
+}
+
+fn frame_rules(frames: Frames) -> FrameRules {
+    FrameRules {
+        p_selects_numbered: frames.p_selects_numbered,
+        l20: frames.l20,
+        local_is_preset: frames.local_is_preset,
+        scaling_step: frames.scaling_step.into_inner(),
+        arc_turns: frames.arc_turns,
+        rotation_about_tool: frames.rotation_about_tool,
+        machine_words_stand_alone: frames.machine_words_stand_alone,
+        increments_carry_shift: frames.increments_carry_shift,
+    }
+}
+
+fn output_rules(output: OutputRules, [peck_clearance_mm, chip_retreat_mm]: [f64; 2]) -> Output {
+    Output {
+        decimals_inch: output.decimals_inch.into_inner(),
+        decimals_feed: output.decimals_feed.into_inner(),
+        max_block_bytes: output.max_block_bytes,
+        number_inserted_blocks: output.number_inserted_blocks,
+        max_block_number: output.max_block_number.into_inner(),
+        centre_words: output.centre_words,
+        radius_word: output.radius_word,
+        arc_radius_tolerance_mm: output.arc_radius_tolerance_mm.into_inner(),
+        arc_radius_tolerance_inch: output.arc_radius_tolerance_inch.map(Spanned::into_inner),
+        arc_radius_tolerance_share: output.arc_radius_tolerance_share.map_or(0.0, Spanned::into_inner),
+        rotary_feed: output.rotary_feed,
+        largest_inverse_feed: output.largest_inverse_feed.map_or(FIVE_DIGITS, Spanned::into_inner),
+        peck_clearance_mm,
+        chip_retreat_mm,
     }
 }
 
@@ -350,10 +328,10 @@ fn byte(mark: Spanned<char>) -> Option<u8> {
 
 /// The letters whose words are refused.
 fn refused_words(
-    table: &BTreeMap<Spanned<String>, table::WordRow>,
+    table: &BTreeMap<Spanned<String>, WordRow>,
     wrong: &mut Vec<Diagnostic>,
 ) -> Vec<RefusedWord> {
-    let row = |(key, row): (&Spanned<String>, &table::WordRow)| match key.get_ref().as_bytes() {
+    let row = |(key, row): (&Spanned<String>, &WordRow)| match key.get_ref().as_bytes() {
         [letter @ b'A'..=b'Z'] => Some(RefusedWord {
             letter: *letter,
             reason: russian::text(&row.refuse),

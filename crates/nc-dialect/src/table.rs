@@ -2,6 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use nc_syntax::dialect::{
+    Colon, CycleBack, CycleLevels, LengthAtChange, Macros, OffsetL20, PointFree, RotaryFeed, Semicolon, TWord,
+};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -44,13 +47,13 @@ pub(crate) struct Grammar {
 #[serde(deny_unknown_fields)]
 pub(crate) struct Text {
     pub(crate) round_brackets: RoundBrackets,
-    pub(crate) semicolon: SemicolonRule,
+    pub(crate) semicolon: Semicolon,
     pub(crate) end_of_block: Option<Spanned<char>>,
     pub(crate) block_delete: Option<Spanned<char>>,
     #[serde(default)]
     pub(crate) percent: PercentRule,
     #[serde(default)]
-    pub(crate) colon: ColonRule,
+    pub(crate) colon: Colon,
     #[serde(default)]
     pub(crate) equals_words: bool,
     #[serde(default)]
@@ -70,13 +73,6 @@ pub(crate) enum RoundBrackets {
     Command,
 }
 
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum SemicolonRule {
-    None,
-    Comment,
-}
-
 /// What stands behind `%`.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -86,27 +82,11 @@ pub(crate) enum PercentRule {
     NameAndWords,
 }
 
-#[derive(Clone, Copy, Default, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum ColonRule {
-    #[default]
-    None,
-    Number,
-    Comment,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum WithoutPoint {
-    Unit,
-    LeastIncrement,
-}
-
 /// How numbers are written and read.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct NumberRules {
-    pub(crate) without_point: WithoutPoint,
+    pub(crate) without_point: PointFree,
     pub(crate) least_increment_decimals_mm: Spanned<u8>,
     pub(crate) least_increment_decimals_inch: Spanned<u8>,
     #[serde(default)]
@@ -190,7 +170,7 @@ pub(crate) struct LatheRow {
 #[serde(deny_unknown_fields)]
 pub(crate) struct FlowRules {
     #[serde(default)]
-    pub(crate) macros: MacroLanguage,
+    pub(crate) macros: Macros,
     #[serde(default)]
     pub(crate) packed_repeats: bool,
     #[serde(default)]
@@ -207,22 +187,11 @@ pub(crate) struct FlowRules {
     pub(crate) control_programs: Option<(u32, u32)>,
 }
 
-#[derive(Clone, Copy, Default, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum MacroLanguage {
-    #[default]
-    None,
-    Fanuc,
-    Linuxcnc,
-    Siemens,
-    Okuma,
-}
-
 /// Drilling cycles.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Cycles {
-    pub(crate) levels: Levels,
+    pub(crate) levels: CycleLevels,
     /// Letters that count the holes of a block.
     #[serde(default)]
     pub(crate) repeats: String,
@@ -242,14 +211,7 @@ pub(crate) struct Cycles {
 pub(crate) struct WrittenOut {
     pub(crate) level: Spanned<char>,
     pub(crate) bottom: Spanned<char>,
-    pub(crate) back: BackRule,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum BackRule {
-    ByM,
-    ByG,
+    pub(crate) back: CycleBack,
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
@@ -258,14 +220,6 @@ pub(crate) enum ZeroRepeats {
     #[default]
     Refused,
     Define,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Levels {
-    Held,
-    Reread,
-    Unstated,
 }
 
 /// G43.
@@ -282,7 +236,7 @@ pub(crate) struct ToolLength {
     #[serde(default)]
     pub(crate) t_word: TWord,
     #[serde(default)]
-    pub(crate) at_change: AtChange,
+    pub(crate) at_change: LengthAtChange,
     #[serde(default)]
     pub(crate) writes_lengths: bool,
     #[serde(default)]
@@ -316,29 +270,6 @@ pub(crate) enum Alone {
     Unstated,
 }
 
-#[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum TWord {
-    /// M6 brings in what T selects.
-    #[default]
-    Selects,
-    /// T may bring it in at once.
-    MayChange,
-    /// T brings it in.
-    Changes,
-}
-
-/// The tool length behind a tool change.
-#[derive(Clone, Copy, Default, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum AtChange {
-    /// The one before.
-    #[default]
-    Stays,
-    LoadedTool,
-    Unsaid,
-}
-
 #[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum WithoutH {
@@ -351,7 +282,7 @@ pub(crate) enum WithoutH {
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct Frames {
     pub(crate) p_selects_numbered: bool,
-    pub(crate) l20: L20,
+    pub(crate) l20: OffsetL20,
     pub(crate) local_is_preset: bool,
     pub(crate) scaling_step: Spanned<f64>,
     pub(crate) arc_turns: bool,
@@ -364,7 +295,7 @@ impl Default for Frames {
     fn default() -> Self {
         Self {
             p_selects_numbered: false,
-            l20: L20::NumberedOffset,
+            l20: OffsetL20::Numbered,
             local_is_preset: false,
             scaling_step: Spanned::new(0..0, 0.001),
             arc_turns: false,
@@ -373,13 +304,6 @@ impl Default for Frames {
             increments_carry_shift: false,
         }
     }
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum L20 {
-    NumberedOffset,
-    Position,
 }
 
 /// What the control takes back.
@@ -396,15 +320,8 @@ pub(crate) struct OutputRules {
     pub(crate) arc_radius_tolerance_mm: Spanned<f64>,
     pub(crate) arc_radius_tolerance_inch: Option<Spanned<f64>>,
     pub(crate) arc_radius_tolerance_share: Option<Spanned<f64>>,
-    pub(crate) rotary_feed: Option<RotaryFeedName>,
+    pub(crate) rotary_feed: Option<RotaryFeed>,
     pub(crate) largest_inverse_feed: Option<Spanned<f64>>,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum RotaryFeedName {
-    LinearAxes,
-    AllAxes,
 }
 
 /// One G code: `does`, or `refuse` with `help`.

@@ -8,6 +8,7 @@ use diagnostic::{Refusal, Text, both, of_system};
 use nc_syntax::dialect::{Macros, PointFree};
 
 use crate::codes;
+use crate::expression::Expression;
 use crate::faults::{self, Stop, say, whole};
 use crate::flow::variables;
 use crate::jump::CallKind;
@@ -353,36 +354,7 @@ impl<'a> Run<'a, '_> {
     ) -> Result<(), Stop> {
         match &o.word {
             OWord::Sub => self.at.statement = o.next + 1,
-            OWord::EndSub(value) | OWord::Return(value) => {
-                let value = match value {
-                    Some(value) => Some(self.evaluate(value)?),
-                    None => None,
-                };
-                let running = self.frames.last().map(|frame| frame.kind);
-                if let Some(CallKind::Routine(_)) = running {
-                    if matches!(o.word, OWord::Return(_)) {
-                        return Err(within_routine());
-                    }
-                    self.leave(true);
-                    return Ok(());
-                }
-                if !matches!(running, Some(CallKind::Name(_))) {
-                    return Err(faults::no_call(&both!(
-                        "`return` outside a subroutine",
-                        "`return` вне подпрограммы"
-                    )));
-                }
-                self.leave(true);
-                let returned = value.is_some();
-                for (name, value) in [
-                    (&b"_value"[..], value.unwrap_or(Value::Number(0.0))),
-                    (b"_value_returned", Value::Number(f64::from(u8::from(returned)))),
-                ] {
-                    let id = self.names.id(name);
-                    self.store.learn(&self.names);
-                    self.store.set_named(id, value);
-                }
-            }
+            OWord::EndSub(value) | OWord::Return(value) => self.end_subroutine(o, value.as_ref())?,
             OWord::Call(_) if self.in_routine() => return Err(within_routine()),
             OWord::Call(arguments) => {
                 let mut values = Vec::with_capacity(arguments.len());
@@ -443,6 +415,32 @@ impl<'a> Run<'a, '_> {
                 self.repeats.retain(|(open, _)| *open < head || (stays && *open == head));
                 self.at.statement = if stays { o.end } else { o.end + 1 };
             }
+        }
+        Ok(())
+    }
+
+    /// `endsub` and `return`, with the value that they hand back.
+    fn end_subroutine(&mut self, o: &OStatement, value: Option<&Expression>) -> Result<(), Stop> {
+        let value = value.map(|value| self.evaluate(value)).transpose()?;
+        match self.frames.last().map(|frame| frame.kind) {
+            Some(CallKind::Routine(_)) if matches!(o.word, OWord::Return(_)) => return Err(within_routine()),
+            Some(CallKind::Routine(_)) => {
+                self.leave(true);
+                return Ok(());
+            }
+            Some(CallKind::Name(_)) => {}
+            _ => {
+                let what = both!("`return` outside a subroutine", "`return` вне подпрограммы");
+                return Err(faults::no_call(&what));
+            }
+        }
+        self.leave(true);
+        let returned = Value::Number(f64::from(u8::from(value.is_some())));
+        let value = value.unwrap_or(Value::Number(0.0));
+        for (name, value) in [(&b"_value"[..], value), (b"_value_returned", returned)] {
+            let id = self.names.id(name);
+            self.store.learn(&self.names);
+            self.store.set_named(id, value);
         }
         Ok(())
     }

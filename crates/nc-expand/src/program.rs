@@ -9,6 +9,7 @@ use nc_syntax::{Block, ItemKind, Reader};
 
 use crate::codes;
 use crate::o_word::{Label, OStatement, OWord};
+use crate::refusals::calls as refusal;
 use crate::statement::{Compiler, Control, Direction, Flags, Kind, Statement};
 use crate::value::{NameId, Names, Program};
 
@@ -62,23 +63,8 @@ impl<'a> Source<'a> {
                 let at = u32::try_from(statements.len()).unwrap_or(u32::MAX);
                 let (mut kind, mut flags) = compiler.kind(&block);
                 if aborts(&block, dialect) {
-                    kind = Kind::Broken(Box::new(
-                        Diagnostic::error(
-                            codes::ALARM,
-                            both!("the program stops itself here", "программа здесь сама останавливается"),
-                        )
-                        .at(
-                            block.file_span(crate::statement::whole(&block)),
-                            both!(
-                                "reached with the values given",
-                                "при заданных значениях исполнение доходит сюда"
-                            ),
-                        )
-                        .help(both!(
-                            "give other values with `--set`, or remove the line",
-                            "задайте ключом `--set` другие значения или уберите строку"
-                        )),
-                    ));
+                    let span = block.file_span(crate::statement::whole(&block));
+                    kind = Kind::Broken(Box::new(refusal::ABORT.at(span)));
                 }
                 let starts = match &kind {
                     Kind::Program(program) => Some(*program),
@@ -325,32 +311,34 @@ impl<'a> Source<'a> {
                 };
                 around.parts.push(index);
             }
-            OWord::While(_) | OWord::EndSub(_) | OWord::EndIf | OWord::EndWhile | OWord::EndRepeat => {
-                let kind = match o.word {
-                    OWord::While(_) => Construct::Do,
-                    OWord::EndSub(_) => Construct::Sub,
-                    OWord::EndIf => Construct::If,
-                    OWord::EndWhile => Construct::While,
-                    _ => Construct::Repeat,
-                };
-                if !matches(open, kind) {
-                    return Err(self.unmatched(
-                        index,
-                        both!("this closes nothing that is open here", "здесь нечего закрывать"),
-                    ));
-                }
-                if let Some(top) = open.pop() {
-                    self.set(top.last, |o| o.next = index);
-                    for part in top.parts.iter().chain([&top.head]) {
-                        self.set(*part, |o| o.end = index);
-                    }
-                    self.set(index, |o| {
-                        o.next = top.head;
-                        o.foot = kind == Construct::Do;
-                    });
-                }
-            }
+            OWord::EndSub(_) => self.close(index, (label, Construct::Sub), open)?,
+            OWord::EndIf => self.close(index, (label, Construct::If), open)?,
+            OWord::EndWhile => self.close(index, (label, Construct::While), open)?,
+            OWord::EndRepeat => self.close(index, (label, Construct::Repeat), open)?,
+            OWord::While(_) => self.close(index, (label, Construct::Do), open)?,
         }
+        Ok(())
+    }
+
+    /// The end of what is open, of a label and a kind.
+    fn close(
+        &mut self,
+        index: u32,
+        (label, kind): (NameId, Construct),
+        open: &mut Vec<Open>,
+    ) -> Result<(), Box<Diagnostic>> {
+        let Some(top) = open.pop_if(|top| top.label == label && top.kind == kind) else {
+            let why = both!("this closes nothing that is open here", "здесь нечего закрывать");
+            return Err(self.unmatched(index, why));
+        };
+        self.set(top.last, |o| o.next = index);
+        for part in top.parts.iter().chain([&top.head]) {
+            self.set(*part, |o| o.end = index);
+        }
+        self.set(index, |o| {
+            o.next = top.head;
+            o.foot = kind == Construct::Do;
+        });
         Ok(())
     }
 

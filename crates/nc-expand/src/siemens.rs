@@ -182,30 +182,9 @@ pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, Text> {
             let goes_on = Expression::Binary(Operator::Equal, condition, Box::new(Expression::Number(0.0)));
             o_word(parser, b"repeat", OWord::While(goes_on))
         }
-        b"FOR" => {
-            let variable = target(parser)?;
-            let from = parser.expression()?;
-            if !parser.word(b"TO") {
-                return Err(both!("TO was expected", "ожидалось TO"));
-            }
-            let to = parser.expression()?;
-            Said::Control(Control::For { variable, from, to, end: 0 })
-        }
+        b"FOR" => for_loop(parser)?,
         b"RET" => Said::Control(Control::Return { to: None }),
-        // What is behind it says how the control shows the program, or keeps its caller's state.
-        b"PROC" => {
-            keyword(parser);
-            while parser.peek().is_some() {
-                let word = keyword(parser);
-                if !matches!(&word[..], b"ACTBLOCNO" | b"DISPLOF" | b"SBLOF") {
-                    return Err(both!(
-                        "PROC with arguments, SAVE or what else is not known",
-                        "PROC с аргументами, SAVE или чем-то неизвестным"
-                    ));
-                }
-            }
-            Said::Assignments(Vec::new())
-        }
+        b"PROC" => header(parser)?,
         word if is_numbered_call(word) => {
             let program = Some(parser.names.id(word));
             let repeats = if parser.take(b'P') { Some(parser.operand()?) } else { None };
@@ -233,6 +212,30 @@ pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, Text> {
     };
     parser.end()?;
     Ok(said)
+}
+
+fn for_loop(parser: &mut Parser<'_, '_>) -> Result<Said, Text> {
+    let variable = target(parser)?;
+    let from = parser.expression()?;
+    if !parser.word(b"TO") {
+        return Err(both!("TO was expected", "ожидалось TO"));
+    }
+    let to = parser.expression()?;
+    Ok(Said::Control(Control::For { variable, from, to, end: 0 }))
+}
+
+/// PROC: what is behind it says how the control shows the program, or keeps its caller's state.
+fn header(parser: &mut Parser<'_, '_>) -> Result<Said, Text> {
+    keyword(parser);
+    while parser.peek().is_some() {
+        if !matches!(&keyword(parser)[..], b"ACTBLOCNO" | b"DISPLOF" | b"SBLOF") {
+            return Err(both!(
+                "PROC with arguments, SAVE or what else is not known",
+                "PROC с аргументами, SAVE или чем-то неизвестным"
+            ));
+        }
+    }
+    Ok(Said::Assignments(Vec::new()))
 }
 
 fn o_word(parser: &mut Parser<'_, '_>, kind: &[u8], word: OWord) -> Said {

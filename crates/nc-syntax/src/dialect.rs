@@ -3,6 +3,7 @@
 use std::ops::Deref;
 
 use diagnostic::Text;
+use serde::Deserialize;
 use units::decimal::Decimal;
 
 pub use crate::code::{GCode, MOTION_GROUP};
@@ -51,7 +52,8 @@ pub enum Paren {
 /// assert_eq!(read("X1.;Y2.\n", "fanuc").bytes, b"X1.;");
 /// assert_eq!(read("X1.;Y2.\n", "linuxcnc").bytes, b"X1.;Y2.\n");
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Semicolon {
     /// Not part of the dialect.
     None,
@@ -74,9 +76,11 @@ pub enum Semicolon {
 /// assert!(matches!(kind("fanuc"), ItemKind::Word { letter: b'O', .. }));
 /// assert_eq!(kind("centroid"), ItemKind::Comment);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Colon {
     /// Not part of the dialect.
+    #[default]
     None,
     /// `:1234` is a program number or main block.
     Number,
@@ -92,7 +96,8 @@ pub enum Colon {
 /// let meaning = |dialect| nc_dialect::builtin(dialect).unwrap().numbers.point_free;
 /// assert_eq!((meaning("fanuc"), meaning("linuxcnc")), (PointFree::LeastIncrement, PointFree::Unit));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum PointFree {
     /// `X100` is 100 mm (calculator type, LinuxCNC).
     Unit,
@@ -564,7 +569,8 @@ pub enum Pockets {
 /// assert_eq!((levels("fanuc"), levels("linuxcnc")), (CycleLevels::Held, CycleLevels::Reread));
 /// assert_eq!(levels("perspektiva"), CycleLevels::Unstated);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum CycleLevels {
     /// They were turned into levels where they were written, and the levels hold (Fanuc).
     Held,
@@ -601,9 +607,11 @@ pub enum LengthAfter {
 /// let l20 = |dialect| nc_dialect::builtin(dialect).unwrap().frames.l20;
 /// assert_eq!((l20("fanuc"), l20("linuxcnc")), (OffsetL20::Numbered, OffsetL20::Position));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum OffsetL20 {
     /// The numbered work offset G54.1 Pn (Fanuc).
+    #[serde(rename = "numbered-offset")]
     Numbered,
     /// Work offset n, so that the axes stand at the words (LinuxCNC).
     Position,
@@ -888,7 +896,8 @@ pub struct Output {
 /// assert_eq!(counts("linuxcnc"), Some(RotaryFeed::LinearAxes));
 /// assert_eq!(counts("perspektiva"), None);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum RotaryFeed {
     /// The way of X, Y, Z alone; degrees where none of them moves.
     LinearAxes,
@@ -904,7 +913,8 @@ pub enum RotaryFeed {
 /// let macros = |dialect| nc_dialect::builtin(dialect).unwrap().flow.macros;
 /// assert_eq!((macros("fanuc"), macros("centroid")), (Macros::Fanuc, Macros::None));
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Macros {
     /// None that is known: a program that uses one is refused.
     #[default]
@@ -912,6 +922,7 @@ pub enum Macros {
     /// Fanuc's custom macro B: `#1`, `IF … GOTO`, `WHILE … DO1`, G65; M98 and M99.
     Fanuc,
     /// LinuxCNC's parameters and O-words; M98 and M99.
+    #[serde(rename = "linuxcnc")]
     LinuxCnc,
     /// Siemens' R parameters, variables of DEF, IF and loops, jumps to labels.
     Siemens,
@@ -944,7 +955,8 @@ pub struct WrittenCycles {
 }
 
 /// What says to which level a written-out cycle returns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum CycleBack {
     /// M53: to the level of [`Action::ReturnLevel`]; M54: to where the feed begins. A motion code ends the cycle.
     ByM,
@@ -1122,9 +1134,11 @@ pub struct RefusedWord {
 }
 
 /// What a T word does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum TWord {
     /// It selects what the M code that changes the tool brings in.
+    #[default]
     Selects,
     /// It may bring in the tool, and its length, at once.
     MayChange,
@@ -1133,9 +1147,11 @@ pub enum TWord {
 }
 
 /// Which tool length holds behind a tool change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum LengthAtChange {
     /// The one in force before, until a code says another.
+    #[default]
     Stays,
     /// That of the tool which came in.
     LoadedTool,

@@ -12,6 +12,7 @@ use crate::codes;
 use crate::known::{Motion, motion};
 use crate::lowering::{Came, Fault};
 use crate::output::{Style, word};
+use crate::refusals::called as refusal;
 use crate::shorthand::{AXES, Words, add, line_of, numbers, shown};
 
 impl Writer<'_> {
@@ -129,7 +130,7 @@ impl Writer<'_> {
                     "рядом с функцией, которой принадлежат слова кадра"
                 ))
             };
-            let line = line.map_err(|label| refuse_angle(words, span, label))?;
+            let line = line.map_err(|label| words.fault(refusal::arc_by_angle(label), span))?;
             return self.arc_by_angle(words, &text, &line, start);
         }
         let moves = owned && names_axes(&plain_words);
@@ -166,17 +167,7 @@ impl Writer<'_> {
         count: u32,
         span: Span,
     ) -> Result<(), Fault> {
-        let refuse = |label: Text| {
-            words.fault(
-                Refusal {
-                    code: codes::CALLED_CYCLE,
-                    message: both!("turns that cannot be written out", "обороты, которые нельзя расписать"),
-                    label,
-                    help: both!("let the CAM write each turn", "выводите из CAM каждый оборот"),
-                },
-                span,
-            )
-        };
+        let refuse = |label: Text| words.fault(refusal::turns(label), span);
         if motion(here) != Motion::Arc {
             return Err(refuse(both!("G2 or G3 was expected", "ожидалось G2 или G3")));
         }
@@ -243,21 +234,6 @@ impl Writer<'_> {
         let places = [u, v, n].map(|axis| AXES[axis]).into_iter().zip(end);
         self.out.line(&line_of(code, places.chain(centres)), words.from)
     }
-}
-
-fn refuse_angle(words: &Words<'_, '_>, span: Span, label: Text) -> Fault {
-    words.fault(
-        Refusal {
-            code: codes::CALLED_CYCLE,
-            message: both!(
-                "an arc by its angle that cannot be written out",
-                "дуга по углу, которую нельзя расписать"
-            ),
-            label,
-            help: both!("write the arc with I, J, K", "напишите дугу словами I, J, K"),
-        },
-        span,
-    )
 }
 
 /// The words of a block but for some letters.

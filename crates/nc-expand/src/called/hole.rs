@@ -238,40 +238,30 @@ fn pecks(
     let chips_out = match call.or_zero(11) {
         0.0 => false,
         1.0 => true,
-        _ => {
-            return Err(words.fault(refusal::CYCLE83_OF_UNKNOWN_KIND, call.span));
-        }
+        _ => return Err(words.fault(refusal::CYCLE83_OF_UNKNOWN_KIND, call.span)),
     };
     let stay = [8, 9, 15].map(|place| call.or_zero(place));
     let seconds: &[f64] = if stay.iter().all(|time| *time >= 0.0) { &ALL_SECONDS } else { &[] };
     call.chooses_nothing(words, 17, &[(19, seconds)])?;
-    let (at_bottom, at_start) = (call.or_zero(8), call.or_zero(9));
-    let last = match call.or_zero(15) {
-        0.0 => at_bottom,
-        own => own,
-    };
+    let [at_bottom, at_start, own] = stay;
+    let last = if own == 0.0 { at_bottom } else { own };
     let back = match call.or_zero(14) {
         0.0 => CHIP_MM / unit_mm,
         own => own.abs(),
     };
-    let whole_mm = whole * unit_mm;
-    let deep_mm =
-        if whole_mm <= SHALLOW_DEPTH_MM { SHALLOW_MM } else { (whole_mm * DEEP_SHARE).min(DEEP_MOST_MM) };
     let ahead = match call.or_zero(16) {
-        0.0 => deep_mm / unit_mm,
+        0.0 => ahead_mm(whole * unit_mm) / unit_mm,
         own => own.abs(),
     };
     let lengths = lengths(whole, first.min(whole), less)
         .ok_or_else(|| words.fault(refusal::too_many_pecks(MOST_PECKS), call.span))?;
     // Strokes count from the reference plane, depths from where the drill comes to.
     let mut deep = (near - reference).abs();
-    let mut depths: Vec<f64> = lengths
-        .iter()
-        .map(|length| {
-            deep += length;
-            deep
-        })
-        .collect();
+    let mut depths = Vec::with_capacity(lengths.len());
+    for length in lengths {
+        deep += length;
+        depths.push(deep);
+    }
     let whole = (bottom - near).abs();
     if let Some(last_depth) = depths.last_mut() {
         *last_depth = whole;
@@ -295,6 +285,11 @@ fn pecks(
         }
     }
     Ok(())
+}
+
+/// How far above the last depth the drill slows down where the call does not say it, mm.
+fn ahead_mm(whole_mm: f64) -> f64 {
+    if whole_mm <= SHALLOW_DEPTH_MM { SHALLOW_MM } else { (whole_mm * DEEP_SHARE).min(DEEP_MOST_MM) }
 }
 
 /// How long the strokes of a hole are: each shorter than the one before it by `less` until it is no longer than that; the last two share

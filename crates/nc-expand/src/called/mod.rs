@@ -21,7 +21,6 @@ mod drill;
 mod hole;
 mod pattern;
 
-use diagnostic::{Text, both};
 use nc_program::Owner;
 use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Called};
@@ -127,13 +126,7 @@ impl<'d> Writer<'d> {
             return self.behind(&words, moves, before);
         }
         if words.skipped() {
-            return Err(skipped(
-                &words,
-                both!(
-                    "a cycle or an increment behind block delete",
-                    "цикл или приращение в кадре с пропуском"
-                ),
-            ));
+            return Err(words.fault(refusal::CALL_BEHIND_BLOCK_DELETE, words.whole()));
         }
         let calls: Vec<(Called, Span)> = block
             .items
@@ -191,9 +184,7 @@ impl<'d> Writer<'d> {
                 self.drill(&words, &hole)?;
                 self.restore(&words, motion)?;
             }
-            [.., (_, span)] => {
-                return Err(words.fault(refusal::TWO_CALLS_IN_ONE_BLOCK, *span));
-            }
+            [.., (_, span)] => return Err(words.fault(refusal::TWO_CALLS_IN_ONE_BLOCK, *span)),
             [] => {}
         }
         Ok(())
@@ -255,7 +246,7 @@ impl<'d> Writer<'d> {
             return Ok(());
         }
         if at.skipped() {
-            return Err(skipped(at, both!("a hole behind block delete", "отверстие в кадре с пропуском")));
+            return Err(at.fault(refusal::HOLE_BEHIND_BLOCK_DELETE, at.whole()));
         }
         let (motion, places) = (motion(self.modal()), self.modal().places());
         if !moves || self.plane()[..2].iter().any(|axis| places[*axis].is_none()) {
@@ -269,11 +260,6 @@ impl<'d> Writer<'d> {
         let [u, v, _] = self.plane();
         numbers(line, [(AXES[u], place[0]), (AXES[v], place[1])]);
     }
-}
-
-/// Refuses what is done or not, by a switch.
-fn skipped(words: &Words<'_, '_>, message: Text) -> Fault {
-    words.fault(refusal::skipped(message), words.whole())
 }
 
 /// The block has words that a motion takes: rotary axes move too, and a full circle names its centre alone.

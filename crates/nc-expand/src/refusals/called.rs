@@ -302,8 +302,16 @@ pub(crate) const fn hole(message: Text, label: Text) -> Refusal {
     }
 }
 
+pub(crate) const CALL_BEHIND_BLOCK_DELETE: Refusal = skipped(Text::pair(
+    "a cycle or an increment behind block delete",
+    "цикл или приращение в кадре с пропуском",
+));
+
+pub(crate) const HOLE_BEHIND_BLOCK_DELETE: Refusal =
+    skipped(Text::pair("a hole behind block delete", "отверстие в кадре с пропуском"));
+
 /// What is done or not, by a switch.
-pub(crate) const fn skipped(message: Text) -> Refusal {
+const fn skipped(message: Text) -> Refusal {
     Refusal {
         code: codes::BLOCK_DELETE,
         message,
@@ -370,5 +378,28 @@ pub(crate) fn return_level_below(letter: char) -> Refusal {
             "write a return level above {letter}, or go there before the cycle",
             "напишите плоскость отвода выше {letter} или отойдите туда до цикла"
         ),
+    }
+}
+
+/// Turns of a helix that cannot be written out.
+pub(crate) const fn turns(label: Text) -> Refusal {
+    Refusal {
+        code: codes::CALLED_CYCLE,
+        message: Text::pair("turns that cannot be written out", "обороты, которые нельзя расписать"),
+        label,
+        help: Text::pair("let the CAM write each turn", "выводите из CAM каждый оборот"),
+    }
+}
+
+/// An arc by its angle that cannot be written out.
+pub(crate) const fn arc_by_angle(label: Text) -> Refusal {
+    Refusal {
+        code: codes::CALLED_CYCLE,
+        message: Text::pair(
+            "an arc by its angle that cannot be written out",
+            "дуга по углу, которую нельзя расписать",
+        ),
+        label,
+        help: Text::pair("write the arc with I, J, K", "напишите дугу словами I, J, K"),
     }
 }

@@ -176,3 +176,13 @@ pub(crate) fn name_leads_out_of_folder(name: impl Display) -> Refusal {
         ),
     }
 }
+
+pub(crate) const ABORT: Refusal = Refusal {
+    code: codes::ALARM,
+    message: Text::pair("the program stops itself here", "программа здесь сама останавливается"),
+    label: Text::pair("reached with the values given", "при заданных значениях исполнение доходит сюда"),
+    help: Text::pair(
+        "give other values with `--set`, or remove the line",
+        "задайте ключом `--set` другие значения или уберите строку",
+    ),
+};

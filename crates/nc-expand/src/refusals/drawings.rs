@@ -65,3 +65,13 @@ pub(crate) const fn drawing(label: Text) -> Refusal {
         ),
     }
 }
+
+pub(crate) const START_NOT_KNOWN: Refusal = drawing(Text::pair(
+    "where the line starts is not known: name X and Z before it",
+    "неизвестно, откуда начинается прямая: назовите до неё X и Z",
+));
+
+pub(crate) const DIAMETER_OR_RADIUS: Refusal = drawing(Text::pair(
+    "whether X is a diameter or a radius is not said",
+    "не сказано, диаметр X или радиус",
+));

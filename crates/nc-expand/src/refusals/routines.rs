@@ -105,3 +105,22 @@ pub(crate) const fn routine(message: Text, label: Text) -> Refusal {
         ),
     }
 }
+
+/// * `number` – that of Q
+pub(crate) fn without_subroutine(number: Option<f64>) -> Refusal {
+    let message = match number {
+        Some(number) => {
+            both!("no subroutine O{number} before this block", "до этого кадра нет подпрограммы O{number}")
+        }
+        None => both!("a cycle without Q", "цикл без Q"),
+    };
+    Refusal {
+        code: codes::CONTOUR,
+        message,
+        label: both!("Q is the number of the contour's subroutine", "Q — номер подпрограммы контура"),
+        help: both!(
+            "write the contour before the cycle, as `O100 SUB` … `O100 ENDSUB`, and its number as Q100",
+            "напишите контур до цикла, как `O100 SUB` … `O100 ENDSUB`, а его номер — как Q100"
+        ),
+    }
+}

@@ -246,9 +246,7 @@ impl Writer<'_, '_, '_> {
                 }
                 Some(Code::Line) => Code::Line,
                 Some(arc @ (Code::Clockwise | Code::CounterClockwise)) if !pieces.is_empty() => arc,
-                _ => {
-                    return Err(block.fault(refusal::BEGINS_WITHOUT_G0_OR_G1, block.whole()));
-                }
+                _ => return Err(block.fault(refusal::BEGINS_WITHOUT_G0_OR_G1, block.whole())),
             };
             let of_an_arc = matches!(code, Code::Clockwise | Code::CounterClockwise);
             if let Some((_, span)) =
@@ -273,13 +271,8 @@ impl Writer<'_, '_, '_> {
                 _ => (None, Vec::new()),
             };
             let list = if code == Code::Rapid && !pieces.is_empty() { &mut retract } else { &mut pieces };
-            list.push(Piece {
-                code,
-                to,
-                round,
-                way: Way { from: from_plane, to: to_plane, arc },
-                block: index,
-            });
+            let way = Way { from: from_plane, to: to_plane, arc };
+            list.push(Piece { code, to, round, way, block: index });
             at = to;
         }
         let entry = pieces.remove(0);

@@ -139,21 +139,10 @@ impl<'w, 'b, 'a, 'd> Drawing<'w, 'b, 'a, 'd> {
         }
         let words = self.words(first);
         let [Some(x), Some(z)] = standing(self.out.known.modal()) else {
-            return Err(refusal(
-                &words,
-                comma,
-                both!(
-                    "where the line starts is not known: name X and Z before it",
-                    "неизвестно, откуда начинается прямая: назовите до неё X и Z"
-                ),
-            ));
+            return Err(words.fault(drawings::START_NOT_KNOWN, comma));
         };
         if diameters(self.out.known.modal()).is_none() {
-            return Err(refusal(
-                &words,
-                comma,
-                both!("whether X is a diameter or a radius is not said", "не сказано, диаметр X или радиус"),
-            ));
+            return Err(words.fault(drawings::DIAMETER_OR_RADIUS, comma));
         }
         let start = plane(self.out.known.modal(), [x, z]);
         let mut ahead = self.out.known.clone();

@@ -16,7 +16,7 @@ use nc_program::Compensation;
 use nc_syntax::dialect::TurningCycle;
 use nc_syntax::{ItemKind, Span};
 
-use super::contour::{Axis, Contour, Piece, Point};
+use super::contour::{Axis, Contour, Point, Way};
 use super::emit::{Code, Moves};
 use super::{MILLION, Spot, Writer, cycle_of};
 use crate::lowering::{Fault, Held};
@@ -244,11 +244,7 @@ impl Writer<'_, '_, '_> {
         }
         back?;
         let off = self.plane(allowance);
-        let pieces: Vec<Piece> = contour
-            .pieces
-            .iter()
-            .map(|piece| Piece { way: piece.way.shifted(off), ..piece.clone() })
-            .collect();
+        let ways: Vec<Way> = contour.pieces.iter().map(|piece| piece.way.shifted(off)).collect();
         let deepest = a1[down] + off[down];
         let corner = sum(contour.start, allowance);
         let from_corner = self.plane(corner);
@@ -259,15 +255,7 @@ impl Writer<'_, '_, '_> {
         self.go(moves, Code::Rapid, corner);
         for pass in 1..=count {
             let level = from_corner[down] + sign * depth * pass as f64;
-            // The first piece that comes up to the level ends the pass, also where it only touches it.
-            let apart = |point: Point| (point[down] - level) * sign;
-            let stop = pieces.iter().map(|piece| piece.way).find(|way| apart(way.to) <= SAME).map_or(
-                b[along] + off[along],
-                |way| {
-                    let nearer = if apart(way.from).abs() < apart(way.to).abs() { way.from } else { way.to };
-                    way.crossing(down, level).unwrap_or(nearer)[along]
-                },
-            );
+            let stop = ends_at(&ways, down, level, sign).map_or(b[along] + off[along], |at| at[along]);
             if (stop - from_corner[along]) * forwards <= 0.0 {
                 continue;
             }
@@ -379,6 +367,14 @@ impl Writer<'_, '_, '_> {
         self.out.fresh_line();
         self.out.write(&rest, words.from);
     }
+}
+
+/// Where a pass on a level ends: the first way that comes up to it ends it, also where it only touches it.
+fn ends_at(ways: &[Way], down: Axis, level: f64, sign: f64) -> Option<Point> {
+    let apart = |point: Point| (point[down] - level) * sign;
+    let way = ways.iter().find(|way| apart(way.to) <= SAME)?;
+    let nearer = if apart(way.from).abs() < apart(way.to).abs() { way.from } else { way.to };
+    Some(way.crossing(down, level).unwrap_or(nearer))
 }
 
 pub(super) fn too_many(words: &Words<'_, '_>, span: Span) -> Fault {

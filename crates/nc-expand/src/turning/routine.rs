@@ -20,7 +20,6 @@ use toolpath::Plane;
 use super::emit::Code;
 use super::profile::{Misfit, Profile, Round, Segment, Stroke};
 use super::{MILLION, Spot, Writer};
-use crate::codes;
 use crate::lowering::Fault;
 use crate::refusals::routines as refusal;
 use crate::shorthand::{Words, numbers, shown};
@@ -57,13 +56,8 @@ impl Writer<'_, '_, '_> {
         };
         let Some(blocks) = self.blocks_behind(at) else {
             let number = words.number(b'Q').map(|(number, _)| number.to_f64());
-            return Err(words.fault(Refusal { code: codes::CONTOUR, message: match number {
-                    Some(number) => both!("no subroutine O{number} before this block", "до этого кадра нет подпрограммы O{number}"),
-                    None => both!("a cycle without Q", "цикл без Q"),
-                }, label: both!("Q is the number of the contour's subroutine", "Q — номер подпрограммы контура"), help: both!(
-                    "write the contour before the cycle, as `O100 SUB` … `O100 ENDSUB`, and its number as Q100",
-                    "напишите контур до цикла, как `O100 SUB` … `O100 ENDSUB`, а его номер — как Q100"
-                ) }, words.number(b'Q').map_or(span, |(_, span)| span)));
+            let at = words.number(b'Q').map_or(span, |(_, span)| span);
+            return Err(words.fault(refusal::without_subroutine(number), at));
         };
         let pieces = self.pieces(&words, start, blocks.clone())?;
         let own: &[u8] = if cycle == TurningCycle::FinishRoutine { b"XZQDEP" } else { b"XZQDIR" };

@@ -1,6 +1,7 @@
 //! Differences in words.
 
 use diagnostic::{Text, both};
+use nc_program::process::Process;
 use path_comparison::{Comparison, Mismatch, What};
 
 use super::reading::Numbers;
@@ -69,13 +70,8 @@ fn sentences(mismatch: &Mismatch, numbers: &Numbers, said: &mut Vec<[Text; 2]>) 
             )
         }
         What::Process([here, there]) => {
-            let (Some(here), Some(there)) = (numbers.process(*here), numbers.process(*there)) else {
-                return Vec::new();
-            };
-            let mut differences = here.differences(there);
-            differences.retain(|pair| !said.contains(pair));
-            said.extend(differences.iter().cloned());
-            return differences.iter().map(|[here, there]| in_force(*wanted, *made, here, there)).collect();
+            let processes = [here, there].map(|number| numbers.process(*number));
+            return processes_differ((*wanted, *made), processes, said);
         }
         What::Feed(feeds) => {
             let [here, there] =
@@ -104,6 +100,19 @@ fn sentences(mismatch: &Mismatch, numbers: &Numbers, said: &mut Vec<[Text; 2]>) 
         ),
     };
     vec![one]
+}
+
+/// Settings that differ and have not been named yet.
+fn processes_differ(
+    (wanted, made): (u64, u64),
+    processes: [Option<&Process>; 2],
+    said: &mut Vec<[Text; 2]>,
+) -> Vec<Text> {
+    let [Some(here), Some(there)] = processes else { return Vec::new() };
+    let mut differences = here.differences(there);
+    differences.retain(|pair| !said.contains(pair));
+    said.extend(differences.iter().cloned());
+    differences.iter().map(|[here, there]| in_force(wanted, made, here, there)).collect()
 }
 
 fn in_force(wanted: u64, made: u64, here: &Text, there: &Text) -> Text {
