@@ -8,8 +8,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer, Error};
 
 use crate::checks::wide;
-use crate::shipped::TEXTS;
 use crate::table::Grammar;
+use crate::texts::TEXTS;
 
 /// Where the fields are described.
 pub(crate) const EVERY_FIELD: Text = Text::pair(

@@ -14,6 +14,7 @@ mod load;
 mod russian;
 mod shipped;
 mod table;
+mod texts;
 
 pub use action::{ACTION_NAMES, action_name, action_named};
 pub use assumptions::assumption;

@@ -521,7 +521,7 @@ mod tests {
             }
         }
         let mut found = Vec::new();
-        for (_, table) in crate::shipped::TEXTS {
+        for (_, table) in crate::texts::TEXTS {
             collect(&toml::from_str(table).unwrap(), &mut found);
         }
         found.sort_unstable();

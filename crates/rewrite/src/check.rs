@@ -15,7 +15,8 @@ use path_comparison::{Comparison, Course, Mismatch, Traces, What, compare};
 
 use crate::control::ControlPart;
 use crate::datum::Datum;
-use crate::job::{Corrected, Guards, Job};
+use crate::figures::Corrected;
+use crate::job::{Guards, Job};
 use crate::whole::pass;
 use crate::words::retreats;
 use reading::{Numbers, Optional, Program, file_and_line};

@@ -8,8 +8,7 @@ use nc_syntax::Dialect;
 use nc_syntax::dialect::GCode;
 use nc_syntax::path_control::{Keeps, PathCode, PathKey};
 
-use crate::job::{CONTROL_LEAVES, Job};
-use crate::notices::Warning;
+use crate::job::{CONTROL_LEAVES, Job, Warning};
 
 /// Where something is cut with the control farthest off the path.
 #[derive(Debug, Clone, Default, PartialEq)]

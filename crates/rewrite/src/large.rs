@@ -8,8 +8,8 @@ use nc_program::{Evidence, Questions};
 use nc_syntax::{Envelope, Place, Reader};
 
 use crate::chunks::{CHUNK_BYTES, Chunk, Chunks, Survey, Unread};
-use crate::job::{Figures, Job};
-use crate::notices::Warning;
+use crate::figures::Figures;
+use crate::job::{Job, Warning};
 use crate::sink::{Sink, Written};
 use crate::state::State;
 use crate::stream::{self, End, Plan};

@@ -7,8 +7,7 @@ use diagnostic::{Diagnostic, both};
 use machine_model::{Command, Vector};
 use nc_program::Modal;
 
-use crate::job::{Job, WITHOUT_LENGTH};
-use crate::notices::Warning;
+use crate::job::{Job, WITHOUT_LENGTH, Warning};
 
 /// By how much longer the tool is taken that says what a length matters, mm.
 const LONGER_MM: f64 = 100.0;

@@ -9,11 +9,12 @@ use nc_program::Context;
 use nc_syntax::Block;
 use toolpath::{AXIS_NAMES, Feed, Motion, Shape};
 
+use crate::figures::Held;
 use crate::job::{
-    ACCEPTED, COMPENSATED, DIRECTION, DIRECTION_HELD, DIRECTION_IN_PLANE, Held, LEANING_CYCLE, LEANS,
+    ACCEPTED, COMPENSATED, DIRECTION, DIRECTION_HELD, DIRECTION_IN_PLANE, LEANING_CYCLE, LEANS,
     MUST_NOT_SPLIT, NO_BOUNDS_FOR_TURNS, NOT_CONVERGED, NOT_WITHIN_TOLERANCE, OTHER_TOOL, OUTSIDE,
     RAPID_OUTSIDE, SIDEWAYS, SPIRAL, TOO_MANY_PECKS, TOUCHED_BY_GUESS, TOUCHED_OUTSIDE, UNKNOWN_SIDE,
-    UNNAMED,
+    UNNAMED, Warning,
 };
 
 /// Things that happen more than once and are told once.
@@ -41,9 +42,6 @@ pub(crate) struct Notice {
     /// Where that was.
     at_largest: Option<(Range<u64>, u64)>,
 }
-
-/// What is to be said, and the line it is said of.
-pub(crate) type Warning = (Diagnostic, u64);
 
 impl Notice {
     pub(crate) fn see(&mut self, span: &Range<u64>, line: u64, size_mm: f64) {

@@ -12,11 +12,12 @@ use toolpath::{Hole, Motion};
 use crate::cutter;
 use crate::datum::{LastDatum, going_on};
 use crate::feed;
+use crate::figures::raise;
 use crate::job::Job;
 use crate::nose::{nose_mm, reserved_mm};
 use crate::notices::{SPIRAL_MM, hole_skipped, radii_apart_mm, refusal};
 use crate::state::State;
-use crate::tally::{Tally, raise};
+use crate::tally::Tally;
 use crate::words::{
     Editing, MotionCodes, Original, Pieces, finer_than_words, letters, lost, retreats, stated,
 };

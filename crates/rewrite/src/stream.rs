@@ -15,8 +15,7 @@ use diagnostic::Diagnostic;
 use nc_syntax::{Block, Envelope, Reader};
 
 use crate::chunks::{Chunk, Chunks, Unread};
-use crate::job::Job;
-use crate::notices::Warning;
+use crate::job::{Job, Warning};
 use crate::pass::Pass;
 use crate::sink::Sink;
 use crate::state::State;
@@ -371,7 +370,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::job::{Corrected, Figures};
+    use crate::figures::{Corrected, Figures};
 
     /// The pieces of programs: what a state can be carried through.
     const PARTS: [&str; 16] = [

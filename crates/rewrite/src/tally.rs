@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use correction::Correction;
 use machine_model::Vector;
 use nc_program::Evidence;
 
 use crate::datum::Datum;
-use crate::job::{Figures, Job};
+use crate::figures::{Figures, raise};
+use crate::job::{Job, Warning};
 use crate::lengthless::Lengthless;
-use crate::notices::{Notices, Warning};
+use crate::notices::Notices;
 
 /// What is counted on the way.
 #[derive(Debug, Clone, Default)]
@@ -62,37 +62,5 @@ impl Tally {
             notices.touched_by_guess.see(span, line, datum.unsure_mm);
         }
         figures.see(datum);
-    }
-}
-
-impl Figures {
-    /// Takes the bounds of a motion in a line.
-    #[inline]
-    pub(crate) fn raise(&mut self, correction: &Correction, line: u64) {
-        raise(&mut self.largest, (correction.largest_mm, line));
-        raise(&mut self.before, (correction.before_mm, line));
-        raise(&mut self.after, (correction.after_mm, line));
-    }
-
-    /// Notes a touched zero.
-    fn see(&mut self, datum: &Datum) {
-        match self.datums.iter_mut().find(|known| known.is(datum)) {
-            Some(known) => known.unsure_mm = known.unsure_mm.max(datum.unsure_mm),
-            None => self.datums.push(datum.clone()),
-        }
-    }
-
-    /// False where [`Figures::raise`] changes nothing.
-    #[inline]
-    pub(crate) fn would_rise(&self, by: &Correction) -> bool {
-        by.largest_mm > self.largest.0 || by.before_mm > self.before.0 || by.after_mm > self.after.0
-    }
-}
-
-/// The first of the largest counts.
-#[inline]
-pub(crate) fn raise(figure: &mut (f64, u64), (value, line): (f64, u64)) {
-    if value > figure.0 {
-        *figure = (value, line);
     }
 }

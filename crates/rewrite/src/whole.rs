@@ -5,7 +5,8 @@ use nc_emit::BlockNumbers;
 use nc_syntax::{Block, Dialect, Reader};
 
 use crate::chunks;
-use crate::job::{CORRECTED_BEFORE, Corrected, Job};
+use crate::figures::Corrected;
+use crate::job::{CORRECTED_BEFORE, Job};
 use crate::pass::Pass;
 use crate::state::State;
 use crate::tally::Tally;

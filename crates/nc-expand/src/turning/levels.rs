@@ -8,7 +8,7 @@
 use nc_syntax::dialect::Pockets;
 
 use super::contour::Point;
-use super::profile::{MOST, Misfit, Round, SAME, SLACK, Segment, Stroke, length, sub};
+use super::pieces::{MOST, Misfit, Round, SAME, SLACK, Segment, Stroke, length, sub};
 
 /// Passes of a depth down to a contour, the first piece of which dives.
 pub(super) fn cut(

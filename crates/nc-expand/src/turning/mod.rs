@@ -24,6 +24,7 @@ mod emit;
 mod levels;
 mod pass;
 mod pecks;
+mod pieces;
 mod place;
 mod pockets;
 mod profile;

@@ -14,158 +14,17 @@
 //! Passes down to it are a room of their own: [`super::levels`].
 
 use nc_syntax::dialect::Pockets;
-use units::math;
 
 use super::contour::Point;
 use super::levels::cut;
+use super::pieces::{MOST, Misfit, Round, SAME, Segment, Stroke, along, cross, dot, length, middle, sub};
 
 /// Pieces that part by more along the first axis get an arc between them.
 const GAP: f64 = 1e-2;
 /// A piece shorter than this is none.
 const SHORT: f64 = 1e-3;
-/// By so much may a piece turn back, and so near is a move no move.
-pub(super) const SLACK: f64 = 1e-3;
-/// Two places nearer than this are one.
-pub(super) const SAME: f64 = 1e-6;
 /// Lines whose directions differ by less have no certain crossing: the interpreter refuses them only where it is zero.
 const PARALLEL: f64 = 1e-7;
-/// Steps of one offset, and moves of one cycle; more are a wrong distance or depth.
-pub(super) const MOST: usize = 20_000;
-
-/// Why there are no moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Misfit {
-    /// It turns back along the axis of the passes.
-    NotMonotone,
-    /// It starts below the first place of the contour: there is nothing to go down to.
-    WrongSide,
-    /// Off by the distance, a piece turns round or two pieces do not meet.
-    Distance,
-    /// Two lines that go straight on have no crossing when moved off.
-    Straight,
-    /// The passes come to no end, or there are too many.
-    Endless,
-    /// A climbing piece does not begin where the one before ends.
-    Apart,
-}
-
-/// A move, in radius and Z.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Stroke {
-    Rapid(Point),
-    Line(Point),
-    /// G3 where counter-clockwise, about a centre.
-    Arc {
-        counter: bool,
-        centre: Point,
-        end: Point,
-    },
-}
-
-/// A line, or an arc.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Segment {
-    pub(super) start: Point,
-    pub(super) end: Point,
-    pub(super) round: Option<Round>,
-}
-
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Round {
-    pub(super) centre: Point,
-    /// From the first axis towards the second.
-    pub(super) counter: bool,
-}
-
-pub(super) fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-fn along(a: Point, d: Point, share: f64) -> Point {
-    [a[0] + share * d[0], a[1] + share * d[1]]
-}
-
-pub(super) fn length(a: Point) -> f64 {
-    math::hypot(a[0], a[1])
-}
-
-fn cross(a: Point, b: Point) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-fn middle(a: Point, b: Point) -> Point {
-    [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
-}
-
-impl Segment {
-    /// The smaller of chord and radius: what an offset may eat of it.
-    fn size(&self) -> f64 {
-        let chord = length(sub(self.start, self.end));
-        self.round.map_or(chord, |round| chord.min(length(sub(self.start, round.centre))))
-    }
-
-    fn falls(&self) -> bool {
-        let ahead = self.end[0] - self.start[0];
-        let Some(Round { centre, counter }) = self.round else { return ahead <= SLACK };
-        let side = if counter { 1.0 } else { -1.0 };
-        let beside = |p: Point| side * (p[1] - centre[1]) >= -SLACK;
-        beside(self.start) && beside(self.end) && ahead <= -SLACK
-    }
-
-    /// Each point by `distance` to the right of the way.
-    fn push(&mut self, distance: f64) {
-        match self.round {
-            None => {
-                let back = sub(self.start, self.end);
-                let by = distance / length(back);
-                let normal = [-back[1], back[0]];
-                (self.start, self.end) = (along(self.start, normal, by), along(self.end, normal, by));
-            }
-            Some(Round { centre, counter }) => {
-                let radius = length(sub(self.start, centre));
-                let factor = (radius + if counter { distance } else { -distance }) / radius;
-                let scaled = |p: Point| along(centre, sub(p, centre), factor);
-                (self.start, self.end) = (scaled(self.start), scaled(self.end));
-            }
-        }
-    }
-
-    /// True where a point of the circle lies on the arc, which is less than half a turn.
-    fn holds(&self, point: Point) -> bool {
-        let Some(Round { centre, counter }) = self.round else { return true };
-        let side = if counter { 1.0 } else { -1.0 };
-        let turn = |end: Point| side * cross(sub(end, centre), sub(point, centre));
-        turn(self.start) >= -SAME && turn(self.end) <= SAME
-    }
-
-    /// Where it has a level, the higher place of an arc first.
-    pub(super) fn at_level(&self, level: f64) -> Vec<f64> {
-        let (a, b) = (self.start, self.end);
-        let Some(Round { centre, .. }) = self.round else {
-            if a[1].min(b[1]) > level + SAME || a[1].max(b[1]) < level - SAME {
-                return Vec::new();
-            }
-            if (a[1] - b[1]).abs() < SAME {
-                return vec![a[0], b[0]];
-            }
-            return vec![(level - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) + a[0]];
-        };
-        let radius = length(sub(a, centre));
-        let up = level - centre[1];
-        let square = (radius - up) * (radius + up);
-        if square < -SAME {
-            return Vec::new();
-        }
-        let half = square.max(0.0).sqrt();
-        let mut found = vec![centre[0] + half, centre[0] - half];
-        found.retain(|place| self.holds([*place, level]));
-        found
-    }
-}
 
 /// How the contour is laid: rows of a matrix that turns or mirrors.
 #[derive(Clone, Copy, Debug)]
@@ -374,15 +233,6 @@ impl Profile {
             }
         }
         Ok(())
-    }
-}
-
-impl Segment {
-    fn stroke(&self) -> Stroke {
-        match self.round {
-            None => Stroke::Line(self.end),
-            Some(Round { centre, counter }) => Stroke::Arc { counter, centre, end: self.end },
-        }
     }
 }
 

@@ -18,7 +18,8 @@ use nc_syntax::{ItemKind, Span, Value};
 use toolpath::Plane;
 
 use super::emit::Code;
-use super::profile::{Misfit, Profile, Round, Segment, Stroke};
+use super::pieces::{Misfit, Round, Segment, Stroke};
+use super::profile::Profile;
 use super::{MILLION, Spot, Writer};
 use crate::lowering::Fault;
 use crate::refusals::routines as refusal;
