@@ -325,7 +325,7 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
     }
     let refuted = holdout.filter(|judged| judged.rms_after_mm > judged.rms_before_mm + 1e-9);
     let page = |target: &Target, uncertainty_mm: Option<f64>| {
-        let page = Pieces::new(&outcome, held, messages.language(), refuted.is_some());
+        let page = Pieces::new(&outcome, held, refuted.is_some());
         let page = page.map_err(|error| failure("", &[], &CalibrationError::Axes(error.text())))?;
         let shown = Shown { html: arguments.html.clone(), ..Shown::default() };
         let mut files = arguments.files.clone();
@@ -446,7 +446,7 @@ fn owner(found: &calibration::turning::Offset, parts: &Parts) -> String {
 
 impl Outcome<'_> {
     fn report(&self) -> Text {
-        let Self { found, holdout, base, parts, timed, rows: _ } = *self;
+        let Self { found, holdout, base, parts, .. } = *self;
         let shared = found.shared_mm.map(|shared_mm| shared_mm * 1e3);
         let mut out = both!(
             "test pieces: diameters scatter by {:.3} um (standard deviation), parts {}\n",
@@ -477,24 +477,8 @@ impl Outcome<'_> {
             "  уровень F-критериев: {} %; интервалы 95-процентные\n",
             LEVEL * 100.0
         ));
-        for [a, b] in &found.not_told_apart {
-            let help = match (a.english(), b.english()) {
-                ("growth", "wear") | ("wear", "growth") if !timed => {
-                    Text::pair(": add the column time_s", "; добавьте столбец time_s")
-                }
-                ("growth", "wear") | ("wear", "growth") => Text::pair(
-                    ": measure a second part with a new edge while warm, or cut the first size again when warm",
-                    "; измерьте второй образец с новой кромкой на прогретом станке или проточите первый размер снова после прогрева",
-                ),
-                (_, "what else differs from part to part") => {
-                    Text::pair(": measure a further part", "; измерьте ещё один образец")
-                }
-                _ => Text::EMPTY,
-            };
-            out.push(&both!(
-                "  {a} and {b} cannot be told apart by these parts{help}\n",
-                "  по этим образцам не различить {a:#} и {b:#}{help:#}\n"
-            ));
+        for open in self.not_told_apart() {
+            out.push(&both!("  {open}\n", "  {open:#}\n"));
         }
         for offset in &found.offsets {
             let interval =
@@ -529,6 +513,30 @@ impl Outcome<'_> {
             ));
         }
         out
+    }
+
+    /// Pairs of causes that these parts leave open, and what would settle each.
+    fn not_told_apart(&self) -> Vec<Text> {
+        let one = |[a, b]: &[Text; 2]| {
+            let help = match (a.english(), b.english()) {
+                ("growth", "wear") | ("wear", "growth") if !self.timed => {
+                    Text::pair(": add the column time_s", "; добавьте столбец time_s")
+                }
+                ("growth", "wear") | ("wear", "growth") => Text::pair(
+                    ": measure a second part with a new edge while warm, or cut the first size again when warm",
+                    "; измерьте второй образец с новой кромкой на прогретом станке или проточите первый размер снова после прогрева",
+                ),
+                (_, "what else differs from part to part") => {
+                    Text::pair(": measure a further part", "; измерьте ещё один образец")
+                }
+                _ => Text::EMPTY,
+            };
+            both!(
+                "{a} and {b} cannot be told apart by these parts{help}",
+                "по этим образцам не различить {a:#} и {b:#}{help:#}"
+            )
+        };
+        self.found.not_told_apart.iter().map(one).collect()
     }
 
     fn json(&self) -> serde_json::Value {
