@@ -10,7 +10,7 @@ use super::arguments::Budget;
 use crate::arguments::{Outside, Shared};
 use crate::figures::{printable, triple};
 use crate::file;
-use crate::message::{Failure, Messages, OPTION, Report};
+use crate::message::{Failure, Messages, OPTION};
 use crate::points::{self, POINTS};
 use crate::predict::POINT_OUTSIDE;
 use crate::values::{Ball, Given};
@@ -272,8 +272,7 @@ fn from_file(
             "each has the error of the volume's nearest point",
             "каждой приписана погрешность ближайшей точки объёма"
         );
-        let diagnostic = Diagnostic::warning(POINT_OUTSIDE, message).help(help);
-        messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
+        messages.warn(POINT_OUTSIDE, message, help);
     }
     let commands: Vec<Command> = points.rows.into_iter().map(|(_, command)| command).collect();
     let mut what = both!("from {}", "из {}", printable(name));

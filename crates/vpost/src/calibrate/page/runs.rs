@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 use crate::figures::{fixed, round};
 
 use super::super::iso_report;
+use super::super::sources::span;
 
 /// One error function that was read.
 pub(in super::super) struct Read {
@@ -47,10 +48,7 @@ impl Read {
         runs: Runs,
         evaluation: Option<Evaluation>,
     ) -> Self {
-        let (low, high) = function
-            .mean
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+        let (low, high) = span(function.mean.iter().copied());
         Self {
             axis: series.axis,
             name: series.name(),

@@ -220,7 +220,7 @@ impl<'a> Pieces<'a> {
         let found = self.of.found;
         let table = Table::of(&found.offsets)
             .words(both!("tool or part", "инструмент или деталь"), |own| {
-                Text::same(owner(own, self.of.parts))
+                Text::same(owner(own, self.of.names))
             })
             .numbers(both!("on the radius, \u{b5}m", "по радиусу, мкм"), |own| {
                 digits(own.radius_mm * 1e3, 2)
@@ -313,7 +313,7 @@ impl Placing<'_> {
             }
             let left_um = left[k] - of_part.iter().sum::<f64>() / of_part.len() as f64;
             out.push(Placed {
-                part: self.of.parts.parts[row.part].clone(),
+                part: self.of.names.parts[row.part].clone(),
                 z_mm: z_mm(row),
                 read_um: row.deviation_mm * 1e3,
                 placed_um: fitted_um(row) + left_um,

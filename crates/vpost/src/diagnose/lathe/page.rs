@@ -155,7 +155,7 @@ impl<'a> Drawn<'a> {
             "Measured minus commanded radius less what the profile predicts, each part at its own mean: its size is the tool's.",
             "Измеренный минус заданный радиус за вычетом предсказания профиля; каждая деталь при своём среднем: её размер — от инструмента."
         );
-        let part = |row: &CauseRow| self.said.parts.parts.get(row.part).cloned().unwrap_or_default();
+        let part = |row: &CauseRow| self.said.parts.also.parts.get(row.part).cloned().unwrap_or_default();
         let readings = Table::of(placed())
             .words(both!("part", "деталь"), |(row, _)| Text::same(part(row)))
             .numbers(both!("Z, mm", "Z, мм"), |(row, _)| number(row.z_mm))
