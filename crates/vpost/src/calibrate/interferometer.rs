@@ -1,7 +1,5 @@
 //! `vpost calibrate interferometer`.
 
-use std::path::PathBuf;
-
 use calibration::functions::{self, refined};
 use calibration::iso230_2;
 use calibration::measured_line::{AxisOnNodes, Gauge, Zero};
@@ -64,8 +62,7 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     }
     let found = Positions(found);
     let show = |temperature_c: Option<f64>, uncertainty_mm: Option<f64>| {
-        let files: Vec<PathBuf> =
-            arguments.files.iter().map(|name| PathBuf::from(sources::path_of(name))).collect();
+        let files = arguments.paths();
         arguments.shown.write(&found, &files, &arguments.target, shared, temperature_c, uncertainty_mm)
     };
     let asked = squareness::from_the_user(arguments, angles_read, &axes)?;
@@ -395,20 +392,15 @@ fn summary(out: &mut Text, axes: &[Functions; 3]) {
             let Some(function) = function else { continue };
             let (scale, unit) = micro(f < 3);
             let (low, high) = sources::span(function.mean.iter().map(|value| value * scale));
-            let directions = if function.directions.is_some() {
-                Text::pair(", both directions", ", оба направления")
-            } else {
-                Text::EMPTY
-            };
+            let directions = both!(", both directions", ", оба направления");
+            let directions = function.directions.as_ref().map_or(Text::EMPTY, |_| directions);
             let scatter = function.scatter.map_or(Text::EMPTY, |s| {
                 both!(", scatter {:.3} {unit}", ", разброс {:.3} {unit:#}", s * scale)
             });
+            let (of, axis, targets) = (Axis::ALL[f], Axis::ALL[axis], function.positions_mm.len());
             out.push(&both!(
-                "E{}{}  {low:.3} … {high:.3} {unit}, {} targets{directions}{scatter}\n",
-                "E{}{}  {low:.3} … {high:.3} {unit:#}, целей {}{directions:#}{scatter:#}\n",
-                Axis::ALL[f],
-                Axis::ALL[axis],
-                function.positions_mm.len()
+                "E{of}{axis}  {low:.3} … {high:.3} {unit}, {targets} targets{directions}{scatter}\n",
+                "E{of}{axis}  {low:.3} … {high:.3} {unit:#}, целей {targets}{directions:#}{scatter:#}\n"
             ));
         }
     }

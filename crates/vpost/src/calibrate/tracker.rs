@@ -219,12 +219,10 @@ fn warn_of_gaps(name: &str, mean: &MeanTraverse, messages: &Messages) {
 
 /// Refuses a field that is known worse than it deviates.
 fn judge(changed: &TrackerMachine, has_base: bool, messages: &Messages) -> Result<(), Failure> {
-    let um = |mm: f64| short(mm * 1e3, 1);
+    let [known, found] = [changed.field_u95_mm, changed.field_p95_mm].map(|mm| short(mm * 1e3, 1));
     let field = both!(
-        "the field is known to ±{} um (95 % of the volume's points), the deviations found are {} um",
-        "поле известно с точностью ±{} мкм (в 95 % точек объёма), а найденные отклонения — {} мкм",
-        um(changed.field_u95_mm),
-        um(changed.field_p95_mm)
+        "the field is known to ±{known} um (95 % of the volume's points), the deviations found are {found} um",
+        "поле известно с точностью ±{known} мкм (в 95 % точек объёма), а найденные отклонения — {found} мкм"
     );
     let help = both!("measure each node more often", "измеряйте каждый узел больше раз");
     // A base corrects whatever it did before; without one a correction has to be better than none.
@@ -251,13 +249,11 @@ fn judge_chords(found: &TrackerCalibration, shared: &Shared, messages: &Messages
     }
     let corner = far.corner_mm.iter().map(|v| short(*v, 3)).collect::<Vec<_>>().join(", ");
     let needed = (far.sufficient_chord_mm() / far.chord_mm).ceil() * far.chord_mm;
+    let (chord, known_urad) = (short(far.chord_mm, 3), far.direction_u95_rad * 1e6);
+    let [known, found] = [far.chord_u95_mm, far.deviation_mm].map(um);
     let message = both!(
-        "a chord of {} mm knows its direction to ±{:.0} urad (95 %), which is ±{} um at the far corner ({corner}); the deviation found there is {} um",
-        "направление хорды {} мм известно с точностью ±{:.0} мкрад (95 %), то есть ±{} мкм в дальнем углу ({corner}); найденное там отклонение — {} мкм",
-        short(far.chord_mm, 3),
-        far.direction_u95_rad * 1e6,
-        um(far.chord_u95_mm),
-        um(far.deviation_mm)
+        "a chord of {chord} mm knows its direction to ±{known_urad:.0} urad (95 %), which is ±{known} um at the far corner ({corner}); the deviation found there is {found} um",
+        "направление хорды {chord} мм известно с точностью ±{known_urad:.0} мкрад (95 %), то есть ±{known} мкм в дальнем углу ({corner}); найденное там отклонение — {found} мкм"
     );
     let help = both!(
         "measure each node more often, or use longer chords: with these readings `--chord-mm {}` halves it",

@@ -139,7 +139,7 @@ pub(crate) fn stood_at(
         );
         return Err(row.refuse(AXES, "z_mm", message, help).into());
     }
-    Ok(Command { linear_mm, rotary_rad: Vector::zeros(), tool_mm, direction: [0; 3], ..Default::default() })
+    Ok(Command { linear_mm, tool_mm, ..Command::default() })
 }
 
 impl Parts {
@@ -383,16 +383,14 @@ fn owner(found: &calibration::turning::Offset, names: &Names) -> String {
 impl Outcome<'_> {
     fn report(&self) -> Text {
         let Self { found, holdout, base, names, .. } = *self;
-        let shared = found.shared_mm.map(|shared_mm| shared_mm * 1e3);
+        let parts = found.shared_mm.map(|mm| mm * 1e3).map_or_else(
+            || both!("are too few to tell by how much they differ", "неизвестно: их слишком мало"),
+            |um| both!("by {um:.3} um beyond that", "сверх того {um:.3} мкм"),
+        );
         let mut out = both!(
-            "test pieces: diameters scatter by {:.3} um (standard deviation), parts {}\n",
-            "образцы: разброс диаметров {:.3} мкм (стандартное отклонение), между образцами {:#}\n",
-            found.noise_mm * 1e3,
-            match shared {
-                Some(um) => both!("by {um:.3} um beyond that", "сверх того {um:.3} мкм"),
-                None =>
-                    Text::pair("are too few to tell by how much they differ", "неизвестно: их слишком мало",),
-            }
+            "test pieces: diameters scatter by {:.3} um (standard deviation), parts {parts}\n",
+            "образцы: разброс диаметров {:.3} мкм (стандартное отклонение), между образцами {parts:#}\n",
+            found.noise_mm * 1e3
         );
         for own in found.terms.iter().chain(&found.not_there) {
             let (key, before, scale) = named(own.term, base);
@@ -438,14 +436,11 @@ impl Outcome<'_> {
             "fitted {before:.3} -> {after:.3} um RMS on the diameter\n",
             "подгонка: СКЗ {before:.3} -> {after:.3} мкм на диаметр\n"
         ));
-        if let Some(judged) = holdout {
+        if let Some(HeldOut { rows, rms_before_mm, rms_after_mm, max_after_mm }) = holdout {
+            let [before, after, most] = [rms_before_mm, rms_after_mm, max_after_mm].map(|mm| mm * 1e3);
             out.push(&both!(
-                "held out {:.3} -> {:.3} um RMS, at most {:.3} um ({} diameters, each part at its own size)\n",
-                "контрольные: СКЗ {:.3} -> {:.3} мкм, не больше {:.3} мкм (диаметров {}, каждый образец по своему размеру)\n",
-                judged.rms_before_mm * 1e3,
-                judged.rms_after_mm * 1e3,
-                judged.max_after_mm * 1e3,
-                judged.rows
+                "held out {before:.3} -> {after:.3} um RMS, at most {most:.3} um ({rows} diameters, each part at its own size)\n",
+                "контрольные: СКЗ {before:.3} -> {after:.3} мкм, не больше {most:.3} мкм (диаметров {rows}, каждый образец по своему размеру)\n"
             ));
         }
         out

@@ -274,12 +274,10 @@ impl Said<'_> {
             out.push(&text);
             out.push(&Text::same("\n"));
         };
+        let (rms, noise, rows) = (found.rms_mm * 1e3, found.noise_mm * 1e3, self.rows.len());
         line(both!(
-            "gap     {:.2} um RMS on the radius beyond sizes and clampings, noise {:.2} um ({} rows)",
-            "невязка {:.2} мкм (среднеквадратичное, по радиусу, без размеров и установок), шум {:.2} мкм (строк {})",
-            found.rms_mm * 1e3,
-            found.noise_mm * 1e3,
-            self.rows.len()
+            "gap     {rms:.2} um RMS on the radius beyond sizes and clampings, noise {noise:.2} um ({rows} rows)",
+            "невязка {rms:.2} мкм (среднеквадратичное, по радиусу, без размеров и установок), шум {noise:.2} мкм (строк {rows})"
         ));
         line(both!("        {}", "        {:#}", meaning(found.verdict)));
         if let Some(row) = found.outlier.and_then(|row| self.parts.read.row(row)) {
@@ -301,11 +299,10 @@ impl Said<'_> {
             let numbers = numbers.join(", ");
             line(both!("\ncause   {id}  {numbers}", "\nпричина {id}  {numbers}"));
             line(both!("        {}", "        {:#}", sentence(own)));
+            let [before, after] = own.rms_mm.map(|mm| mm * 1e3);
             line(both!(
-                "        RMS {:.2} -> {:.2} um",
-                "        среднеквадратичное {:.2} -> {:.2} мкм",
-                own.rms_mm[0] * 1e3,
-                own.rms_mm[1] * 1e3
+                "        RMS {before:.2} -> {after:.2} um",
+                "        среднеквадратичное {before:.2} -> {after:.2} мкм"
             ));
             if !own.rivals.is_empty() {
                 let rivals = own.rivals.join(", ");
@@ -314,12 +311,10 @@ impl Said<'_> {
             line(both!("        {}", "        {:#}", self.remedy(own)));
         }
         if let Some(unseen) = found.unseen {
+            let (rows, [before, after]) = (unseen.rows, unseen.rms_mm.map(|mm| mm * 1e3));
             line(both!(
-                "\nunseen parts: {:.2} -> {:.2} um RMS ({} rows, each part at its own size)",
-                "\nконтрольные детали: {:.2} -> {:.2} мкм (строк {}, каждая деталь при своём размере)",
-                unseen.rms_mm[0] * 1e3,
-                unseen.rms_mm[1] * 1e3,
-                unseen.rows
+                "\nunseen parts: {before:.2} -> {after:.2} um RMS ({rows} rows, each part at its own size)",
+                "\nконтрольные детали: {before:.2} -> {after:.2} мкм (строк {rows}, каждая деталь при своём размере)"
             ));
         }
         if let Some((text, _)) = self.next() {
