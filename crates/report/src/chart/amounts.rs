@@ -86,7 +86,7 @@ mod tests {
         let limited = Amounts { within: Some((20.0, &within)), ..all };
         assert_eq!([0.0, 20.0, 20.1, 119.0].map(|value| limited.class(value)), ["ok", "ok", "h0", "h9"]);
         let key = limited.key(Language::English, (0.0, 0.0)).into_string();
-        assert!(key.contains("within 20 um") && key.contains(">20.0<") && key.contains(">120 um<"), "{key}");
+        assert!(key.contains("within 20 um") && key.contains(">20.0<") && key.contains(">120 µm<"), "{key}");
         // All of it is.
         let key = Amounts { largest: 12.0, ..limited }.key(Language::English, (0.0, 0.0)).into_string();
         assert!(key.contains("within 20 um") && !key.contains("h9"), "{key}");
