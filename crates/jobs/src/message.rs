@@ -92,13 +92,26 @@ impl Failure {
 
     /// An option is wrong.
     pub fn option(message: Text, help: Text) -> Self {
-        Self::usage(Diagnostic::error(OPTION, message).help(help))
+        Self::asks(OPTION, message, help)
     }
 
     /// A usage error without a text.
     #[must_use]
     pub fn usage(diagnostic: Diagnostic) -> Self {
         Self::Usage(vec![Report { source: None, diagnostics: vec![diagnostic] }])
+    }
+
+    /// What was measured, or a program, is refused, and there is no text to point at.
+    #[must_use]
+    pub fn alone(code: Code, message: Text, help: Text) -> Self {
+        let diagnostics = vec![Diagnostic::error(code, message).help(help)];
+        Self::Refused(vec![Report { source: None, diagnostics }])
+    }
+
+    /// A question that only the user can answer, or a slip of theirs.
+    #[must_use]
+    pub fn asks(code: Code, message: Text, help: Text) -> Self {
+        Self::usage(Diagnostic::error(code, message).help(help))
     }
 
     /// A file that command line or profile names cannot be read: a usage error.

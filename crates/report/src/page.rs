@@ -1,38 +1,24 @@
 //! The page: head, styles, sections, data block.
 
-use diagnostic::{Language, Text, say};
+use diagnostic::{Language, Text, both, say};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::text::{Numbers, json_block, longest, shown, unparted};
-
-/// One part of a page.
-#[derive(Clone, Debug)]
-pub struct Section {
-    /// For links to it.
-    pub id: &'static str,
-    /// Its heading.
-    pub title: Text,
-    /// What it holds.
-    pub body: Markup,
-}
+use crate::body::{Body, Fact};
+use crate::text::{json_block, longest, shown, unparted};
 
 /// A whole page as bytes of HTML.
 #[derive(Clone, Debug)]
-pub struct Page<'a> {
-    /// The language that it is written in.
-    pub language: Language,
+pub struct Page {
     /// Title of the window and of a printed page.
-    pub title: &'a str,
-    /// What stands above the first section.
-    pub head: Markup,
-    /// The sections in order.
-    pub sections: Vec<Section>,
-    /// The results as JSON, kept in the page for programs.
-    pub json: &'a str,
+    title: Text,
     /// The command that made the page, without its files.
-    pub command: &'a str,
+    command: &'static str,
     /// What describes the JSON, with its version.
-    pub schema: &'a str,
+    schema: &'static str,
+    /// What stands above the first section.
+    pub head: Body,
+    /// For links to each, its heading, and what it holds.
+    sections: Vec<(&'static str, Text, Body)>,
 }
 
 /// Nothing may be loaded and nothing may run, whatever stands in the page.
@@ -43,11 +29,42 @@ const POLICY: &str =
 /// tells apart, and for the heat maps a series of rising lightness.
 const STYLE: &str = include_str!("page.css");
 
-impl Page<'_> {
-    /// The file.
+impl Page {
+    /// Nothing but its title.
     #[must_use]
-    pub fn into_html(self) -> String {
-        let language = self.language;
+    pub const fn new(language: Language, title: Text, command: &'static str, schema: &'static str) -> Self {
+        Self { title, command, schema, head: Body::new(language), sections: Vec::new() }
+    }
+
+    /// The next section; one in which nothing is said is left out.
+    pub fn section(&mut self, id: &'static str, title: Text) -> &mut Body {
+        self.sections.push((id, title, Body::new(self.head.language())));
+        let (_, _, body) = self.sections.last_mut().expect("it was pushed just now");
+        body
+    }
+
+    /// The last section: files, machine, options, and what made the page.
+    pub fn provenance(&mut self, facts: impl IntoIterator<Item = Fact>) -> &mut Body {
+        let made = format!("vpost {}, {}", env!("CARGO_PKG_VERSION"), self.schema);
+        let made = Fact::same(both!("made by", "создано"), made);
+        let body = self.section("provenance", both!("Where this comes from", "Откуда эти данные"));
+        body.facts(facts.into_iter().chain([made]));
+        body
+    }
+
+    /// The file.
+    ///
+    /// * `json` – the results, kept in the page for programs
+    #[must_use]
+    pub fn into_html(self, json: &str) -> String {
+        let language = self.head.language();
+        let foot = self.foot(language);
+        let said: Vec<(&str, &str, Markup)> = self
+            .sections
+            .iter()
+            .filter(|(.., body)| !body.is_empty())
+            .map(|(id, title, body)| (*id, title.in_language(language), body.clone().into_markup()))
+            .collect();
         let mut text = html! {
             (DOCTYPE)
             html lang=(language.name()) {
@@ -57,25 +74,25 @@ impl Page<'_> {
                     meta name="viewport" content="width=device-width, initial-scale=1";
                     meta name="color-scheme" content="light dark";
                     link rel="icon" href="data:,";
-                    title { (shown(self.title)) }
+                    title { (shown(self.title.in_language(language))) }
                     style { (PreEscaped(STYLE)) }
                 }
                 body {
                     a.skip href="#content" { (say!(language, "Skip to the content", "К содержанию")) }
-                    header { (self.head) }
+                    header { (self.head.into_markup()) }
                     nav aria-label=(say!(language, "Sections", "Разделы")) {
-                        ol { @for section in &self.sections { li { a href={ "#" (section.id) } { (section.title.in_language(language)) } } } }
+                        ol { @for (id, title, _) in &said { li { a href={ "#" (id) } { (title) } } } }
                     }
                     main #content tabindex="-1" {
-                        @for section in &self.sections {
-                            section id=(section.id) aria-labelledby={ (section.id) "-title" } {
-                                h2 id={ (section.id) "-title" } { (section.title.in_language(language)) }
-                                (section.body)
+                        @for (id, title, body) in &said {
+                            section id=(id) aria-labelledby={ (id) "-title" } {
+                                h2 id={ (id) "-title" } { (title) }
+                                (body)
                             }
                         }
                     }
-                    footer { (shown(&self.foot())) }
-                    script #data type="application/json" { (json_block(self.json)) }
+                    footer { (shown(&foot)) }
+                    script #data type="application/json" { (json_block(json)) }
                 }
             }
         }
@@ -85,13 +102,13 @@ impl Page<'_> {
     }
 
     /// One line at the end: what made the page, and what it is.
-    fn foot(&self) -> String {
-        let Self { language, command, schema, .. } = self;
+    fn foot(&self, language: Language) -> String {
+        let Self { command, schema, .. } = self;
+        let version = env!("CARGO_PKG_VERSION");
         say!(
-            *language,
-            "vpost {} {command}. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON ({schema}).",
-            "vpost {} {command}. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON ({schema}).",
-            env!("CARGO_PKG_VERSION")
+            language,
+            "vpost {version} {command}. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON ({schema}).",
+            "vpost {version} {command}. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON ({schema})."
         )
     }
 }
@@ -122,8 +139,7 @@ fn is_wide(header: &[&str], rows: &[Vec<String>]) -> bool {
 ///
 /// Where a telephone has no room for a row, it shows every row as a list of headings and cells. Styles that do so make a
 /// browser forget that it is a table: its parts say it themselves.
-#[must_use]
-pub fn table(language: Language, header: &[&str], numbers: &[usize], rows: &[Vec<String>]) -> Markup {
+pub(crate) fn table(language: Language, header: &[&str], numbers: &[usize], rows: &[Vec<String>]) -> Markup {
     let is_wide = is_wide(header, rows);
     let role = |role: &'static str| is_wide.then_some(role);
     html! {
@@ -151,33 +167,4 @@ pub fn table(language: Language, header: &[&str], numbers: &[usize], rows: &[Vec
             }
         }
     }
-}
-
-/// [`table`] with headings in every language, and numbers that were written with a point.
-#[must_use]
-pub fn table_of(language: Language, header: &[Text], numbers: &[usize], rows: &[Vec<String>]) -> Markup {
-    let header: Vec<&str> = header.iter().map(|text| text.in_language(language)).collect();
-    let cell = |(at, cell): (usize, &String)| {
-        if numbers.contains(&at) { language.figures(cell.clone()) } else { cell.clone() }
-    };
-    let rows: Vec<Vec<String>> = rows.iter().map(|row| row.iter().enumerate().map(cell).collect()).collect();
-    table(language, &header, numbers, &rows)
-}
-
-/// A drawing with its words, and its numbers behind a fold.
-#[must_use]
-pub fn figure(language: Language, drawing: &Markup, caption: &str, numbers: Option<Markup>) -> Markup {
-    html! {
-        figure {
-            div.scroll tabindex="0" role="group" aria-label=(say!(language, "Drawing", "Рисунок")) { (drawing) }
-            figcaption { (shown(caption)) }
-            @if let Some(numbers) = numbers { (folded(language, &numbers)) }
-        }
-    }
-}
-
-/// The numbers of drawings, behind a fold.
-#[must_use]
-pub fn folded(language: Language, numbers: &Markup) -> Markup {
-    html! { details { summary { (say!(language, "Numbers", "Числа")) } (numbers) } }
 }

@@ -2,7 +2,7 @@
 
 use diagnostic::Language;
 
-use crate::text::Numbers;
+use crate::numbers;
 
 /// A linear scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +44,10 @@ impl Scale {
         let digits = digits(step);
         let first = (self.low / step - 1e-9).ceil() as i64;
         let last = (self.high / step + 1e-9).floor() as i64;
-        (first..=last).map(|k| k as f64 * step).map(|value| (value, language.digits(value, digits))).collect()
+        (first..=last)
+            .map(|k| k as f64 * step)
+            .map(|value| (value, numbers::digits(value, digits).in_language(language).to_owned()))
+            .collect()
     }
 }
 

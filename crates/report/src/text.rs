@@ -1,4 +1,4 @@
-//! Texts from files: shown, never acting; numbers as people write them.
+//! Texts from files: shown, never acting.
 
 use diagnostic::{Language, Text};
 use maud::{Markup, PreEscaped, html};
@@ -63,45 +63,14 @@ pub fn json_string(text: &str) -> String {
     out
 }
 
-/// A number with three significant digits, as people write it: no exponent for what a machine measures.
-#[must_use]
-pub fn number(value: f64) -> String {
-    let size = value.abs();
-    let text = match size {
-        _ if !value.is_finite() => return "\u{2014}".to_owned(),
-        _ if size >= 99.95 => format!("{value:.0}"),
-        _ if size >= 9.995 => format!("{value:.1}"),
-        _ if size >= 0.0005 || value == 0.0 => format!("{value:.2}"),
-        _ => format!("{value:.1e}"),
-    };
-    // Minus zero is zero to people.
-    let text = if text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.')) {
-        text.replace('-', "")
-    } else {
-        text
-    };
-    text.replacen('-', "\u{2212}", 1)
-}
-
-/// A share as a percentage without decimals.
-#[must_use]
-pub fn percent(share: f64) -> String {
-    format!("{} %", number_of_digits(100.0 * share, 0))
-}
-
-/// A number with fixed decimals and a real minus sign.
-#[must_use]
-pub fn number_of_digits(value: f64, digits: usize) -> String {
-    let text = format!("{value:.digits$}");
-    let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.'));
-    if zero { text.replace('-', "") } else { text.replacen('-', "\u{2212}", 1) }
-}
-
 /// A text that begins a line: what a terminal joins to words before it begins with a small letter.
 #[must_use]
-pub fn opening(text: &str) -> String {
-    let mut rest = text.chars();
-    rest.next().map_or_else(String::new, |first| first.to_uppercase().chain(rest).collect())
+pub fn opening(text: &Text) -> Text {
+    let begun = |language| {
+        let mut rest = text.in_language(language).chars();
+        rest.next().map_or_else(String::new, |first| first.to_uppercase().chain(rest).collect())
+    };
+    Text::new(begun(Language::English), begun(Language::Russian))
 }
 
 /// A text in which what is typed stands between backticks, as on a terminal.
@@ -117,107 +86,6 @@ pub fn typed(text: &str) -> Markup {
 
 /// The unit of nearly every number on a page.
 pub static MICROMETRES: Text = Text::pair("\u{b5}m", "мкм");
-
-/// Numbers as the readers of a language write them.
-///
-/// In Russian that is a decimal comma, and digits in groups of three behind a space from ten thousand on; four
-/// stay together, as in the trade's tables.
-pub trait Numbers: Copy {
-    /// A number's English text, as this language writes it.
-    fn figures(self, english: String) -> String;
-
-    /// [`number`]
-    fn number(self, value: f64) -> String {
-        self.figures(number(value))
-    }
-
-    /// A value and half the width of its interval: two digits of that, and as many decimals of the value.
-    fn measured(self, value: f64, half_width: f64) -> [String; 2] {
-        let size = half_width.abs();
-        if !(size.is_finite() && size > 0.0) {
-            return [self.number(value), self.number(half_width)];
-        }
-        let digits = (0..9u8).find(|digits| size * 10f64.powi(i32::from(*digits)) >= 9.95).unwrap_or(9);
-        [value, half_width].map(|number| self.digits(number, usize::from(digits)))
-    }
-
-    /// [`number_of_digits`]
-    fn digits(self, value: f64, digits: usize) -> String {
-        self.figures(number_of_digits(value, digits))
-    }
-
-    /// [`percent`]
-    fn percent(self, share: f64) -> String {
-        self.figures(percent(share))
-    }
-
-    /// A text made for the terminal, where numbers have a point, as a page of this language shows it.
-    fn prose(self, text: &Text) -> String;
-
-    /// The same of a text that is in this language already.
-    fn of_terminal(self, text: &str) -> String;
-
-    /// A whole number.
-    fn count(self, count: impl TryInto<u64>) -> String {
-        self.figures(count.try_into().map_or_else(|_| "\u{2014}".to_owned(), |count| count.to_string()))
-    }
-}
-
-impl Numbers for Language {
-    fn figures(self, english: String) -> String {
-        match self {
-            Self::English => english,
-            Self::Russian => english.replace('.', ",").split(' ').map(grouped).collect::<Vec<_>>().join(" "),
-        }
-    }
-
-    fn prose(self, text: &Text) -> String {
-        self.of_terminal(text.in_language(self))
-    }
-
-    fn of_terminal(self, text: &str) -> String {
-        // What stands between backticks is typed, not read.
-        let is_balanced = text.matches('`').count().is_multiple_of(2);
-        let part = |(k, part): (usize, &str)| match self {
-            _ if is_balanced && k % 2 == 1 => part.to_owned(),
-            Self::English => with_micro(&with_minus(part)),
-            Self::Russian => with_commas(&with_minus(part)),
-        };
-        text.split('`').enumerate().map(part).collect::<Vec<_>>().join("`")
-    }
-}
-
-/// Signs before numbers as real minus signs; hyphens of words, dates and blocks stay.
-fn with_minus(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    let mut rest = text.chars().peekable();
-    while let Some(c) = rest.next() {
-        let is_first = out.chars().next_back().is_none_or(|before| before.is_whitespace() || before == '(');
-        let is_sign = c == '-' && is_first && rest.peek().is_some_and(char::is_ascii_digit);
-        out.push(if is_sign { '\u{2212}' } else { c });
-    }
-    out
-}
-
-/// Units that a terminal writes in ASCII, as they are.
-fn with_micro(text: &str) -> String {
-    let is_of_word = |c: char| c.is_alphanumeric() || c == '_';
-    let mut out = String::with_capacity(text.len());
-    let mut rest = text;
-    while let Some(start) = rest.find(|c: char| c.is_alphanumeric() || c == '_') {
-        let end = rest[start..].find(|c: char| !is_of_word(c)).map_or(rest.len(), |length| start + length);
-        out.push_str(&rest[..start]);
-        match &rest[start..end] {
-            unit @ ("um" | "urad") => {
-                out.push('\u{b5}');
-                out.push_str(&unit[1..]);
-            }
-            word => out.push_str(word),
-        }
-        rest = &rest[end..];
-    }
-    out + rest
-}
 
 /// Units that stay with their number where a line ends.
 const UNITS: [&str; 14] = [
@@ -332,77 +200,10 @@ fn unparted_text(text: &str, is_code: bool, out: &mut String) {
     }
 }
 
-/// The points of decimal numbers as commas; points of names, versions and codes (`G54.1`, `x.csv`, `0.1.0`) stay.
-fn with_commas(text: &str) -> String {
-    let of_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '/' | '`');
-    let mut out = String::with_capacity(text.len());
-    let mut rest = text;
-    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
-        let length = rest[start..].find(|c: char| !(c.is_ascii_digit() || c == '.'));
-        let end = length.map_or(rest.len(), |length| start + length);
-        let (before, number) = (&rest[..start], rest[start..end].trim_end_matches('.'));
-        out.push_str(before);
-        let stands_alone = !out.ends_with(of_name)
-            && !rest[start + number.len()..].starts_with(|c: char| c.is_alphanumeric() || c == '_');
-        if stands_alone && number.matches('.').count() == 1 {
-            out.push_str(&number.replace('.', ","));
-        } else {
-            out.push_str(number);
-        }
-        rest = &rest[start + number.len()..];
-    }
-    out + rest
-}
-
-/// Digits before the comma in groups of three, where there are more than four.
-fn grouped(text: &str) -> String {
-    let start = text.find(|c: char| c.is_ascii_digit()).unwrap_or(text.len());
-    let count = text[start..].bytes().take_while(u8::is_ascii_digit).count();
-    if count <= 4 {
-        return text.to_owned();
-    }
-    let (whole, rest) = text[start..].split_at(count);
-    let mut out = text[..start].to_owned();
-    for (at, digit) in whole.chars().enumerate() {
-        if at > 0 && (count - at) % 3 == 0 {
-            out.push('\u{a0}');
-        }
-        out.push(digit);
-    }
-    out + rest
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use maud::html;
-
-    #[test]
-    fn numbers_are_written_as_in_the_language() {
-        let both = |value: f64| Language::ALL.map(|language| language.digits(value, 1));
-        assert_eq!(both(-1234.5), ["\u{2212}1234.5", "\u{2212}1234,5"]);
-        assert_eq!(both(1_234_567.8), ["1234567.8", "1\u{a0}234\u{a0}567,8"]);
-        assert_eq!(Language::Russian.count(20_001_usize), "20\u{a0}001");
-        assert_eq!(Language::Russian.number(-0.0001), "\u{2212}1,0e-4");
-        assert_eq!(Language::Russian.percent(0.5), "50 %");
-        assert_eq!(Language::Russian.number(f64::NAN), "\u{2014}");
-        let pair = Language::Russian.figures("60008 \u{2192} 59999.5".to_owned());
-        assert_eq!(pair, "60\u{a0}008 \u{2192} 59\u{a0}999,5");
-        let measured = |value: f64, u: f64| Language::English.measured(value, u).join(" \u{b1} ");
-        assert_eq!(measured(243.37, 90.577), "243 \u{b1} 91");
-        assert_eq!(measured(11.312, 0.1234), "11.31 \u{b1} 0.12");
-        assert_eq!(measured(-1175.4, 46.1), "\u{2212}1175 \u{b1} 46");
-        assert_eq!(measured(3.0, 9.96), "3 \u{b1} 10");
-        assert_eq!(measured(1.0, 0.0), "1.00 \u{b1} 0.00");
-        let text = Text::pair("", "на 14.1 мкм, ±0.5; G54.1, 0.1.0, a1.5, в 2. строке 3.");
-        let said = "на 14,1 мкм, ±0,5; G54.1, 0.1.0, a1.5, в 2. строке 3.";
-        assert_eq!(Language::Russian.prose(&text), said);
-        let typed = "-1.5 um of -2 urad (-3) by `-4.5 um`, 2022-10-20, angle_urad, X-5";
-        let [english, russian] = Language::ALL.map(|language| language.of_terminal(typed));
-        let read = "\u{2212}1.5 \u{b5}m of \u{2212}2 \u{b5}rad (\u{2212}3) by `-4.5 um`, 2022-10-20, angle_urad, X-5";
-        assert_eq!(english, read);
-        assert!(russian.starts_with("\u{2212}1,5 um") && russian.contains("`-4.5 um`"), "{russian}");
-    }
 
     #[test]
     fn a_number_keeps_its_unit_and_an_option_its_hyphens() {
@@ -441,22 +242,9 @@ mod tests {
     }
 
     #[test]
-    fn numbers_for_people() {
-        for (value, text) in [
-            (0.0, "0.00"),
-            (-0.0001, "\u{2212}1.0e-4"),
-            (-0.004, "0.00"),
-            (1.234, "1.23"),
-            (-12.34, "\u{2212}12.3"),
-            (9.996, "10.0"),
-            (1234.5, "1234"),
-            (f64::NAN, "\u{2014}"),
-        ] {
-            assert_eq!(number(value), text);
-        }
-        assert_eq!(percent(-0.001), "0 %");
+    fn words_for_people() {
         assert_eq!(short("abcdef", 4), "abc\u{2026}");
-        assert_eq!(opening("ось"), "Ось");
+        assert_eq!(opening(&Text::same("ось")), Text::same("Ось"));
         assert_eq!(typed("add `a<b` to `c`").into_string(), "add <code>a&lt;b</code> to <code>c</code>");
         assert_eq!(typed("5 ` 6").into_string(), "5 ` 6");
     }

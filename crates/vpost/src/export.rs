@@ -4,11 +4,11 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Code, Text, both};
 use machine_model::{Axis, Command, EngineId, Interpolation, PathModel, Six, Vector};
 use machine_profile::Profile;
 
-use crate::message::{Deed, Failure, Messages, Report};
+use crate::message::{Deed, Failure, Messages};
 use crate::number::short;
 use crate::{file, profile};
 
@@ -188,9 +188,13 @@ pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure
         lost.push(both!("the profile's [[effect]] entries", "разделов [[effect]] профиля"));
     }
     if !lost.is_empty() {
-        let diagnostic = Diagnostic::warning(LOST, both!("this form does not hold {}", "эта форма не вмещает {:#}", Text::join(&lost, "; ")))
-            .help(both!("correct programs with vpost to have all of the model; never both: what a control compensates must not stand in the profile as well", "чтобы была вся модель, исправляйте программы с vpost; но не оба сразу: то, что компенсирует стойка, не должно стоять и в профиле"));
-        messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
+        let message =
+            both!("this form does not hold {}", "эта форма не вмещает {:#}", Text::join(&lost, "; "));
+        let help = both!(
+            "correct programs with vpost to have all of the model; never both: what a control compensates must not stand in the profile as well",
+            "чтобы была вся модель, исправляйте программы с vpost; но не оба сразу: то, что компенсирует стойка, не должно стоять и в профиле"
+        );
+        messages.warn(LOST, message, help);
     }
     Ok(())
 }
@@ -312,13 +316,7 @@ fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<Text>, Failure> 
         for y in &places[1] {
             for x in &places[0] {
                 let at = Vector::new(*x, *y, *z);
-                let command = Command {
-                    linear_mm: at,
-                    rotary_rad: Vector::zeros(),
-                    tool_mm,
-                    direction: [0; 3],
-                    ..Default::default()
-                };
+                let command = Command { linear_mm: at, tool_mm, ..Command::default() };
                 let error = model.error_mm(&command) * (1e3 * sign);
                 let cells: Vec<String> = at
                     .iter()

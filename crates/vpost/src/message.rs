@@ -2,7 +2,7 @@
 
 use std::io::{IsTerminal, Write};
 
-use diagnostic::{Language, Text};
+use diagnostic::{Code, Diagnostic, Language, Text};
 pub(crate) use jobs::message::*;
 use jobs::shown::shown;
 
@@ -45,6 +45,14 @@ impl Messages {
         for text in self.wording.rendered(report) {
             self.line(&text);
         }
+    }
+
+    /// Prints a warning about no text, where the user wants warnings.
+    pub(crate) fn warn(&self, code: Code, message: Text, help: Text) {
+        self.report(&Report {
+            source: None,
+            diagnostics: vec![Diagnostic::warning(code, message).help(help)],
+        });
     }
 
     /// Prints a line about progress or result, unless quiet.

@@ -1,9 +1,11 @@
 //! What every page says of where its numbers come from: how the machine was measured, and the command.
 
-use diagnostic::{Language, say};
+use diagnostic::{Text, both};
 use machine_profile::{Calibrated, Profile};
-use maud::{Markup, html};
-use report::text::{Numbers, shown};
+use report::body::Fact;
+use report::numbers::figures;
+
+use crate::number::short;
 
 /// When, how warm and with what a machine was measured, and how sure its model is.
 #[derive(Clone, Debug, Default)]
@@ -30,76 +32,75 @@ impl Origin {
         Self { calibrated: profile.calibrated.clone().unwrap_or_default() }
     }
 
-    /// What is known of it, each with its name, and the names of what is not.
-    fn parts(&self, language: Language) -> ([(String, Option<String>); 4], Option<String>) {
+    /// What is known of it, each with its name.
+    fn parts(&self) -> [(Text, Option<Text>); 4] {
         let c = &self.calibrated;
-        let short = |value: f64| language.figures(crate::number::short(value, 2));
-        let um = |value: f64| say!(language, "{} \u{b5}m", "{} мкм", short(value));
-        let rows = [
-            (say!(language, "date", "дата"), c.date.clone()),
-            (say!(language, "instrument", "прибор"), c.instrument.clone()),
+        [
+            (both!("date", "дата"), c.date.as_ref().map(Text::same)),
+            (both!("instrument", "прибор"), c.instrument.as_ref().map(Text::same)),
+            (both!("temperature", "температура"), c.temperature_c.map(celsius)),
+            (both!("uncertainty", "неопределённость"), c.uncertainty_um.map(um)),
+        ]
+    }
+
+    /// In a line.
+    pub(crate) fn said(&self) -> Text {
+        let parts = self.parts();
+        let known = parts.iter().filter_map(|(name, value)| Some(Text::join([name, value.as_ref()?], " ")));
+        let known = Text::join(&known.collect::<Vec<_>>(), ", ");
+        let missing = parts.iter().filter(|(_, value)| value.is_none()).map(|(name, _)| name);
+        let missing = Text::join(missing, ", ");
+        let said = [
+            (known.is_empty(), both!("Calibration: {known}.", "Калибровка: {known:#}.")),
             (
-                say!(language, "temperature", "температура"),
-                c.temperature_c.map(|t| format!("{} \u{b0}C", short(t))),
+                missing.is_empty(),
+                both!(
+                    "The profile does not say of its calibration: {missing}.",
+                    "О калибровке в профиле не сказано: {missing:#}."
+                ),
             ),
-            (say!(language, "uncertainty", "неопределённость"), c.uncertainty_um.map(um)),
         ];
-        (rows, c.repeatability_um.map(um))
+        Text::join(said.iter().filter(|(is_nothing, _)| !is_nothing).map(|(_, text)| text), " ")
     }
 
-    /// One line for the first screen.
-    pub(crate) fn line(&self, language: Language) -> Markup {
-        html! { p.muted { (shown(&self.said(language))) } }
+    /// For the section that says where the numbers come from.
+    pub(crate) fn facts(&self) -> Vec<Fact> {
+        let one = |(name, value): (Text, Option<Text>)| {
+            let name = both!("calibration: {name}", "калибровка: {name:#}");
+            value.map_or_else(
+                || Fact::unknown(name.clone(), both!("not stated in the profile", "в профиле не указано")),
+                |value| Fact::new(name.clone(), &value),
+            )
+        };
+        let repeats = both!("calibration: repeatability", "калибровка: повторяемость");
+        let mut all: Vec<Fact> = self.parts().map(one).into();
+        all.extend(self.calibrated.repeatability_um.map(|value| Fact::new(repeats, &um(value))));
+        all.push(command_fact());
+        all
     }
+}
 
-    /// The same as text.
-    pub(crate) fn said(&self, language: Language) -> String {
-        let (rows, _) = self.parts(language);
-        let known: Vec<String> =
-            rows.iter().filter_map(|(name, value)| Some(format!("{name} {}", value.as_ref()?))).collect();
-        let missing: Vec<&str> =
-            rows.iter().filter(|(_, value)| value.is_none()).map(|(name, _)| name.as_str()).collect();
-        let mut said = String::new();
-        if !known.is_empty() {
-            said = say!(language, "Calibration: {}.", "Калибровка: {}.", known.join(", "));
-        }
-        if !missing.is_empty() {
-            let missing = missing.join(", ");
-            said.push_str(if said.is_empty() { "" } else { " " });
-            said.push_str(&say!(
-                language,
-                "The profile does not say of its calibration: {missing}.",
-                "О калибровке в профиле не сказано: {missing}."
-            ));
-        }
-        said
-    }
+/// A temperature.
+pub(crate) fn celsius(value: f64) -> Text {
+    let value = figures(short(value, 2));
+    both!("{value} \u{b0}C", "{value:#} \u{b0}C")
+}
 
-    /// Rows for the section that says where the numbers come from.
-    pub(crate) fn rows(&self, language: Language) -> Markup {
-        let (rows, repeats) = self.parts(language);
-        html! {
-            @for (name, value) in rows {
-                dt { (say!(language, "calibration: {name}", "калибровка: {name}")) }
-                dd {
-                    @match value {
-                        Some(value) => (shown(&value)),
-                        None => span.muted { (say!(language, "not stated in the profile", "в профиле не указано")) },
-                    }
-                }
-            }
-            @if let Some(repeats) = repeats {
-                dt { (say!(language, "calibration: repeatability", "калибровка: повторяемость")) } dd { (repeats) }
-            }
-            (command_row(language))
-        }
-    }
+fn um(value: f64) -> Text {
+    let value = figures(short(value, 2));
+    both!("{value} \u{b5}m", "{value:#} мкм")
 }
 
 /// The command that made a page.
-pub(crate) fn command_row(language: Language) -> Markup {
-    html! { dt { (say!(language, "command", "команда")) } dd { code { (shown(&command())) } } }
+pub(crate) fn command_fact() -> Fact {
+    Fact::typed(both!("command", "команда"), command())
 }
+
+/// Names that stand in every page's last section.
+pub(crate) const MACHINE: Text = Text::pair("machine", "станок");
+pub(crate) const MEASUREMENTS: Text = Text::pair("measurements", "измерения");
+pub(crate) const PROFILE: Text = Text::pair("profile and its tables", "профиль и его таблицы");
+pub(crate) const MODEL: Text = Text::pair("model", "модель");
 
 /// The command as it was typed, quoted for a shell; of results the names alone.
 pub(crate) fn command() -> String {

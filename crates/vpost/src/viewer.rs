@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Code, Text, both};
 use jobs::causes::Causes;
 use report::viewer::scene::{BEFORE, CAUSES, Cause, Displacement, Place, Scene};
 use report::viewer::thinning::TooLarge;
@@ -33,7 +33,7 @@ pub(crate) fn too_large(name: &str, refused: &TooLarge) -> Failure {
         "draw a part of the program: cut it where it positions, or leave `--viewer` out",
         "покажите часть программы, разделив её на позиционировании, или обойдитесь без `--viewer`"
     );
-    Failure::usage(Diagnostic::error(TOO_LARGE, message).help(help))
+    Failure::asks(TOO_LARGE, message, help)
 }
 
 /// What is refused where there is nothing to draw.
@@ -42,7 +42,7 @@ pub(crate) fn no_path(name: &str, what: &Text, help: Text) -> Failure {
         "{name}: {what}: there is nothing for `--viewer` to draw",
         "{name}: {what:#}: для `--viewer` рисовать нечего"
     );
-    Failure::usage(Diagnostic::error(NO_PATH, message).help(help))
+    Failure::asks(NO_PATH, message, help)
 }
 
 /// Causes as the page knows them.

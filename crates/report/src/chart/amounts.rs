@@ -1,10 +1,11 @@
 //! Amounts as colours, and the key to them.
 
-use diagnostic::Language;
+use diagnostic::{Language, Text, both};
 use maud::{Markup, html};
 
 use super::{rect, text};
-use crate::text::Numbers;
+use crate::numbers::number;
+use crate::text::MICROMETRES;
 
 /// Steps of lightness in the palette.
 pub(super) const SHADES: usize = 10;
@@ -19,9 +20,7 @@ pub struct Amounts<'a> {
     /// The end of the palette.
     pub largest: f64,
     /// What is not above this has one colour, outside the palette; and how that is said.
-    pub within: Option<(f64, &'a str)>,
-    /// The unit.
-    pub unit: &'a str,
+    pub within: Option<(f64, &'a Text)>,
 }
 
 impl Amounts<'_> {
@@ -40,8 +39,9 @@ impl Amounts<'_> {
     }
 
     /// The largest amount with its unit.
-    pub(super) fn largest_said(&self, language: Language) -> String {
-        format!("{} {}", language.number(self.largest), self.unit)
+    pub(super) fn largest_said(&self) -> Text {
+        let largest = number(self.largest);
+        both!("{largest} {MICROMETRES}", "{largest:#} {MICROMETRES:#}")
     }
 
     /// How wide the key is.
@@ -55,12 +55,12 @@ impl Amounts<'_> {
         html! {
             @if let Some((_, said)) = self.within {
                 (rect("ok", (x, y), STEP, 10.0))
-                (text(x, y + 24.0, "m", said))
+                (text(x, y + 24.0, "m", said.in_language(language)))
             }
             @if self.largest > self.low() || self.within.is_none() {
                 @for k in 0..SHADES { (rect(&format!("h{k}"), (from + STEP * k as f64, y), STEP, 10.0)) }
-                (text(from, y + 24.0, "m", &self.within.map_or_else(|| "0".to_owned(), |(limit, _)| language.number(limit))))
-                (text(from + STEP * SHADES as f64, y + 24.0, "m e", &self.largest_said(language)))
+                (text(from, y + 24.0, "m", self.within.map_or(Text::pair("0", "0"), |(limit, _)| number(limit)).in_language(language)))
+                (text(from + STEP * SHADES as f64, y + 24.0, "m e", self.largest_said().in_language(language)))
             }
         }
     }
@@ -80,12 +80,13 @@ mod tests {
 
     #[test]
     fn what_is_within_the_limit_is_outside_the_palette() {
-        let all = Amounts { largest: 120.0, within: None, unit: "um" };
+        let all = Amounts { largest: 120.0, within: None };
         assert_eq!([0.0, 20.0, 119.0, 500.0].map(|value| all.class(value)), ["h0", "h1", "h9", "h9"]);
-        let limited = Amounts { within: Some((20.0, "within 20 um")), ..all };
+        let within = Text::same("within 20 um");
+        let limited = Amounts { within: Some((20.0, &within)), ..all };
         assert_eq!([0.0, 20.0, 20.1, 119.0].map(|value| limited.class(value)), ["ok", "ok", "h0", "h9"]);
         let key = limited.key(Language::English, (0.0, 0.0)).into_string();
-        assert!(key.contains("within 20 um") && key.contains(">20.0<") && key.contains(">120 um<"), "{key}");
+        assert!(key.contains("within 20 um") && key.contains(">20.0<") && key.contains(">120 µm<"), "{key}");
         // All of it is.
         let key = Amounts { largest: 12.0, ..limited }.key(Language::English, (0.0, 0.0)).into_string();
         assert!(key.contains("within 20 um") && !key.contains("h9"), "{key}");

@@ -1,18 +1,19 @@
 //! Cells coloured or shaded by an amount: slices through the machine, and tables of likeness.
 
-use diagnostic::{Language, say};
+use diagnostic::{Language, Text, both};
 use maud::{Markup, html};
 
 use super::amounts::{Amounts, shade};
 use super::{WIDTH, rect, right_and_up, svg, text};
+use crate::numbers::{digits, number};
 use crate::scale::{Scale, px};
-use crate::text::{Numbers, short};
+use crate::text::short;
 
 /// Mean amounts over a plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slice {
     /// Which plane.
-    pub title: String,
+    pub title: Text,
     /// Names of the axis to the right and the axis up.
     pub axes: [&'static str; 2],
     /// Ranges of both.
@@ -27,9 +28,9 @@ pub struct Slice {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matrix {
     /// Names of the rows.
-    pub rows: Vec<String>,
+    pub rows: Vec<Text>,
     /// Names of the columns.
-    pub columns: Vec<String>,
+    pub columns: Vec<Text>,
     /// Row by row; `None` where it was not asked.
     pub values: Vec<Option<f64>>,
     /// From here on two things cannot be told apart.
@@ -41,10 +42,11 @@ const SIDE: f64 = 168.0;
 
 /// Slices, three in a row, all coloured alike.
 #[must_use]
-pub fn slices(language: Language, title: &str, all: &[Slice], amounts: &Amounts<'_>) -> Markup {
+pub fn slices(language: Language, title: &Text, all: &[Slice], amounts: &Amounts<'_>) -> Markup {
     let step = (SIDE + 68.0, SIDE + 64.0);
     let place = |at: usize| (46.0 + step.0 * (at % PER_ROW) as f64, 22.0 + step.1 * (at / PER_ROW) as f64);
-    let largest = amounts.largest_said(language);
+    let largest = amounts.largest_said();
+    let unmeasured = both!("not measured", "не измерялось");
     let height = 22.0 + step.1 * all.len().div_ceil(PER_ROW) as f64;
     let body = html! {
         @for (at, slice) in all.iter().enumerate() {
@@ -52,7 +54,7 @@ pub fn slices(language: Language, title: &str, all: &[Slice], amounts: &Amounts<
             @let x = Scale::new(slice.ranges[0], (left, left + SIDE));
             @let y = Scale::new(slice.ranges[1], (top + SIDE, top));
             @let size = [SIDE / slice.cells[0].max(1) as f64, SIDE / slice.cells[1].max(1) as f64];
-            (text(left, top - 6.0, "", &slice.title))
+            (text(left, top - 6.0, "", slice.title.in_language(language)))
             @for (cell, value) in slice.values.iter().enumerate() {
                 @let column = (cell % slice.cells[0].max(1)) as f64;
                 @let row = (cell / slice.cells[0].max(1)) as f64;
@@ -62,26 +64,25 @@ pub fn slices(language: Language, title: &str, all: &[Slice], amounts: &Amounts<
             }
             @for (value, label) in x.ticks(3, language) { (text(x.at(value), top + SIDE + 14.0, "m c", &label)) }
             @for (value, label) in y.ticks(3, language) { (text(left - 5.0, y.at(value) + 4.0, "m e", &label)) }
-            (text(left + 0.5 * SIDE, top + SIDE + 28.0, "m c", &right_and_up(language, slice.axes)))
+            (text(left + 0.5 * SIDE, top + SIDE + 28.0, "m c", right_and_up(slice.axes).in_language(language)))
         }
         (amounts.key(language, (46.0, height)))
         @if all.iter().any(|slice| slice.values.iter().any(Option::is_none)) {
             @let behind = 46.0 + amounts.width() + 44.0;
             (rect("cell none", (behind, height), 24.0, 10.0))
-            (text(behind + 30.0, height + 9.0, "m", &say!(language, "not measured", "не измерялось")))
+            (text(behind + 30.0, height + 9.0, "m", unmeasured.in_language(language)))
         }
     };
-    let described = say!(
-        language,
+    let described = both!(
         "one scale for all slices, 0 to {largest}",
-        "общая шкала для всех сечений, от 0 до {largest}"
+        "общая шкала для всех сечений, от 0 до {largest:#}"
     );
-    svg(height + 30.0, title, &described, &body)
+    svg(language, height + 30.0, title, &described, &body)
 }
 
 /// A table of likeness, darker where more alike.
 #[must_use]
-pub fn matrix(language: Language, title: &str, m: &Matrix) -> Markup {
+pub fn matrix(language: Language, title: &Text, m: &Matrix) -> Markup {
     const LEFT: f64 = 176.0;
     const TOP: f64 = 132.0;
     let width = ((WIDTH - LEFT - 70.0) / m.columns.len().max(1) as f64).min(46.0);
@@ -89,12 +90,12 @@ pub fn matrix(language: Language, title: &str, m: &Matrix) -> Markup {
     let text_size = if width < 30.0 { "font-size:9px" } else { "font-size:11px" };
     let body = html! {
         @for (column, name) in m.columns.iter().enumerate() {
-            @let x = LEFT + (column as f64 + 0.5) * width + 4.0;
+            @let (name, x) = (name.in_language(language), LEFT + (column as f64 + 0.5) * width + 4.0);
             text.long[name.chars().count() > 14] x=(px(x)) y=(px(TOP - 6.0)) transform={ "rotate(-55 " (px(x)) " " (px(TOP - 6.0)) ")" } { (short(name, 24)) }
         }
         @for (row, name) in m.rows.iter().enumerate() {
             @let y = TOP + row as f64 * height;
-            (super::name(LEFT - 8.0, y + 16.0, "e", &short(name, 24)))
+            (super::name(LEFT - 8.0, y + 16.0, "e", &short(name.in_language(language), 24)))
             @for column in 0..m.columns.len() {
                 @let x = LEFT + column as f64 * width;
                 @match m.values.get(row * m.columns.len() + column).copied().flatten() {
@@ -104,7 +105,7 @@ pub fn matrix(language: Language, title: &str, m: &Matrix) -> Markup {
                         (rect(&format!("cell h{shade}"), (x, y), width, height))
                         @if value >= m.limit { (rect("whisker", (x + 1.5, y + 1.5), width - 3.0, height - 3.0)) }
                         text.c.(if shade < 5 { "on0" } else { "on1" }) x=(px(x + 0.5 * width)) y=(px(y + 16.0)) style=(text_size) {
-                            (language.digits(value, 2))
+                            (digits(value, 2).in_language(language))
                         }
                     }
                 }
@@ -112,11 +113,8 @@ pub fn matrix(language: Language, title: &str, m: &Matrix) -> Markup {
         }
     };
     let alike = m.values.iter().flatten().filter(|v| **v >= m.limit).count();
-    let limit = language.number(m.limit);
-    let described = say!(
-        language,
-        "{alike} pairs are more alike than {limit}",
-        "пар, сходных больше чем на {limit}: {alike}"
-    );
-    svg(TOP + height * m.rows.len() as f64 + 8.0, title, &described, &body)
+    let limit = number(m.limit);
+    let described =
+        both!("{alike} pairs are more alike than {limit}", "пар, сходных больше чем на {limit:#}: {alike}");
+    svg(language, TOP + height * m.rows.len() as f64 + 8.0, title, &described, &body)
 }

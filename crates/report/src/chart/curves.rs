@@ -1,17 +1,18 @@
 //! Curves over a variable, and how often an amount occurs.
 
-use diagnostic::{Language, say};
+use diagnostic::{Language, Text, both};
 use maud::{Markup, html};
 
 use super::{WIDTH, before_and_after, legend, line, rect, svg, text, ticks_below, ticks_left};
+use crate::numbers::{count, number};
 use crate::scale::{Scale, px};
-use crate::text::Numbers;
+use crate::text::MICROMETRES;
 
 /// Values over a variable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curves {
     /// What runs along it, with its unit.
-    pub label: String,
+    pub label: Text,
     /// Places along it, ascending.
     pub at: Vec<f64>,
     /// For each series its values at these places.
@@ -39,19 +40,12 @@ const RIGHT: f64 = WIDTH - 16.0;
 ///
 /// * `series` – classes and names of the series, as many as every panel has
 #[must_use]
-pub fn curves(
-    language: Language,
-    title: &str,
-    panels: &[Curves],
-    series: &[(&str, &str)],
-    unit: &str,
-) -> Markup {
+pub fn curves(language: Language, title: &Text, panels: &[Curves], series: &[(&str, Text)]) -> Markup {
     let (low, high) = reach(panels);
-    let [low, high] = [low, high].map(|v| language.number(v));
-    let described = say!(
-        language,
-        "from {low} to {high} {unit}, one scale for all",
-        "от {low} до {high} {unit}, общая шкала"
+    let [low, high] = [low, high].map(number);
+    let described = both!(
+        "from {low} to {high} {MICROMETRES}, one scale for all",
+        "от {low:#} до {high:#} {MICROMETRES:#}, общая шкала"
     );
     curves_with(language, title, &described, panels, series)
 }
@@ -66,18 +60,18 @@ fn reach(panels: &[Curves]) -> (f64, f64) {
 #[must_use]
 pub fn curves_with(
     language: Language,
-    title: &str,
-    described: &str,
+    title: &Text,
+    described: &Text,
     panels: &[Curves],
-    series: &[(&str, &str)],
+    series: &[(&str, Text)],
 ) -> Markup {
     let (low, high) = reach(panels);
     let margin = 0.06 * (high - low);
-    let keys: Vec<(String, &str)> =
-        series.iter().map(|(class, words)| (class.replace('s', "k"), *words)).collect();
-    let keys: Vec<(&str, &str)> = keys.iter().map(|(class, words)| (class.as_str(), *words)).collect();
+    let classes: Vec<String> = series.iter().map(|(class, _)| class.replace('s', "k")).collect();
+    let keys: Vec<(&str, Text)> =
+        classes.iter().zip(series).map(|(class, (_, words))| (class.as_str(), words.clone())).collect();
     let body = html! {
-        (legend(LEFT, 14.0, &keys))
+        (legend(language, LEFT, 14.0, &keys))
         @for (row, panel) in panels.iter().enumerate() {
             @let top = TOP + STEP * row as f64;
             @let ends = (panel.at.first().copied().unwrap_or(0.0), panel.at.last().copied().unwrap_or(1.0));
@@ -90,10 +84,10 @@ pub fn curves_with(
             @for ((class, _), values) in series.iter().zip(&panel.values) {
                 path class={ "line " (class) } d=(path(&panel.at, values, &x, &y)) {}
             }
-            (text(0.5 * (LEFT + RIGHT), top + HEIGHT + 30.0, "m c", &panel.label))
+            (text(0.5 * (LEFT + RIGHT), top + HEIGHT + 30.0, "m c", panel.label.in_language(language)))
         }
     };
-    svg(TOP + STEP * panels.len() as f64, title, described, &body)
+    svg(language, TOP + STEP * panels.len() as f64, title, described, &body)
 }
 
 /// A line through the values; where one is not known it is broken.
@@ -117,11 +111,10 @@ fn path(at: &[f64], values: &[f64], x: &Scale, y: &Scale) -> String {
 #[must_use]
 pub fn histogram(
     language: Language,
-    title: &str,
+    title: &Text,
     h: &Histogram,
-    limit: Option<(f64, &str)>,
-    [label, counted]: [&str; 2],
-    unit: &str,
+    limit: Option<(f64, &Text)>,
+    [label, counted]: [&Text; 2],
 ) -> Markup {
     let (top, bottom) = (36.0, 226.0);
     let most = h.before.iter().chain(&h.after).copied().max().unwrap_or(0).max(1);
@@ -133,7 +126,7 @@ pub fn histogram(
     });
     let body = html! {
         (before_and_after(language, LEFT))
-        (text(LEFT - 5.0, top - 8.0, "m e", counted))
+        (text(LEFT - 5.0, top - 8.0, "m e", counted.in_language(language)))
         (rect("frame", (LEFT, top), RIGHT - LEFT, bottom - top))
         (ticks_left(language, &y, 5, LEFT, RIGHT))
         (ticks_below(language, &x, 10, top, bottom))
@@ -143,15 +136,16 @@ pub fn histogram(
         }
         path class="line s0" style="stroke-width:2" d={ (outline) "V" (px(bottom)) } {}
         @if let Some((value, name)) = limit.filter(|(value, _)| *value <= h.largest) {
+            @let words = Text::join([name, &number(value), &MICROMETRES], " ");
             (line("limit", (x.at(value), top), (x.at(value), bottom)))
-            (text(x.at(value) + 4.0, top - 6.0, "", &format!("{name} {} {unit}", language.number(value))))
+            (text(x.at(value) + 4.0, top - 6.0, "", words.in_language(language)))
         }
-        (text(0.5 * (LEFT + RIGHT), bottom + 30.0, "m c", label))
+        (text(0.5 * (LEFT + RIGHT), bottom + 30.0, "m c", label.in_language(language)))
     };
-    let [before, after] = [&h.before, &h.after].map(|counts| language.count(counts.iter().sum::<u64>()));
+    let [before, after] = [&h.before, &h.after].map(|counts| count(counts.iter().sum::<u64>()));
     let described =
-        say!(language, "{before} values before, {after} after", "значений до: {before}, после: {after}");
-    svg(bottom + 38.0, title, &described, &body)
+        both!("{before} values before, {after} after", "значений до: {before:#}, после: {after:#}");
+    svg(language, bottom + 38.0, title, &described, &body)
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
 //! Dots over a variable, in panels side by side.
 
-use diagnostic::{Language, say};
+use diagnostic::{Language, Text, both};
 use maud::{Markup, html};
 
-use super::{WIDTH, legend, line, rect, svg, text, ticks_below, ticks_left};
-use crate::scale::{Scale, px};
-use crate::text::Numbers;
+use super::{WIDTH, legend, line, rect, spotted, svg, text, ticks_below, ticks_left};
+use crate::numbers::number;
+use crate::scale::Scale;
+use crate::text::MICROMETRES;
 
 /// Dots of one colour.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +21,7 @@ pub struct Points {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// What runs along it, with its unit.
-    pub label: String,
+    pub label: Text,
     /// Range of that.
     pub range: (f64, f64),
     /// The dots.
@@ -37,27 +38,27 @@ const GAP: f64 = 40.0;
 #[must_use]
 pub fn panels(
     language: Language,
-    title: &str,
-    columns: &[&str],
+    title: &Text,
+    columns: &[Text],
     rows: &[Vec<Panel>],
     reach: f64,
-    series: &[(&str, &str)],
-    unit: &str,
+    series: &[(&str, Text)],
 ) -> Markup {
     let count = columns.len().max(1) as f64;
     let width = (WIDTH - LEFT - 18.0 - GAP * (count - 1.0)) / count;
     let left = |column: usize| LEFT + column as f64 * (width + GAP);
-    let columns_said = columns.join(&say!(language, " and ", " и "));
-    let reach_said = language.number(reach);
-    let described = say!(
-        language,
-        "{columns_said}; vertical scale \u{b1}{reach_said} {unit}",
-        "{columns_said}; вертикальная шкала \u{b1}{reach_said} {unit}"
+    let names = |and: &str| columns.iter().map(Text::english).collect::<Vec<_>>().join(and);
+    let russian: Vec<&str> = columns.iter().map(|name| name.in_language(Language::Russian)).collect();
+    let names = Text::new(names(" and "), russian.join(" и "));
+    let reach_said = number(reach);
+    let described = both!(
+        "{names}; vertical scale \u{b1}{reach_said} {MICROMETRES}",
+        "{names:#}; вертикальная шкала \u{b1}{reach_said:#} {MICROMETRES:#}"
     );
     let body = html! {
-        (legend(LEFT, 14.0, series))
+        (legend(language, LEFT, 14.0, series))
         @for (column, name) in columns.iter().enumerate() {
-            (text(left(column), TOP - 8.0, "", &format!("{name}, {unit}")))
+            (text(left(column), TOP - 8.0, "", Text::join([name, &MICROMETRES], ", ").in_language(language)))
         }
         @for (row, panels) in rows.iter().enumerate() {
             @let top = TOP + STEP * row as f64;
@@ -71,18 +72,15 @@ pub fn panels(
                 @for points in &panel.points {
                     path class={ "dots s" (points.series) } d=(dots(&points.at, &x, &y)) {}
                 }
-                (text(left(column) + 0.5 * width, top + HEIGHT + 27.0, "m c", &panel.label))
+                (text(left(column) + 0.5 * width, top + HEIGHT + 27.0, "m c", panel.label.in_language(language)))
             }
         }
     };
-    svg(TOP + STEP * rows.len() as f64, title, &described, &body)
+    svg(language, TOP + STEP * rows.len() as f64, title, &described, &body)
 }
 
 /// Dots as one path: strokes of no length with round ends.
 pub(super) fn dots(at: &[(f64, f64)], x: &Scale, y: &Scale) -> String {
     let known = at.iter().filter(|(a, b)| a.is_finite() && b.is_finite());
-    known.fold(String::new(), |mut path, (a, b)| {
-        path.push_str(&format!("M{} {}h0", px(x.at(*a)), px(y.at(*b))));
-        path
-    })
+    spotted(known.map(|(a, b)| (x.at(*a), y.at(*b))))
 }

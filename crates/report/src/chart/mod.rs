@@ -14,12 +14,12 @@ mod lines;
 mod polar;
 pub mod solid;
 
-use diagnostic::{Language, say};
+use diagnostic::{Language, Text, both};
 use maud::{Markup, html};
 
 pub use amounts::Amounts;
 pub use bands::{Band, Bands, bands};
-pub use bars::{Bar, Interval, Range, bars, interval, ranges, waterfall};
+pub use bars::{Bar, Interval, Range, interval, ranges, waterfall};
 pub use cells::{Matrix, Slice, matrix, slices};
 pub use curves::{Curves, Histogram, curves, curves_with, histogram};
 pub use dots::{Panel, Points, panels};
@@ -37,25 +37,48 @@ pub const WIDTH: f64 = 720.0;
 const TALL: f64 = 0.75;
 
 /// An `svg` element with its words.
-fn svg(height: f64, title: &str, description: &str, body: &Markup) -> Markup {
+fn svg(language: Language, height: f64, title: &Text, description: &Text, body: &Markup) -> Markup {
     html! {
         svg.tall[height > TALL * WIDTH] xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (px(WIDTH)) " " (px(height)) } role="img" {
-            title { (shown(title)) }
-            desc { (shown(description)) }
-            (body)
+            (named(language, title, description, body))
         }
     }
 }
 
 /// A drawing that is legible as wide as a telephone; several stand side by side where there is room.
-fn narrow((width, height): (f64, f64), title: &str, description: &str, body: &Markup) -> Markup {
+fn narrow(
+    language: Language,
+    (width, height): (f64, f64),
+    title: &Text,
+    description: &Text,
+    body: &Markup,
+) -> Markup {
     html! {
         svg.narrow xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (px(width)) " " (px(height)) } role="img" {
-            title { (shown(title)) }
-            desc { (shown(description)) }
-            (body)
+            (named(language, title, description, body))
         }
     }
+}
+
+fn named(language: Language, title: &Text, description: &Text, body: &Markup) -> Markup {
+    html! {
+        title { (shown(title.in_language(language))) }
+        desc { (shown(description.in_language(language))) }
+        (body)
+    }
+}
+
+/// A line through places, in the drawing's units.
+fn joined(places: impl IntoIterator<Item = (f64, f64)>) -> String {
+    places.into_iter().fold(String::new(), |path, (x, y)| {
+        let pen = if path.is_empty() { 'M' } else { 'L' };
+        path + &format!("{pen}{} {}", px(x), px(y))
+    })
+}
+
+/// Places as strokes of no length, which round ends make dots.
+fn spotted(places: impl IntoIterator<Item = (f64, f64)>) -> String {
+    places.into_iter().map(|(x, y)| format!("M{} {}h0", px(x), px(y))).collect()
 }
 
 fn text(x: f64, y: f64, class: &str, words: &str) -> Markup {
@@ -119,23 +142,22 @@ fn ticks_left(language: Language, scale: &Scale, count: usize, left: f64, right:
 
 /// The legend of what was and of what is left.
 fn before_and_after(language: Language, x: f64) -> Markup {
-    let [before, after] = [say!(language, "before", "до"), say!(language, "after", "после")];
-    legend(x, 14.0, &[("k1", &before), ("k0", &after)])
+    legend(language, x, 14.0, &[("k1", both!("before", "до")), ("k0", both!("after", "после"))])
 }
 
 /// What an axis to the right and one up are called.
-fn right_and_up(language: Language, [right, up]: [&str; 2]) -> String {
-    say!(language, "{right} to the right, {up} up", "{right} вправо, {up} вверх")
+fn right_and_up([right, up]: [&str; 2]) -> Text {
+    both!("{right} to the right, {up} up", "{right} вправо, {up} вверх")
 }
 
 /// Squares with words: what the colours mean.
-fn legend(x: f64, y: f64, entries: &[(&str, &str)]) -> Markup {
+fn legend(language: Language, x: f64, y: f64, entries: &[(&str, Text)]) -> Markup {
     // One text, so that entries follow one another however large the page writes them: on telephones larger.
     html! {
         text x=(px(x)) y=(px(y)) {
             @for (k, (class, words)) in entries.iter().enumerate() {
                 tspan class=(class) dx=[(k > 0).then_some("14")] { "\u{25a0}" }
-                tspan dx="4" { (shown(words)) }
+                tspan dx="4" { (shown(words.in_language(language))) }
             }
         }
     }
@@ -148,9 +170,10 @@ mod tests {
     #[test]
     fn words_from_files_are_escaped_in_drawings() {
         let hostile = "\"><script>alert(1)</script>";
-        let bar = Bar { label: hostile.to_owned(), value: 1.0 };
-        let drawing = waterfall(Language::English, hostile, &[bar.clone(), bar], Some((0.5, hostile)), "um")
-            .into_string();
+        let hostile = Text::same(hostile);
+        let bar = Bar { label: hostile.clone(), value: 1.0 };
+        let drawing =
+            waterfall(Language::English, &hostile, &[bar.clone(), bar], Some((0.5, &hostile))).into_string();
         assert!(!drawing.contains("<script") && drawing.contains("&lt;script&gt;"), "{drawing}");
     }
 
@@ -163,10 +186,10 @@ mod tests {
     #[test]
     fn nothing_that_is_no_number_is_written() {
         let bars = [
-            Bar { label: "a".to_owned(), value: f64::NAN },
-            Bar { label: "b".to_owned(), value: f64::INFINITY },
+            Bar { label: Text::same("a"), value: f64::NAN },
+            Bar { label: Text::same("b"), value: f64::INFINITY },
         ];
-        let drawing = super::bars(Language::English, "t", &bars, "um").into_string();
+        let drawing = waterfall(Language::English, &Text::same("t"), &bars, None).into_string();
         assert!(!drawing.contains("NaN") && !drawing.contains("inf"), "{drawing}");
     }
 }

@@ -1,12 +1,13 @@
 //! Deviations about a circle, magnified: the plot of a ball bar.
 
-use diagnostic::{Language, say};
+use diagnostic::{Language, Text, both};
 use maud::{Markup, html};
 use units::math;
 
 use super::{legend, line, narrow, text};
+use crate::numbers::digits;
 use crate::scale::{nice, px};
-use crate::text::Numbers;
+use crate::text::MICROMETRES;
 
 /// One closed or open curve.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -27,7 +28,7 @@ pub struct Polar {
     /// Curves.
     pub curves: Vec<Round>,
     /// Class of a square and what that colour means.
-    pub keys: Vec<(&'static str, String)>,
+    pub keys: Vec<(&'static str, Text)>,
 }
 
 /// How many times larger than the circle its deviations are drawn, and the distance of the rings.
@@ -70,17 +71,12 @@ impl Magnification {
 
 /// Curves about the circle of no deviation, with rings at round deviations.
 #[must_use]
-pub fn polar(
-    language: Language,
-    title: &str,
-    described: &str,
-    p: &Polar,
-    m: Magnification,
-    unit: &str,
-) -> Markup {
+pub fn polar(language: Language, title: &Text, described: &Text, p: &Polar, m: Magnification) -> Markup {
     let rings = rings(m, p.radius);
-    let digits = usize::from(m.ring < 0.999) + usize::from(m.ring < 0.0999) + usize::from(m.ring < 0.009_99);
+    let decimals =
+        usize::from(m.ring < 0.999) + usize::from(m.ring < 0.0999) + usize::from(m.ring < 0.009_99);
     let out = MIDDLE - 18.0;
+    let in_unit = both!("rings in {MICROMETRES}", "кольца, {MICROMETRES:#}");
     let body = html! {
         @for value in &rings {
             @let radius = CIRCLE + m.px(*value, p.radius);
@@ -93,16 +89,16 @@ pub fn polar(
         @for curve in &p.curves { path class=(curve.class) d=(curve_path(curve, m, p.radius)) {} }
         @for value in &rings {
             @let radius = CIRCLE + m.px(*value, p.radius);
-            @let label = if *value > 0.0 { format!("+{}", language.digits(*value, digits)) } else { language.digits(*value, digits) };
+            @let label = format!("{}{}", if *value > 0.0 { "+" } else { "" }, digits(*value, decimals).in_language(language));
             // Up to the left, where neither axis runs.
             (text(MIDDLE - 0.707 * radius, MIDDLE - 0.707 * radius + 4.0, "m c halo", &label))
         }
-        (text(4.0, SIDE - 6.0, "m", &say!(language, "rings in {unit}", "кольца, {unit}")))
+        (text(4.0, SIDE - 6.0, "m", in_unit.in_language(language)))
         @for (row, (class, words)) in p.keys.iter().enumerate() {
-            (legend(4.0, SIDE + 14.0 + KEY * row as f64, &[(class, words.as_str())]))
+            (legend(language, 4.0, SIDE + 14.0 + KEY * row as f64, &[(class, words.clone())]))
         }
     };
-    narrow((SIDE, SIDE + KEY * p.keys.len() as f64), title, described, &body)
+    narrow(language, (SIDE, SIDE + KEY * p.keys.len() as f64), title, described, &body)
 }
 
 /// Inside and outside of no deviation, as far as deviations are drawn.

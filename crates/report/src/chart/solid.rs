@@ -1,12 +1,12 @@
 //! The machine's volume seen from a corner: places coloured by an amount, arrows, paths.
 
-use diagnostic::{Language, say};
+use diagnostic::{Language, Text, both};
 use maud::{Markup, html};
 
 use super::amounts::{Amounts, shade};
-use super::{WIDTH, before_and_after, legend, line, svg, text, with_head};
+use super::{WIDTH, before_and_after, joined, legend, line, spotted, svg, text, with_head};
+use crate::numbers::number;
 use crate::scale::{Scale, px};
-use crate::text::Numbers;
 
 /// A box that is drawn from a corner, X to the lower right, Y to the upper right, Z up.
 ///
@@ -147,7 +147,7 @@ impl Placed {
                 // Z has its name above its end: beside the numbers there is no room.
                 @let place = if axis == 2 { (b.0 + 9.0, b.1 - 14.0) } else { here(0.5, 44.0) };
                 (text(place.0, place.1 + 4.0, if axis == 0 { "e halo" } else { "halo" },
-                    &format!("{}, {}", ["X", "Y", "Z"][axis], say!(language, "mm", "мм"))))
+                    both!("{}, mm", "{}, мм", ["X", "Y", "Z"][axis]).in_language(language)))
             }
         }
     }
@@ -159,7 +159,7 @@ const FARTHEST: f64 = 40.0;
 
 /// Places coloured by an amount, the near ones over the far ones.
 #[must_use]
-pub fn spots(language: Language, title: &str, solid: Solid, all: &[Spot], amounts: &Amounts<'_>) -> Markup {
+pub fn spots(language: Language, title: &Text, solid: Solid, all: &[Spot], amounts: &Amounts<'_>) -> Markup {
     let placed = solid.placed(0.04);
     let mut order: Vec<&Spot> = all.iter().collect();
     let depth = |s: &Spot| s.at[0] - s.at[1] + s.at[2];
@@ -174,23 +174,23 @@ pub fn spots(language: Language, title: &str, solid: Solid, all: &[Spot], amount
         (placed.labels(language, 0.0))
         (amounts.key(language, (LEFT, placed.bottom + 34.0)))
     };
-    let (count, to) = (all.len(), amounts.largest_said(language));
-    let described =
-        say!(language, "{count} places coloured from 0 to {to}", "точек: {count}, цвет от 0 до {to}");
-    svg(placed.bottom + 66.0, title, &described, &body)
+    let (count, to) = (all.len(), amounts.largest_said());
+    let described = both!("{count} places coloured from 0 to {to}", "точек: {count}, цвет от 0 до {to:#}");
+    svg(language, placed.bottom + 66.0, title, &described, &body)
 }
 
 /// Displacements before and after, each from its place.
 #[must_use]
 pub fn displacements(
     language: Language,
-    title: &str,
+    title: &Text,
     solid: Solid,
     all: &[Displacement],
     magnification: f64,
 ) -> Markup {
     let placed = solid.placed(0.12);
-    let times = language.number(magnification);
+    let times = number(magnification);
+    let magnified = both!("drawn {times} times their size", "увеличение {times:#}\u{d7}");
     // To the right, where numbers stand.
     let right = |d: &Displacement, by: [f64; 3]| {
         flat(by).0.max(0.0) * placed.scale - (placed.right - placed.at(d.at).0)
@@ -204,41 +204,36 @@ pub fn displacements(
             path + &with_head(placed.at(d.at), placed.at(end))
         })
     };
-    let feet = all.iter().fold(String::new(), |mut path, d| {
-        let (x, y) = placed.at(d.at);
-        path.push_str(&format!("M{} {}h0", px(x), px(y)));
-        path
-    });
     let body = html! {
         (before_and_after(language, LEFT))
-        (text(LEFT + 170.0, 14.0, "m", &say!(language, "drawn {times} times their size", "увеличение {times}\u{d7}")))
+        (text(LEFT + 170.0, 14.0, "m", magnified.in_language(language)))
         (placed.edges(false))
         path class="line s1" d=(strokes(|d| d.before)) {}
         path class="line s0" style="stroke-width:2" d=(strokes(|d| d.after)) {}
-        path class="dots s3" style="stroke-width:2" d=(feet) {}
+        path class="dots s3" style="stroke-width:2" d=(spotted(all.iter().map(|d| placed.at(d.at)))) {}
         (placed.edges(true))
         (placed.labels(language, out))
     };
     let count = all.len();
-    let described = say!(
-        language,
+    let described = both!(
         "{count} errors drawn {times} times their size",
-        "погрешностей: {count}, увеличение {times}\u{d7}"
+        "погрешностей: {count}, увеличение {times:#}\u{d7}"
     );
-    svg(placed.bottom + 40.0, title, &described, &body)
+    svg(language, placed.bottom + 40.0, title, &described, &body)
 }
 
 /// A path coloured by an amount, stretch by stretch, and where it begins.
 #[must_use]
 pub fn path(
     language: Language,
-    title: &str,
+    title: &Text,
     solid: Solid,
     all: &[Stretch],
     start: Option<[f64; 3]>,
     amounts: &Amounts<'_>,
 ) -> Markup {
     let placed = solid.placed(0.04);
+    let begins = both!("start", "начало");
     let body = html! {
         (placed.edges(false))
         (placed.edges(true))
@@ -252,15 +247,15 @@ pub fn path(
             circle class="start" cx=(px(x)) cy=(px(y)) r="5" {}
             // Towards the middle: beside the box stand the names of its axes.
             @let (aside, class) = if x > 0.5 * WIDTH { (-9.0, "e halo") } else { (9.0, "halo") };
-            (text(x + aside, y - 7.0, class, &say!(language, "start", "начало")))
+            (text(x + aside, y - 7.0, class, begins.in_language(language)))
         }
         (placed.labels(language, 0.0))
         (amounts.key(language, (LEFT, placed.bottom + 34.0)))
     };
-    let (count, to) = (all.len(), amounts.largest_said(language));
+    let (count, to) = (all.len(), amounts.largest_said());
     let described =
-        say!(language, "{count} stretches coloured from 0 to {to}", "участков: {count}, цвет от 0 до {to}");
-    svg(placed.bottom + 66.0, title, &described, &body)
+        both!("{count} stretches coloured from 0 to {to}", "участков: {count}, цвет от 0 до {to:#}");
+    svg(language, placed.bottom + 66.0, title, &described, &body)
 }
 
 /// A path in pieces, with its name.
@@ -269,18 +264,18 @@ pub struct Way {
     /// Classes of its sign in the legend, and of its lines.
     pub class: (&'static str, &'static str),
     /// What it is.
-    pub words: String,
+    pub words: Text,
     /// Places that follow one another.
     pub pieces: Vec<Vec<[f64; 3]>>,
 }
 
 /// Paths beside one another, the last on top.
 #[must_use]
-pub fn ways(language: Language, title: &str, solid: Solid, all: &[Way]) -> Markup {
+pub fn ways(language: Language, title: &Text, solid: Solid, all: &[Way]) -> Markup {
     let placed = solid.placed(0.08);
-    let names: Vec<(&str, &str)> = all.iter().map(|way| (way.class.0, way.words.as_str())).collect();
+    let names: Vec<(&str, Text)> = all.iter().map(|way| (way.class.0, way.words.clone())).collect();
     let body = html! {
-        (legend(LEFT, 14.0, &names))
+        (legend(language, LEFT, 14.0, &names))
         (placed.edges(false))
         (placed.edges(true))
         @for one in all {
@@ -288,15 +283,10 @@ pub fn ways(language: Language, title: &str, solid: Solid, all: &[Way]) -> Marku
         }
         (placed.labels(language, 0.0))
     };
-    let described: Vec<&str> = names.iter().map(|(_, words)| *words).collect();
-    svg(placed.bottom + 40.0, title, &described.join(", "), &body)
+    let described = Text::join(all.iter().map(|way| &way.words), ", ");
+    svg(language, placed.bottom + 40.0, title, &described, &body)
 }
 
 fn way(placed: &Placed, places: &[[f64; 3]]) -> String {
-    places.iter().fold(String::new(), |mut path, place| {
-        let (x, y) = placed.at(*place);
-        path.push(if path.is_empty() { 'M' } else { 'L' });
-        path.push_str(&format!("{} {}", px(x), px(y)));
-        path
-    })
+    joined(places.iter().map(|place| placed.at(*place)))
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use diagnostic::Language;
+use diagnostic::{Language, Text};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::encode::{DISPLACED_UM, PLACE_UM, encoded};
@@ -10,7 +10,8 @@ use super::policy::policy;
 use super::scene::{AFTER, BEFORE, CAUSES, Place, Scene};
 use super::words::{WORDS, say, word};
 use crate::chart::solid::{Solid, Way, ways};
-use crate::text::{Numbers, json_block, json_string, shown};
+use crate::numbers::{digits, number};
+use crate::text::{json_block, json_string, shown};
 
 const SCRIPT: &str = include_str!("viewer.js");
 const STYLE: &str = include_str!("viewer.css");
@@ -86,7 +87,12 @@ impl Viewer<'_> {
         let of_kind = |what: &str| format!("{what}_{kind}");
         let mut values: Vec<(&str, String)> =
             self.figures.names.iter().map(|(name, value)| (*name, shown(value))).collect();
-        values.extend(self.figures.numbers.iter().map(|(name, um)| (*name, language.number(*um))));
+        values.extend(
+            self.figures
+                .numbers
+                .iter()
+                .map(|(name, um)| (*name, number(*um).in_language(language).to_owned())),
+        );
         let t = |key: &str| html! { span data-t=(key) { (say(key, language, &values)) } };
         let encoded = encoded(&self.scene.places, CAUSES + self.scene.causes.len());
         let mut text = html! {
@@ -296,7 +302,7 @@ impl Viewer<'_> {
                 }
             }
             pieces.retain(|piece| piece.len() > 1);
-            Way { class, words: word(&format!("{words}_{kind}"), language).to_owned(), pieces }
+            Way { class, words: Text::same(word(&format!("{words}_{kind}"), language)), pieces }
         };
         let displaced = |place: &Place, which: usize| {
             let by = place.displaced_um[which].map(|um| f64::from(um) * 1e-3 * magnification);
@@ -311,8 +317,9 @@ impl Viewer<'_> {
                 (!place.unknown_after).then(|| displaced(place, AFTER))
             }));
         }
-        let said = say("still", language, &[("times", language.digits(magnification, 0))]);
-        html! { figure.still { (ways(language, &said, Solid { ranges }, &all)) figcaption.muted { (said) } } }
+        let said =
+            say("still", language, &[("times", digits(magnification, 0).in_language(language).to_owned())]);
+        html! { figure.still { (ways(language, &Text::same(said.as_str()), Solid { ranges }, &all)) figcaption.muted { (said) } } }
     }
 
     /// What the script reads, but for the places.

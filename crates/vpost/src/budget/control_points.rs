@@ -10,7 +10,7 @@ use super::arguments::Budget;
 use crate::arguments::{Outside, Shared};
 use crate::figures::{printable, triple};
 use crate::file;
-use crate::message::{Failure, Messages, OPTION, Report};
+use crate::message::{Failure, Messages, OPTION};
 use crate::points::{self, POINTS};
 use crate::predict::POINT_OUTSIDE;
 use crate::values::{Ball, Given};
@@ -244,15 +244,11 @@ fn from_file(
             continue;
         }
         if shared.job.outside != Some(Outside::Clamp) {
-            let known = volume.0.map(|range| both!("{} to {}", "{}…{}", range.low, range.high));
+            let [x, y, z] = volume.0.map(|range| both!("{} to {}", "{}…{}", range.low, range.high));
+            let (point, at) = (row + 1, triple(&command.linear_mm, 3));
             let message = both!(
-                "point {} at {} lies outside the calibrated volume, X {}, Y {}, Z {} mm",
-                "точка {} в {} лежит вне калиброванного объёма, X {:#}, Y {:#}, Z {:#} мм",
-                row + 1,
-                triple(&command.linear_mm, 3),
-                known[0],
-                known[1],
-                known[2]
+                "point {point} at {at} lies outside the calibrated volume, X {x}, Y {y}, Z {z} mm",
+                "точка {point} в {at} лежит вне калиброванного объёма, X {x:#}, Y {y:#}, Z {z:#} мм"
             );
             let help = both!(
                 "leave it out, or take the nearest point's error with `--outside clamp`",
@@ -272,8 +268,7 @@ fn from_file(
             "each has the error of the volume's nearest point",
             "каждой приписана погрешность ближайшей точки объёма"
         );
-        let diagnostic = Diagnostic::warning(POINT_OUTSIDE, message).help(help);
-        messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
+        messages.warn(POINT_OUTSIDE, message, help);
     }
     let commands: Vec<Command> = points.rows.into_iter().map(|(_, command)| command).collect();
     let mut what = both!("from {}", "из {}", printable(name));

@@ -15,7 +15,7 @@ use machine_model::EngineId;
 
 use crate::arguments::Shared;
 use crate::conditions::{conditions, failure};
-use crate::message::{Failure, Messages, Report};
+use crate::message::{Failure, Messages};
 use crate::roles::Roles;
 use crate::settings::machine;
 use crate::{file, profile};
@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> R
             "take points away from the machine's zero, or with a tool: angles need an arm",
             "возьмите точки вдали от нуля станка или с инструментом: углам нужно плечо"
         );
-        return Err(Failure::usage(Diagnostic::error(NO_DEVIATIONS, message).help(help)));
+        return Err(Failure::asks(NO_DEVIATIONS, message, help));
     }
     if let Some(why) = study.target.as_ref().and_then(study::Target::out_of_reach) {
         let message = both!(
@@ -89,13 +89,12 @@ pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> R
             "keep fewer deviations as they are (`--keep`), or raise `--target`",
             "сохраняйте меньше отклонений (`--keep`) или увеличьте `--target`"
         );
-        let diagnostic = Diagnostic::warning(OUT_OF_REACH, message).help(help);
-        messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
+        messages.warn(OUT_OF_REACH, message, help);
     }
     if let Some(path) = &arguments.json {
         file::write(path, &json::bytes(&study))?;
     }
-    file::print(text::page(&study, messages.language()).as_bytes())
+    file::print(text::page(&study).in_language(messages.language()).as_bytes())
 }
 
 fn target_mm(target_um: f64) -> Result<f64, Failure> {

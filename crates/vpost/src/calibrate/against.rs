@@ -39,39 +39,30 @@ pub(super) fn report(old: &Path, new: &Profile, language: Language) -> Result<()
             both!("compare profiles of one machine", "сравнивайте профили одного станка"),
         )
     })?;
-    let at: Vec<String> = change.at_mm.iter().map(|v| short(*v, 3)).collect();
-    let d = change.difference_mm * 1e3;
+    let at = change.at_mm.iter().map(|v| short(*v, 3)).collect::<Vec<_>>().join(", ");
+    let [x, y, z] = <[f64; 3]>::from(change.difference_mm * 1e3);
+    let [rms, p95, most] = [change.rms_mm, change.p95_mm, change.largest_mm].map(|mm| mm * 1e3);
     let mut text = both!(
-        "\nagainst {name}: errors differ by {:.2} um RMS, {:.2} um at 95 % of the points, at most {:.2} um at ({}) mm: x {:+.2} y {:+.2} z {:+.2} um; frames taken off\n",
-        "\nотносительно {name}: погрешности различаются на {:.2} мкм (СКЗ), {:.2} мкм в 95 % точек, не больше {:.2} мкм в ({}) мм: x {:+.2} y {:+.2} z {:+.2} мкм; без систем координат\n",
-        change.rms_mm * 1e3,
-        change.p95_mm * 1e3,
-        change.largest_mm * 1e3,
-        at.join(", "),
-        d.x,
-        d.y,
-        d.z
+        "\nagainst {name}: errors differ by {rms:.2} um RMS, {p95:.2} um at 95 % of the points, at most {most:.2} um at ({at}) mm: x {x:+.2} y {y:+.2} z {z:+.2} um; frames taken off\n",
+        "\nотносительно {name}: погрешности различаются на {rms:.2} мкм (СКЗ), {p95:.2} мкм в 95 % точек, не больше {most:.2} мкм в ({at}) мм: x {x:+.2} y {y:+.2} z {z:+.2} мкм; без систем координат\n"
     );
-    let verdict = match (change.is_beyond_uncertainty(), change.uncertainty_mm) {
-        (Some(true), Some(u)) => both!(
-            "  the machine has changed: the two are uncertain of ±{:.2} um together (95 % of the points)\n",
-            "  станок изменился: неопределённость обоих вместе ±{:.2} мкм (95 % точек)\n",
-            u * 1e3
-        ),
-        (Some(false), Some(u)) => {
-            both!(
-                "  no change is shown: the two are uncertain of ±{:.2} um together (95 % of the points)\n",
-                "  изменений не видно: неопределённость обоих вместе ±{:.2} мкм (95 % точек)\n",
-                u * 1e3
-            )
-        }
-        _ => Text::pair(
+    let Some((is_beyond, u)) = change.is_beyond_uncertainty().zip(change.uncertainty_mm) else {
+        text.push(&both!(
             "  not decided: a profile does not say `uncertainty_um` in `calibrated`\n",
-            "  не решено: в одном из профилей нет `uncertainty_um` в `calibrated`\n",
-        ),
+            "  не решено: в одном из профилей нет `uncertainty_um` в `calibrated`\n"
+        ));
+        return file::print(text.in_language(language).as_bytes());
     };
-    text.push(&verdict);
-    if let (Some(true), Some(u)) = (change.is_beyond_uncertainty(), change.uncertainty_mm) {
+    let verdict = match is_beyond {
+        true => both!("the machine has changed", "станок изменился"),
+        false => both!("no change is shown", "изменений не видно"),
+    };
+    text.push(&both!(
+        "  {verdict}: the two are uncertain of ±{:.2} um together (95 % of the points)\n",
+        "  {verdict:#}: неопределённость обоих вместе ±{:.2} мкм (95 % точек)\n",
+        u * 1e3
+    ));
+    if is_beyond {
         text.push(&functions(&old, new, u, &volume));
     }
     file::print(text.in_language(language).as_bytes())

@@ -5,7 +5,7 @@ use calibration::measured_line::{
     AxisOnNodes, Gauge, MeasuredLine, Zero, angles_between, apply_gauge, field_u95_mm, settle_directions,
     squareness_for,
 };
-use diagnostic::{Diagnostic, Speaks, both};
+use diagnostic::{Speaks, both};
 use machine_model::effects::{Conditions, EffectTerm};
 use machine_model::{
     Axis, Chain, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector,
@@ -419,7 +419,7 @@ fn inside_travel(
                 "are these the targets of this axis, in mm and machine coordinates, and is the base that of this machine?",
                 "это цели этой оси, в мм и координатах станка, и исходный профиль — этого станка?"
             );
-            return Err(Failure::usage(Diagnostic::error(AXES, message).help(help)));
+            return Err(Failure::asks(AXES, message, help));
         }
     }
     Ok(())

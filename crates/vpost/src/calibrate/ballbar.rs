@@ -6,13 +6,13 @@ use calibration::CalibrationError;
 use calibration::linear_ballbar::{self, CircleCalibration};
 use calibration::rotary_ballbar::{self, RotaryCalibration, Test};
 use clap::Args;
-use diagnostic::{Diagnostic, Speaks, Text, both};
+use diagnostic::{Speaks, Text, both};
 use machine_model::effects::{Conditions, EffectTerm};
 use machine_model::{
     Axis, Chain, Command, Description, Engine, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector,
     WithEffects,
 };
-use machine_profile::{Calibrated, Profile, ProfileText};
+use machine_profile::{Profile, ProfileText};
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
@@ -21,9 +21,10 @@ use crate::{conditions, file};
 
 use super::bar_readings::{FAR, Measured, Readings};
 use super::bar_report::{before_and_after, circle_report, rotary_report};
-use super::codes::{AXES, CONTRADICTED, OUTLIER, UNSAID, failure, question};
-use super::output::{Output, Target, warn};
+use super::codes::{AXES, CONTRADICTED, OPEN, OUTLIER, UNSAID, failure, question};
+use super::output::{Output, Target};
 use super::page::{Bars, Shown};
+use super::sources::mean;
 
 /// `vpost calibrate ballbar FILES… -o PROFILE`
 #[derive(Debug, Args)]
@@ -111,14 +112,15 @@ impl Base {
         };
         let chain = &self.description.chain;
         if let Some(axis) = chain.head().iter().find(|axis| readings.turn(**axis)) {
-            return Err(Failure::usage(
-                Diagnostic::error(
-                    AXES,
-                    both!("{axis} turns the tool on {chain}: a ball bar calibrates axes that turn the table, not those of a head", "{axis} поворачивает на {chain} инструмент: телескопическим измерителем калибруют оси стола, а не головы"),
-                )
-                .help(both!("leave the runs of {axis} out; location errors known from elsewhere go into [rotary.{axis}] of the profile", "исключите проходы {axis}; известные из других измерений погрешности положения оси впишите в [rotary.{axis}] профиля"
-                )),
-            ));
+            let message = both!(
+                "{axis} turns the tool on {chain}: a ball bar calibrates axes that turn the table, not those of a head",
+                "{axis} поворачивает на {chain} инструмент: телескопическим измерителем калибруют оси стола, а не головы"
+            );
+            let help = both!(
+                "leave the runs of {axis} out; location errors known from elsewhere go into [rotary.{axis}] of the profile",
+                "исключите проходы {axis}; известные из других измерений погрешности положения оси впишите в [rotary.{axis}] профиля"
+            );
+            return Err(Failure::asks(AXES, message, help));
         }
         for axis in self.description.chain.table().to_vec() {
             let own = &mut self.description.rotary[axis.direction()];
@@ -139,7 +141,7 @@ impl Base {
                             "leave `--crossing` out, or correct centre_mm in the profile",
                             "уберите `--crossing` или исправьте centre_mm в профиле"
                         );
-                        return Err(Failure::usage(Diagnostic::error(AXES, message).help(help)));
+                        return Err(Failure::asks(AXES, message, help));
                     }
                 }
                 Some((_, at)) => {
@@ -223,7 +225,7 @@ impl Base {
                     "is `-m` the profile of this machine? x_mm y_mm z_mm are machine coordinates",
                     "в `-m` профиль этого станка? x_mm y_mm z_mm — координаты станка"
                 );
-                return Err(Failure::usage(Diagnostic::error(AXES, message).help(help)));
+                return Err(Failure::asks(AXES, message, help));
             }
         }
         Ok(())
@@ -293,9 +295,7 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
     if let Some((found, _)) = &circles {
         out.push(&circle_report(found));
     }
-    let temperatures: Vec<f64> = readings.temperatures_c().collect();
-    let temperature_c =
-        (!temperatures.is_empty()).then(|| temperatures.iter().sum::<f64>() / temperatures.len() as f64);
+    let temperature_c = mean(&readings.temperatures_c().collect::<Vec<_>>());
     let show = |uncertainty_mm: Option<f64>| {
         let circles = circles.as_ref().map(|(found, names)| (found, names.as_slice()));
         let found = Bars { circles, rotary: rotary.as_ref() };
@@ -325,17 +325,7 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
         .chain(circles.iter().map(|(c, _)| c.estimate.sigma))
         .fold(0.0, f64::max);
     let uncertainty_mm = output.with_base_mm(found_mm, messages);
-    output.calibrated(
-        target,
-        messages,
-        Calibrated {
-            temperature_c,
-            repeatability_um: Some(sigma * 1e3),
-            uncertainty_um: Some(uncertainty_mm * 1e3),
-            ..Calibrated::default()
-        },
-    )?;
-    output.write(target, messages)?;
+    output.write(target, messages, temperature_c, [Some(sigma), Some(uncertainty_mm)])?;
     show(Some(uncertainty_mm))
 }
 
@@ -375,34 +365,31 @@ fn located(
 }
 
 fn refusal(error: &CalibrationError) -> Failure {
-    let help = match error {
-        CalibrationError::Axes(_) => both!(
-            "is `-m` (or `--chain`) the machine that was measured?",
-            "в `-m` (или `--chain`) тот станок, который измеряли?"
+    let (code, help) = match error {
+        CalibrationError::Axes(_) => (
+            AXES,
+            both!(
+                "is `-m` (or `--chain`) the machine that was measured?",
+                "в `-m` (или `--chain`) тот станок, который измеряли?"
+            ),
         ),
-        CalibrationError::Unobservable(_) => {
+        CalibrationError::Unobservable(_) => (
+            OPEN,
             both!(
                 "add the test that tells them apart: the spindle's turn for eX and eY, the ball 100 mm beside or above for a tilt",
                 "добавьте опыт, который их различит: поворот шпинделя для eX и eY, шар на 100 мм в стороне или выше для наклона"
-            )
-        }
-        CalibrationError::Contradicted(_) => {
+            ),
+        ),
+        CalibrationError::Contradicted(_) => (
+            CONTRADICTED,
             both!(
                 "check the files: columns exchanged, directions the wrong way round, a circle of another day or another bar",
                 "проверьте файлы: переставленные столбцы, направления наоборот, круг другого дня или другого измерителя"
-            )
-        }
+            ),
+        ),
         _ => return failure("", &[], error),
     };
-    let code = match error {
-        CalibrationError::Axes(_) => AXES,
-        CalibrationError::Contradicted(_) => CONTRADICTED,
-        _ => super::codes::OPEN,
-    };
-    Failure::Refused(vec![crate::message::Report {
-        source: None,
-        diagnostics: vec![Diagnostic::error(code, error.text()).help(help)],
-    }])
+    Failure::alone(code, error.text(), help)
 }
 
 fn write_locations(output: &mut Output, found: &RotaryCalibration, base: &Base) {
@@ -454,13 +441,11 @@ fn write_circles(output: &mut Output, found: &CircleCalibration, messages: &Mess
                 "масштаб {name} {:.1} мкм/м не записан: измеритель не говорит, какой из двух осей он",
                 term.value * 1e6
             );
-            warn(
-                messages,
-                Diagnostic::warning(UNSAID, message).help(both!(
-                    "measure the positioning of both axes with an interferometer",
-                    "измерьте позиционирование обеих осей интерферометром"
-                )),
+            let help = both!(
+                "measure the positioning of both axes with an interferometer",
+                "измерьте позиционирование обеих осей интерферометром"
             );
+            messages.warn(UNSAID, message, help);
         }
     }
 }

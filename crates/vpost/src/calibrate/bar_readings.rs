@@ -227,8 +227,7 @@ impl Line {
 
 impl Run {
     fn temperature_c(&self) -> Option<f64> {
-        let all = &self.temperatures_c;
-        (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+        sources::mean(&self.temperatures_c)
     }
 
     fn moves(&self, file: &str) -> Result<Moves, Failure> {
@@ -243,9 +242,8 @@ impl Run {
         match (turning.as_slice(), linear) {
             ([], true) => Ok(Moves::Linear),
             ([one], false) => {
-                let values = || self.lines.iter().map(|l| l.angles_deg[*one]);
-                let span =
-                    values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+                let (low, high) = sources::span(self.lines.iter().map(|l| l.angles_deg[*one]));
+                let span = high - low;
                 // A turn or half a turn in radians is no round number of degrees.
                 let turns = [std::f64::consts::TAU, std::f64::consts::PI];
                 if turns.iter().any(|turn| (span - turn).abs() < 1e-3) {

@@ -1,7 +1,7 @@
 //! What `calibrate ballbar` prints.
 
 use calibration::circular_test::CircularTest;
-use calibration::linear_ballbar::CircleCalibration;
+use calibration::linear_ballbar::{CircleCalibration, Term};
 use calibration::rotary_ballbar::{RotaryCalibration, Test};
 use calibration::rotary_sequence::{Sequence, approximation_mm, sequence};
 use diagnostic::{Text, both};
@@ -92,11 +92,10 @@ pub(super) fn before_and_after(before: &RotaryCalibration, after: &RotaryCalibra
             largest[1] = largest[1].max(g.value.abs() * scale);
         }
     }
+    let [before, after] = largest;
     out.push(&both!(
-        "  largest position error {:.1} -> {:.1} um\n",
-        "  наибольшая линейная погрешность {:.1} -> {:.1} мкм\n",
-        largest[0],
-        largest[1]
+        "  largest position error {before:.1} -> {after:.1} um\n",
+        "  наибольшая линейная погрешность {before:.1} -> {after:.1} мкм\n"
     ));
     out
 }
@@ -108,50 +107,44 @@ pub(super) static CENTRED_APART: Text = Text::pair(
 );
 
 pub(super) fn circle_report(found: &CircleCalibration) -> Text {
+    let (readings, left_um) = (found.estimate.residuals.len(), found.estimate.sigma * 1e3);
     let mut out = both!(
-        "circles, {} readings, {:.3} um left (standard deviation)\n",
-        "окружности, отсчётов {}, остаток {:.3} мкм (стандартное отклонение)\n",
-        found.estimate.residuals.len(),
-        found.estimate.sigma * 1e3
+        "circles, {readings} readings, {left_um:.3} um left (standard deviation)\n",
+        "окружности, отсчётов {readings}, остаток {left_um:.3} мкм (стандартное отклонение)\n"
     );
-    let base = |value: f64, decimals: usize| match value {
-        0.0 => Text::EMPTY,
-        value => both!(" (base {value:.decimals$})", " (исходный {value:.decimals$})"),
+    let line = |name: Text, t: Term, (scale, unit): (f64, Text), behind: Text| {
+        let (value, half) = (t.value * scale, t.half_width_95 * scale);
+        both!(
+            "  {name:<12}{value:>9.2} ± {half:.2} {unit}{behind}\n",
+            "  {name:<#12}{value:>9.2} ± {half:.2} {unit:#}{behind:#}\n"
+        )
     };
+    let base = |value: f64| match value {
+        0.0 => Text::EMPTY,
+        value => both!(" (base {value:.2})", " (исходный {value:.2})"),
+    };
+    let ratio = || (1e6, both!("um/m", "мкм/м"));
     for (name, term) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().zip(found.squareness_rad) {
         if let Some(t) = term {
-            let (value, half, before) = (t.value * 1e6, t.half_width_95 * 1e6, base(t.base * 1e6, 2));
-            out.push(&both!(
-                "  {name}        {value:>9.2} ± {half:.2} urad{before}\n",
-                "  {name}        {value:>9.2} ± {half:.2} мкрад{before:#}\n"
-            ));
+            out.push(&line(Text::same(name), t, micro(false), base(t.base * 1e6)));
         }
     }
     for (name, term) in SCALES.into_iter().zip(found.mismatch) {
         if let Some(t) = term {
-            let (value, half) = (t.value * 1e6, t.half_width_95 * 1e6);
-            out.push(&both!(
-                "  scale {name}   {value:>9.2} ± {half:.2} um/m (one axis against the other: a bar sees no common scale)\n",
-                "  масшт. {name}  {value:>9.2} ± {half:.2} мкм/м (одна ось относительно другой: общего масштаба измеритель не видит)\n"
-            ));
+            let why = both!(
+                " (one axis against the other: a bar sees no common scale)",
+                " (одна ось относительно другой: общего масштаба измеритель не видит)"
+            );
+            out.push(&line(both!("scale {name}", "масшт. {name}"), t, ratio(), why));
         }
     }
     if let Some(sum) = found.closure {
-        let (value, half) = (sum.value * 1e6, sum.half_width_95 * 1e6);
-        out.push(&both!(
-            "  closure     {value:>9.2} ± {half:.2} um/m (the three must add up to 0)\n",
-            "  сумма       {value:>9.2} ± {half:.2} мкм/м (три вместе должны дать 0)\n"
-        ));
+        let why = both!(" (the three must add up to 0)", " (три вместе должны дать 0)");
+        out.push(&line(both!("closure", "сумма"), sum, ratio(), why));
     }
     for (axis, term) in Axis::ALL.iter().zip(found.backlash_mm) {
         out.push(&match term {
-            Some(t) => {
-                let (value, half, before) = (t.value * 1e3, t.half_width_95 * 1e3, base(t.base * 1e3, 2));
-                both!(
-                    "  backlash {axis}  {value:>9.2} ± {half:.2} um{before}\n",
-                    "  люфт {axis}      {value:>9.2} ± {half:.2} мкм{before:#}\n"
-                )
-            }
+            Some(t) => line(both!("backlash {axis}", "люфт {axis}"), t, micro(true), base(t.base * 1e3)),
             None => both!(
                 "  backlash {axis}  not seen: no reading says the direction of {axis} both ways\n",
                 "  люфт {axis}      не виден: нет отсчётов с направлением {axis} в обе стороны\n"

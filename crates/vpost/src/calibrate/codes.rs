@@ -65,17 +65,13 @@ pub(crate) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Fai
             ),
         ),
     };
-    let diagnostic = Diagnostic::error(code, error.text()).help(help);
     if file.is_empty() {
-        return Failure::Refused(vec![crate::message::Report {
-            source: None,
-            diagnostics: vec![diagnostic],
-        }]);
+        return Failure::alone(code, error.text(), help);
     }
-    Failure::refused(file, bytes, vec![diagnostic])
+    Failure::refused(file, bytes, vec![Diagnostic::error(code, error.text()).help(help)])
 }
 
 /// A question that stays open.
 pub(crate) fn question(message: Text, help: Text) -> Failure {
-    Failure::usage(Diagnostic::error(QUESTION, message).help(help))
+    Failure::asks(QUESTION, message, help)
 }

@@ -1,13 +1,10 @@
 //! `vpost calibrate interferometer`.
 
-use std::path::PathBuf;
-
 use calibration::functions::{self, refined};
 use calibration::iso230_2;
 use calibration::measured_line::{AxisOnNodes, Gauge, Zero};
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Text, both};
 use machine_model::{Axis, Interpolation, Six, Squareness, Table};
-use machine_profile::Calibrated;
 use measurement_files::micro;
 use measurement_files::series::{Origin, Series, Told};
 
@@ -18,7 +15,7 @@ use crate::message::{Failure, Messages};
 use super::axis_change::Session;
 use super::codes::{UNSAID, failure, question};
 use super::options::{Between, Directions, Interferometer, Reference, Slopes};
-use super::output::{Output, warn};
+use super::output::Output;
 use super::page::{Positions, Read};
 use super::squareness::{Asked, Functions};
 use super::{iso_report, plausibility, sources, squareness};
@@ -65,8 +62,7 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     }
     let found = Positions(found);
     let show = |temperature_c: Option<f64>, uncertainty_mm: Option<f64>| {
-        let files: Vec<PathBuf> =
-            arguments.files.iter().map(|name| PathBuf::from(sources::path_of(name))).collect();
+        let files = arguments.paths();
         arguments.shown.write(&found, &files, &arguments.target, shared, temperature_c, uncertainty_mm)
     };
     let asked = squareness::from_the_user(arguments, angles_read, &axes)?;
@@ -87,17 +83,7 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     }
     output.travel(session.spans(), messages);
     let scatter = (0..3).filter_map(|i| axes[i][i].as_ref()?.scatter).reduce(f64::max);
-    output.calibrated(
-        &arguments.target,
-        messages,
-        Calibrated {
-            temperature_c,
-            repeatability_um: scatter.map(|s| s * 1e3),
-            uncertainty_um: uncertainty_mm.map(|u| u * 1e3),
-            ..Calibrated::default()
-        },
-    )?;
-    output.write(&arguments.target, messages)?;
+    output.write(&arguments.target, messages, temperature_c, [scatter, uncertainty_mm])?;
     show(temperature_c, uncertainty_mm)
 }
 
@@ -124,7 +110,7 @@ fn read(arguments: &Interferometer) -> Result<(Vec<Series>, Option<[f64; 3]>), F
 /// Mean of what the files say, °C.
 fn mean_temperature(all: &[Series]) -> Option<f64> {
     let said: Vec<f64> = all.iter().flat_map(|s| s.readings.iter().filter_map(|r| r.temperature_c)).collect();
-    (!said.is_empty()).then(|| said.iter().sum::<f64>() / said.len() as f64)
+    sources::mean(&said)
 }
 
 /// Writes the changed axes and angles into the profile; half width that 95 % of the volume's points keep, mm.
@@ -195,14 +181,15 @@ fn change(
         }
     }
     if !asked.is_given() && session.is_new() {
-        warn(
-            messages,
-            Diagnostic::warning(
-                UNSAID,
-                both!("readings of single axes say nothing of the angles between them: the measured lines are taken as square", "показания отдельных осей ничего не говорят об углах между ними: измеренные линии приняты перпендикулярными"),
-            )
-            .help(both!("add `--squareness XY=…,ZX=…,YZ=… --squareness-convention …`, or measure it later with -m", "добавьте `--squareness XY=…,ZX=…,YZ=… --squareness-convention …` или измерьте позже с -m")),
+        let message = both!(
+            "readings of single axes say nothing of the angles between them: the measured lines are taken as square",
+            "показания отдельных осей ничего не говорят об углах между ними: измеренные линии приняты перпендикулярными"
         );
+        let help = both!(
+            "add `--squareness XY=…,ZX=…,YZ=… --squareness-convention …`, or measure it later with -m",
+            "добавьте `--squareness XY=…,ZX=…,YZ=… --squareness-convention …` или измерьте позже с -m"
+        );
+        messages.warn(UNSAID, message, help);
     }
     Ok(session.field_u95_mm(&changes, arguments.u_um_per_m * 1e-6).map(|own| {
         // What was not measured is as uncertain as the base says.
@@ -255,9 +242,8 @@ fn changed_lines(out: &mut Text, axis: Axis, change: &Functions) {
     for (f, function) in change.iter().enumerate() {
         let Some(function) = function else { continue };
         let (scale, unit) = micro(f < 3);
-        let values = || function.directions.iter().flatten().chain([&function.mean]).flatten();
-        let low = values().copied().fold(f64::INFINITY, f64::min) * scale;
-        let high = values().copied().fold(f64::NEG_INFINITY, f64::max) * scale;
+        let values = function.directions.iter().flatten().chain([&function.mean]).flatten();
+        let (low, high) = sources::span(values.map(|value| value * scale));
         out.push(&both!(
             "E{}{axis}  {low:.3} … {high:.3} {unit} against the base\n",
             "E{}{axis}  {low:.3} … {high:.3} {unit:#} относительно исходного профиля\n",
@@ -388,11 +374,15 @@ fn write_line(
         let others: Vec<(char, f64)> = others.map(|k| (Axis::ALL[k].letter(), line.at_mm[k])).collect();
         output.text.set_measured_at(axis.letter(), &others, line.optics_mm.into());
     } else if change[3..].iter().any(Option::is_some) {
-        warn(
-            messages,
-            Diagnostic::warning(UNSAID, both!("the line along which {axis} was measured is not known: taken through 0 of the other axes, at the gauge point", "линия, вдоль которой измерена {axis}, неизвестна: принята через 0 остальных осей, в базовой точке"))
-                .help(both!("its angles act from that line on: add `--through X,Y,Z` and `--optics X,Y,Z`", "её углы действуют от этой линии: добавьте `--through X,Y,Z` и `--optics X,Y,Z`")),
+        let message = both!(
+            "the line along which {axis} was measured is not known: taken through 0 of the other axes, at the gauge point",
+            "линия, вдоль которой измерена {axis}, неизвестна: принята через 0 остальных осей, в базовой точке"
         );
+        let help = both!(
+            "its angles act from that line on: add `--through X,Y,Z` and `--optics X,Y,Z`",
+            "её углы действуют от этой линии: добавьте `--through X,Y,Z` и `--optics X,Y,Z`"
+        );
+        messages.warn(UNSAID, message, help);
     }
 }
 
@@ -401,22 +391,16 @@ fn summary(out: &mut Text, axes: &[Functions; 3]) {
         for (f, function) in functions.iter().enumerate() {
             let Some(function) = function else { continue };
             let (scale, unit) = micro(f < 3);
-            let low = function.mean.iter().copied().fold(f64::INFINITY, f64::min) * scale;
-            let high = function.mean.iter().copied().fold(f64::NEG_INFINITY, f64::max) * scale;
-            let directions = if function.directions.is_some() {
-                Text::pair(", both directions", ", оба направления")
-            } else {
-                Text::EMPTY
-            };
+            let (low, high) = sources::span(function.mean.iter().map(|value| value * scale));
+            let directions = both!(", both directions", ", оба направления");
+            let directions = function.directions.as_ref().map_or(Text::EMPTY, |_| directions);
             let scatter = function.scatter.map_or(Text::EMPTY, |s| {
                 both!(", scatter {:.3} {unit}", ", разброс {:.3} {unit:#}", s * scale)
             });
+            let (of, axis, targets) = (Axis::ALL[f], Axis::ALL[axis], function.positions_mm.len());
             out.push(&both!(
-                "E{}{}  {low:.3} … {high:.3} {unit}, {} targets{directions}{scatter}\n",
-                "E{}{}  {low:.3} … {high:.3} {unit:#}, целей {}{directions:#}{scatter:#}\n",
-                Axis::ALL[f],
-                Axis::ALL[axis],
-                function.positions_mm.len()
+                "E{of}{axis}  {low:.3} … {high:.3} {unit}, {targets} targets{directions}{scatter}\n",
+                "E{of}{axis}  {low:.3} … {high:.3} {unit:#}, целей {targets}{directions:#}{scatter:#}\n"
             ));
         }
     }

@@ -54,12 +54,10 @@ pub(super) fn figures(e: &Evaluation) -> Vec<Figure> {
 pub(super) fn lines(title: &str, e: &Evaluation, scale: f64, unit: &Text) -> Text {
     let v = |x: f64| format!("{:>9.3}", x * scale);
     let empty = || format!("{:>9}", "-");
+    let (targets, [up, down]) = (e.targets.len(), e.runs);
     let mut out = both!(
-        "ISO 230-2   {title}: {} targets, {} runs up, {} down; {unit}\n",
-        "ISO 230-2   {title}: целей {}, проходов вверх {}, вниз {}; {unit:#}\n",
-        e.targets.len(),
-        e.runs[0],
-        e.runs[1]
+        "ISO 230-2   {title}: {targets} targets, {up} runs up, {down} down; {unit}\n",
+        "ISO 230-2   {title}: целей {targets}, проходов вверх {up}, вниз {down}; {unit:#}\n"
     );
     out.push(&Text::pair(
         "  target     mean up  mean down          B       s up     s down          R\n",
@@ -67,16 +65,10 @@ pub(super) fn lines(title: &str, e: &Evaluation, scale: f64, unit: &Text) -> Tex
     ));
     for t in &e.targets {
         let cell = |a: Option<f64>| a.map_or_else(empty, v);
-        out.push(&Text::same(format!(
-            "{:>8} {} {} {}  {}  {}  {}\n",
-            crate::number::short(t.position, 3),
-            cell(t.positive.map(|a| a.mean)),
-            cell(t.negative.map(|a| a.mean)),
-            cell(t.reversal),
-            cell(t.positive.map(|a| a.deviation)),
-            cell(t.negative.map(|a| a.deviation)),
-            v(t.repeatability)
-        )));
+        let [up, down] = [t.positive, t.negative].map(|a| cell(a.map(|a| a.mean)));
+        let [s_up, s_down] = [t.positive, t.negative].map(|a| cell(a.map(|a| a.deviation)));
+        let (at, b, r) = (crate::number::short(t.position, 3), cell(t.reversal), v(t.repeatability));
+        out.push(&Text::same(format!("{at:>8} {up} {down} {b}  {s_up}  {s_down}  {r}\n")));
     }
     for Figure { symbol, name, found } in figures(e) {
         let (value, u95) = (v(found.value), found.expanded * scale);

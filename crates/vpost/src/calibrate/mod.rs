@@ -61,30 +61,25 @@ pub enum CalibrateCommand {
 
 /// `vpost calibrate INSTRUMENT FILES… -o PROFILE`
 pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let (target, files): (_, Vec<PathBuf>) = match &arguments.command {
-        CalibrateCommand::Tracker(a) => (&a.target, a.traverses.clone()),
-        CalibrateCommand::Interferometer(a) => {
-            (&a.target, a.files.iter().map(|name| PathBuf::from(sources::path_of(name))).collect())
+    let both = |files: &[PathBuf], more: &Option<PathBuf>| files.iter().chain(more).cloned().collect();
+    let (target, files, shown): (_, Vec<PathBuf>, _) = match &arguments.command {
+        CalibrateCommand::Tracker(a) => (&a.target, a.traverses.clone(), Shown::default()),
+        CalibrateCommand::Interferometer(a) => (&a.target, a.paths(), a.shown.clone()),
+        CalibrateCommand::Volumetric(a) => (&a.target, a.files.clone(), Shown::default()),
+        CalibrateCommand::Ballbar(a) => (&a.target, both(&a.files, &a.after), a.shown.clone()),
+        CalibrateCommand::RTest(a) => {
+            let shown = Shown { json: a.json.clone(), ..Shown::default() };
+            (&a.target, both(&a.files, &a.holdout), shown)
         }
-        CalibrateCommand::Volumetric(a) => (&a.target, a.files.clone()),
-        CalibrateCommand::Ballbar(a) => (&a.target, a.files.iter().chain(&a.after).cloned().collect()),
-        CalibrateCommand::RTest(a) => (&a.target, a.files.iter().chain(&a.holdout).cloned().collect()),
-        CalibrateCommand::Turning(a) => (&a.target, a.files.iter().chain(&a.holdout).cloned().collect()),
-    };
-    let shown = match &arguments.command {
-        CalibrateCommand::Interferometer(a) => a.shown.clone(),
-        CalibrateCommand::Ballbar(a) => a.shown.clone(),
-        _ => Shown::default(),
-    };
-    let json = match &arguments.command {
-        CalibrateCommand::RTest(a) => a.json.as_deref(),
-        CalibrateCommand::Turning(a) => a.json.as_deref(),
-        _ => None,
+        CalibrateCommand::Turning(a) => {
+            let shown = Shown { json: a.json.clone(), html: a.html.clone(), csv: None };
+            (&a.target, both(&a.files, &a.holdout), shown)
+        }
     };
     let roles = Roles::default()
         .reads_all(&both!("a measurement", "измерения"), &files)
         .writes("--output", target.output.as_deref());
-    shown.roles(roles).writes("--json", json).are_apart()?;
+    shown.roles(roles).are_apart()?;
     match &arguments.command {
         CalibrateCommand::Tracker(a) => tracker::run(a, shared, messages),
         CalibrateCommand::Interferometer(a) => interferometer::run(a, shared, messages),

@@ -75,6 +75,13 @@ pub struct Interferometer {
     pub shown: Shown,
 }
 
+impl Interferometer {
+    /// The files without what they hold.
+    pub(super) fn paths(&self) -> Vec<PathBuf> {
+        self.files.iter().map(|name| PathBuf::from(super::sources::path_of(name))).collect()
+    }
+}
+
 /// What a positive squareness means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Convention {

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use calibration::{Base, ChangedAxis, SetUp};
 use clap::Args;
-use diagnostic::{Diagnostic, Speaks, both};
+use diagnostic::{Speaks, both};
 use machine_model::effects::{Conditions, EffectKind};
 use machine_model::{Axis, Chain, Command, Description, Vector};
 use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
-use crate::message::{Deed, Failure, Messages, Report};
+use crate::message::{Deed, Failure, Messages};
 use crate::number::short;
 use crate::{file, profile};
 
@@ -253,14 +253,15 @@ impl Output {
         let Some(base) = &self.base else { return found_mm };
         let stated = base.calibrated.as_ref().and_then(|calibrated| calibrated.uncertainty_um);
         if stated.is_none() {
-            warn(
-                messages,
-                Diagnostic::warning(
-                    UNSAID,
-                    both!("the base does not say how well it is known: what was not measured now counts as exact in uncertainty_um", "исходный профиль не говорит, насколько точно он известен: не измеренное сейчас считается в uncertainty_um точным"),
-                )
-                .help(both!("write `uncertainty_um` into `calibrated` of the base, if it is known", "впишите `uncertainty_um` в `calibrated` исходного профиля, если она известна")),
+            let message = both!(
+                "the base does not say how well it is known: what was not measured now counts as exact in uncertainty_um",
+                "исходный профиль не говорит, насколько точно он известен: не измеренное сейчас считается в uncertainty_um точным"
             );
+            let help = both!(
+                "write `uncertainty_um` into `calibrated` of the base, if it is known",
+                "впишите `uncertainty_um` в `calibrated` исходного профиля, если она известна"
+            );
+            messages.warn(UNSAID, message, help);
         }
         units::math::hypot(found_mm, stated.unwrap_or(0.0) * 1e-3)
     }
@@ -313,29 +314,32 @@ impl Output {
                 "ход {} неизвестен: профиль верен там, где она стояла, а в других местах ничего не исправляет",
                 stood.join(" and ")
             );
-            warn(
-                messages,
-                Diagnostic::warning(UNSAID, message).help(both!(
-                    "measure it with -m this profile, or write its travel_mm into the profile",
-                    "измерьте её с -m этого профиля или впишите в профиль её travel_mm"
-                )),
+            let help = both!(
+                "measure it with -m this profile, or write its travel_mm into the profile",
+                "измерьте её с -m этого профиля или впишите в профиль её travel_mm"
             );
+            messages.warn(UNSAID, message, help);
         }
     }
 
     /// What is known of the measurement; warns of what is not.
-    pub(super) fn calibrated(
+    ///
+    /// * `known_mm` – how far readings repeat, and how sure the model is
+    fn calibrated(
         &mut self,
         target: &Target,
         messages: &Messages,
-        measured: Calibrated,
-    ) -> Result<(), Failure> {
+        temperature_c: Option<f64>,
+        known_mm: [Option<f64>; 2],
+    ) {
+        let [repeatability_um, uncertainty_um] =
+            known_mm.map(|mm| mm.map(|mm| (mm * 1e3 * 1e3).round() / 1e3));
         let calibrated = Calibrated {
-            date: target.date.clone().or(measured.date),
-            temperature_c: self.temperature_c(target.temperature.or(measured.temperature_c)),
-            instrument: target.instrument.clone().or(measured.instrument),
-            repeatability_um: measured.repeatability_um.map(|v| (v * 1e3).round() / 1e3),
-            uncertainty_um: measured.uncertainty_um.map(|v| (v * 1e3).round() / 1e3),
+            date: target.date.clone(),
+            temperature_c: self.temperature_c(target.temperature.or(temperature_c)),
+            instrument: target.instrument.clone(),
+            repeatability_um,
+            uncertainty_um,
         };
         let missing: Vec<&str> = [
             (calibrated.date.is_none(), "--date"),
@@ -346,20 +350,13 @@ impl Output {
         .filter_map(|(missing, option)| missing.then_some(option))
         .collect();
         if !missing.is_empty() && target.output.is_some() {
-            warn(
-                messages,
-                Diagnostic::warning(
-                    UNSAID,
-                    both!(
-                        "the profile does not say when, how warm or with what the machine was measured",
-                        "профиль не говорит, когда, при какой температуре или каким прибором измерен станок"
-                    ),
-                )
-                .help(both!("add {}", "добавьте {}", missing.join(", "))),
+            let message = both!(
+                "the profile does not say when, how warm or with what the machine was measured",
+                "профиль не говорит, когда, при какой температуре или каким прибором измерен станок"
             );
+            messages.warn(UNSAID, message, both!("add {}", "добавьте {}", missing.join(", ")));
         }
         self.text.set_calibrated(&calibrated);
-        Ok(())
     }
 
     /// The temperature at which the written tables hold, °C: that of the measurement; the base's where its effects say what a change
@@ -387,7 +384,16 @@ impl Output {
     }
 
     /// Compares with an earlier profile where that is asked; writes the tables, then the profile; nothing where the profile would not be a good one.
-    pub(super) fn write(&self, target: &Target, messages: &Messages) -> Result<(), Failure> {
+    ///
+    /// * `known_mm` – how far readings repeat, and how sure the model is
+    pub(super) fn write(
+        &mut self,
+        target: &Target,
+        messages: &Messages,
+        temperature_c: Option<f64>,
+        known_mm: [Option<f64>; 2],
+    ) -> Result<(), Failure> {
+        self.calibrated(target, messages, temperature_c, known_mm);
         let profile = self.check()?;
         if let Some(old) = &target.against {
             super::against::report(old, &profile, messages.language())?;
@@ -408,11 +414,6 @@ impl Output {
         ));
         Ok(())
     }
-}
-
-/// Prints a warning.
-pub(super) fn warn(messages: &Messages, diagnostic: Diagnostic) {
-    messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
 }
 
 /// Error functions as CSV, µm with four decimals and µrad with four: finer than any instrument reads.

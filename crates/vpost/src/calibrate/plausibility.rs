@@ -2,7 +2,7 @@
 
 use calibration::functions::Function;
 use calibration::iso230_2::{self, Runs};
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Text, both};
 
 use crate::message::{Failure, Messages};
 
@@ -10,7 +10,6 @@ use measurement_files::series::{Origin, Series};
 use measurement_files::{OddSizes, micro};
 
 use super::codes::{AXES, MISSING, RUNS, UNITS};
-use super::output::warn;
 use crate::number::short;
 
 /// Deviations that are much too small or too large for their unit.
@@ -23,9 +22,9 @@ pub(super) fn units(series: &Series, messages: &Messages) -> Result<(), Failure>
         return Ok(());
     };
     if odd.are_small && series.origin == Origin::Instrument {
-        return Err(Failure::usage(Diagnostic::error(UNITS, odd.message).help(odd.help)));
+        return Err(Failure::asks(UNITS, odd.message, odd.help));
     }
-    warn(messages, Diagnostic::warning(UNITS, odd.message).help(odd.help));
+    messages.warn(UNITS, odd.message, odd.help);
     Ok(())
 }
 
@@ -42,13 +41,11 @@ pub(super) fn directions(series: &Series, messages: &Messages) {
         series.name(),
         short(*at_mm, 3)
     );
-    warn(
-        messages,
-        Diagnostic::warning(MISSING, message).help(both!(
-            "the direction decides what is lost motion and what is scatter: add a column `dir`, 1 where the axis moved towards plus and -1 where towards minus; without it B stays unknown, and the table holds the mean of both sides",
-            "направление решает, где мёртвый ход, а где разброс: добавьте столбец `dir`: 1 при движении в плюс, -1 в минус; без него B останется неизвестной, а таблица — средней для обеих сторон"
-        )),
+    let help = both!(
+        "the direction decides what is lost motion and what is scatter: add a column `dir`, 1 where the axis moved towards plus and -1 where towards minus; without it B stays unknown, and the table holds the mean of both sides",
+        "направление решает, где мёртвый ход, а где разброс: добавьте столбец `dir`: 1 при движении в плюс, -1 в минус; без него B останется неизвестной, а таблица — средней для обеих сторон"
     );
+    messages.warn(MISSING, message, help);
 }
 
 /// Below this no instrument tells two readings apart, mm and rad.
@@ -88,18 +85,17 @@ pub(super) fn copies(
             "{message:#}, а разность направлений гуляет от цели к цели на {} {unit:#}: один проход записан несколько раз?",
             short(apart * scale, 3)
         );
-        return Err(Failure::usage(Diagnostic::error(RUNS, message).help(both!(
+        let help = both!(
             "give runs that were each measured, or one run alone",
             "дайте проходы, каждый из которых измерен, или один проход"
-        ))));
+        );
+        return Err(Failure::asks(RUNS, message, help));
     }
-    warn(
-        messages,
-        Diagnostic::warning(MISSING, message).help(both!(
-            "then they say nothing of the repeatability; the uncertainty counts the instrument's alone",
-            "о повторяемости они тогда ничего не говорят; в неопределённости учтена только приборная"
-        )),
+    let help = both!(
+        "then they say nothing of the repeatability; the uncertainty counts the instrument's alone",
+        "о повторяемости они тогда ничего не говорят; в неопределённости учтена только приборная"
     );
+    messages.warn(MISSING, message, help);
     Ok(())
 }
 
@@ -127,9 +123,11 @@ pub(super) fn reversal(series: &Series, function: &Function) -> Result<(), Failu
         series.axis,
         short(mean * 1e3, 3)
     );
-    Err(Failure::usage(Diagnostic::error(AXES, message).help(
-        both!("were up and down exchanged (column dir, order of the runs), or are the deviations target minus actual? a backlash compensation of the control that is set too high does it too: switch it off for the measurement", "не переставлены ли направления (столбец dir, порядок проходов), не цель ли минус измеренное в отклонениях? так же действует завышенная компенсация люфта в стойке: на время измерения отключите её"),
-    )))
+    let help = both!(
+        "were up and down exchanged (column dir, order of the runs), or are the deviations target minus actual? a backlash compensation of the control that is set too high does it too: switch it off for the measurement",
+        "не переставлены ли направления (столбец dir, порядок проходов), не цель ли минус измеренное в отклонениях? так же действует завышенная компенсация люфта в стойке: на время измерения отключите её"
+    );
+    Err(Failure::asks(AXES, message, help))
 }
 
 /// A reversal value below this is none, mm.
@@ -167,12 +165,10 @@ pub(super) fn conditions_of_the_standard(name: &str, found: &iso230_2::Evaluatio
             "{name} оценена по ISO 230-2, а измерена не так: {:#}",
             Text::join(&missing, "; ")
         );
-        warn(
-            messages,
-            Diagnostic::warning(MISSING, message).help(both!(
-                "do not quote the figures as those of the standard",
-                "не приводите эти числа как полученные по стандарту"
-            )),
+        let help = both!(
+            "do not quote the figures as those of the standard",
+            "не приводите эти числа как полученные по стандарту"
         );
+        messages.warn(MISSING, message, help);
     }
 }

@@ -2,12 +2,15 @@
 
 use std::path::Path;
 
+use calibration::CalibrationError;
 use calibration::functions::FunctionReading;
-use diagnostic::{Text, both};
+use diagnostic::{Speaks, Text, both};
+use machine_model::Vector;
 use machine_model::effects::Conditions;
 use measurement_files::series::{Content, Series, Told, symbol};
 use measurement_files::{Codes, Kind, Row, Sheet};
 
+use super::codes::{CELL, OUTLIER, failure, question};
 use crate::file;
 use crate::message::Failure;
 
@@ -39,6 +42,107 @@ pub(super) fn conditions_of(
         feed_mm_min: row.number("feed_mm_min")?.or(said.feed_mm_min),
         ..said
     })
+}
+
+/// What several tables hold, and where each reading stands.
+pub(crate) struct Read<T> {
+    pub(crate) rows: Vec<T>,
+    sheets: Vec<Sheet>,
+    /// Sheet and line of each.
+    places: Vec<(usize, usize)>,
+    temperatures_c: Vec<f64>,
+}
+
+impl<T> Default for Read<T> {
+    fn default() -> Self {
+        Self { rows: Vec::new(), sheets: Vec::new(), places: Vec::new(), temperatures_c: Vec::new() }
+    }
+}
+
+impl<T> Read<T> {
+    /// Takes a reading from each row.
+    pub(crate) fn add(
+        &mut self,
+        sheet: Sheet,
+        mut reading: impl FnMut(&Row<'_>) -> Result<T, Failure>,
+    ) -> Result<(), Failure> {
+        for (line, row) in sheet.rows().enumerate() {
+            self.rows.push(reading(&row)?);
+            self.temperatures_c.extend(row.number("temp_c")?);
+            self.places.push((self.sheets.len(), line));
+        }
+        self.sheets.push(sheet);
+        Ok(())
+    }
+
+    /// Mean temperature of the rows that have one, °C.
+    pub(crate) fn temperature_c(&self) -> Option<f64> {
+        mean(&self.temperatures_c)
+    }
+
+    /// The row of a reading.
+    pub(crate) fn row(&self, reading: usize) -> Option<Row<'_>> {
+        let (sheet, line) = *self.places.get(reading)?;
+        self.sheets.get(sheet)?.row(line)
+    }
+
+    /// What contradicts the readings; an outlier at its row.
+    ///
+    /// * `column` – what is looked at there
+    pub(crate) fn refused(&self, column: &str, error: &CalibrationError) -> Failure {
+        let row = match error {
+            CalibrationError::Outlier { point, .. } => self.row(*point),
+            _ => None,
+        };
+        let help = both!("measure it again, or take the row out", "измерьте снова или уберите строку");
+        row.map_or_else(
+            || failure("", &[], error),
+            |row| row.refuse(OUTLIER, column, error.text(), help).into(),
+        )
+    }
+}
+
+/// Readings state their uncertainty all together, or none of them.
+pub(crate) fn all_state_or_none(stated: usize, all: usize) -> Result<(), Failure> {
+    if stated == 0 || stated == all {
+        return Ok(());
+    }
+    Err(question(
+        both!(
+            "{stated} of {all} readings state their uncertainty, the others do not",
+            "неопределённость указана у {stated} показаний из {all}, у остальных нет"
+        ),
+        both!(
+            "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
+            "заполните столбец u_um во всех строках или пропустите его: `--ignore-column u_um`"
+        ),
+    ))
+}
+
+/// The standard uncertainty that a row states in a column, mm.
+pub(crate) fn uncertainty_mm(row: &Row<'_>, column: &str) -> Result<Option<f64>, Failure> {
+    let stated_um = row.number(column)?;
+    if stated_um.is_some_and(|um| um <= 0.0) {
+        let message = both!("an uncertainty is above zero", "неопределённость больше нуля");
+        let help = both!("give the standard uncertainty in um", "дайте стандартную неопределённость в мкм");
+        return Err(row.refuse(CELL, column, message, help).into());
+    }
+    Ok(stated_um.map(|um| um * 1e-3))
+}
+
+/// The mean; nothing of nothing.
+pub(crate) fn mean(all: &[f64]) -> Option<f64> {
+    (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+}
+
+/// The least and the largest.
+pub(crate) fn span(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    values.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+}
+
+/// Three numbers, apart by blanks.
+pub(crate) fn three(v: &Vector, decimals: usize) -> String {
+    [v.x, v.y, v.z].map(|value| format!("{value:.decimals$}")).join(" ")
 }
 
 /// The file of `FILE[=SYMBOL[:UNIT]]`.

@@ -3,21 +3,21 @@
 use std::path::PathBuf;
 
 use calibration::tracker::{Frame, TrackerCalibration, TrackerMachine, Verdict, calibrate, machine};
-use calibration::{CalibrationError, MeanTraverse, Noise, Point, PointReading, Reading, SetUp};
+use calibration::{MeanTraverse, Noise, Point, PointReading, Reading, SetUp};
 use clap::{Args, ValueEnum};
-use diagnostic::{Diagnostic, Speaks, Text, both};
+use diagnostic::{Diagnostic, Text, both};
 use machine_model::{Axis, Command, Vector};
-use machine_profile::Calibrated;
-use measurement_files::{Row, Sheet};
+use measurement_files::Sheet;
 
 use crate::arguments::Shared;
 use crate::conditions::conditions;
 use crate::file;
 use crate::message::{Failure, Messages, Report};
 
-use super::codes::{DOUBTFUL, MISSING, OUTLIER, UNFIT, failure, question};
-use super::output::{Output, Target, warn};
-use super::sources;
+use super::codes::{DOUBTFUL, MISSING, UNFIT, failure, question};
+use super::output::{Output, Target};
+use super::sources::{self, span, three};
+use super::volumetric::moved;
 use crate::number::short;
 
 /// `vpost calibrate tracker X.csv Y.csv Z.csv -o PROFILE`
@@ -63,7 +63,11 @@ const EXPECTED: Text = Text::pair(
 );
 
 /// Readings of one file, the temperature beside each.
-fn readings(sheet: &Sheet, axis: usize) -> Result<Vec<(Reading, Option<f64>)>, Failure> {
+fn readings(
+    read: &mut sources::Read<(Reading, Option<f64>)>,
+    sheet: Sheet,
+    axis: usize,
+) -> Result<(), Failure> {
     let own = sheet.has("commanded_x_mm");
     let (commanded, measured) = if own {
         (
@@ -75,15 +79,14 @@ fn readings(sheet: &Sheet, axis: usize) -> Result<Vec<(Reading, Option<f64>)>, F
     };
     sheet.need(&[commanded, measured].concat(), EXPECTED)?;
     let direction = ["dir_x", "dir_y", "dir_z"][axis];
-    let reading = |row: Row<'_>| {
+    read.add(sheet, |row| {
         let reading = Reading {
             commanded_mm: Vector::from(row.three(commanded)?),
             measured_mm: Vector::from(row.three(measured)?),
             direction: row.sign(direction)?,
         };
         Ok((reading, row.number("temp_c")?))
-    };
-    sheet.rows().map(reading).collect()
+    })
 }
 
 /// `vpost calibrate tracker`
@@ -105,15 +108,17 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
     };
     let said = conditions(&shared.job)?;
     let given_mm = arguments.u_um.map(|u| u * 1e-3);
-    let (mut traverses, mut points, mut sheets, mut temperatures) =
-        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut traverses, mut points, mut read) = (Vec::new(), Vec::new(), sources::Read::default());
     for (axis, path) in arguments.traverses.iter().enumerate() {
         let sheet = sources::sheet(path, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;
-        let rows = readings(&sheet, axis)?;
+        let (name, text) = (sheet.name().to_owned(), sheet.text().to_owned());
+        let first = read.rows.len();
+        readings(&mut read, sheet, axis)?;
+        let rows = &read.rows[first..];
         let readings: Vec<Reading> = rows.iter().map(|(reading, _)| *reading).collect();
         let mean = MeanTraverse::new(axis, &readings, given_mm)
-            .map_err(|error| failure(sheet.name(), sheet.text().as_bytes(), &error))?;
-        warn_of_gaps(sheet.name(), &mean, messages);
+            .map_err(|error| failure(&name, text.as_bytes(), &error))?;
+        warn_of_gaps(&name, &mean, messages);
         // A line read once shows its scatter by its roughness only.
         let rough_mm = (mean.noise == Noise::Roughness).then(|| mean.scatter_mm.norm() / 3f64.sqrt());
         traverses.push(match arguments.chord_mm {
@@ -123,7 +128,7 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
         if let Some(output) = &output {
             let tool_mm =
                 output.base.as_ref().map_or(Vector::zeros(), |base| Vector::from(base.default_tool_mm));
-            for (reading, warm) in &rows {
+            for (reading, warm) in rows {
                 let mut direction = [0; 3];
                 direction[axis] = reading.direction;
                 let command = Command {
@@ -144,8 +149,6 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
                 });
             }
         }
-        temperatures.extend(rows.iter().filter_map(|(_, warm)| *warm));
-        sheets.push(sheet);
     }
     let Ok(traverses) = <[MeanTraverse; 3]>::try_from(traverses) else {
         return Err(Failure::option(
@@ -163,7 +166,7 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
         return judge_chords(&found, shared, messages);
     };
     let base = output.measured_from(&arguments.target)?;
-    let changed = machine(&points, &base, &found, frame).map_err(|error| refused(&sheets, &error))?;
+    let changed = machine(&points, &base, &found, frame).map_err(|error| read.refused("x_mm", &error))?;
     let text = report(&found, Some(&changed), arguments)?;
     file::print(text.in_language(messages.language()).as_bytes())?;
     judge(&changed, base.is_known, messages)?;
@@ -174,38 +177,9 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
     write_profile(output, &found, arguments.as_published);
     output.changed(&base, &changed.axes, &changed.description);
     output.set_up(&changed.setups);
-    let mean = |all: &[f64]| (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64);
-    let scatter = found.traverses.iter().map(|t| t.scatter_mm.max()).fold(0.0, f64::max);
-    output.calibrated(
-        &arguments.target,
-        messages,
-        Calibrated {
-            temperature_c: mean(&temperatures),
-            repeatability_um: Some(scatter * 1e3),
-            uncertainty_um: Some(changed.field_u95_mm * 1e3),
-            ..Calibrated::default()
-        },
-    )?;
-    output.write(&arguments.target, messages)
-}
-
-/// What contradicts the readings, an outlier at its row.
-fn refused(sheets: &[Sheet], error: &CalibrationError) -> Failure {
-    let row = match error {
-        CalibrationError::Outlier { point, .. } => sheets.iter().flat_map(Sheet::rows).nth(*point),
-        _ => None,
-    };
-    match row {
-        Some(row) => row
-            .refuse(
-                OUTLIER,
-                "x_mm",
-                error.text(),
-                both!("measure it again, or take the row out", "измерьте снова или уберите строку"),
-            )
-            .into(),
-        None => failure("", &[], error),
-    }
+    let scatter_mm = found.traverses.iter().map(|t| t.scatter_mm.max()).fold(0.0, f64::max);
+    let known_mm = [Some(scatter_mm), Some(changed.field_u95_mm)];
+    output.write(&arguments.target, messages, read.temperature_c(), known_mm)
 }
 
 fn warn_of_gaps(name: &str, mean: &MeanTraverse, messages: &Messages) {
@@ -245,12 +219,10 @@ fn warn_of_gaps(name: &str, mean: &MeanTraverse, messages: &Messages) {
 
 /// Refuses a field that is known worse than it deviates.
 fn judge(changed: &TrackerMachine, has_base: bool, messages: &Messages) -> Result<(), Failure> {
-    let um = |mm: f64| short(mm * 1e3, 1);
+    let [known, found] = [changed.field_u95_mm, changed.field_p95_mm].map(|mm| short(mm * 1e3, 1));
     let field = both!(
-        "the field is known to ±{} um (95 % of the volume's points), the deviations found are {} um",
-        "поле известно с точностью ±{} мкм (в 95 % точек объёма), а найденные отклонения — {} мкм",
-        um(changed.field_u95_mm),
-        um(changed.field_p95_mm)
+        "the field is known to ±{known} um (95 % of the volume's points), the deviations found are {found} um",
+        "поле известно с точностью ±{known} мкм (в 95 % точек объёма), а найденные отклонения — {found} мкм"
     );
     let help = both!("measure each node more often", "измеряйте каждый узел больше раз");
     // A base corrects whatever it did before; without one a correction has to be better than none.
@@ -259,13 +231,10 @@ fn judge(changed: &TrackerMachine, has_base: bool, messages: &Messages) -> Resul
             "these traverses cannot carry a correction: {field}",
             "эти проходы не дают поправки: {field:#}"
         );
-        return Err(Failure::Refused(vec![Report {
-            source: None,
-            diagnostics: vec![Diagnostic::error(UNFIT, message).help(help)],
-        }]));
+        return Err(Failure::alone(UNFIT, message, help));
     }
     if !has_base && changed.field_u95_mm > 0.5 * changed.field_p95_mm {
-        warn(messages, Diagnostic::warning(DOUBTFUL, field).help(help));
+        messages.warn(DOUBTFUL, field, help);
     }
     Ok(())
 }
@@ -280,13 +249,11 @@ fn judge_chords(found: &TrackerCalibration, shared: &Shared, messages: &Messages
     }
     let corner = far.corner_mm.iter().map(|v| short(*v, 3)).collect::<Vec<_>>().join(", ");
     let needed = (far.sufficient_chord_mm() / far.chord_mm).ceil() * far.chord_mm;
+    let (chord, known_urad) = (short(far.chord_mm, 3), far.direction_u95_rad * 1e6);
+    let [known, found] = [far.chord_u95_mm, far.deviation_mm].map(um);
     let message = both!(
-        "a chord of {} mm knows its direction to ±{:.0} urad (95 %), which is ±{} um at the far corner ({corner}); the deviation found there is {} um",
-        "направление хорды {} мм известно с точностью ±{:.0} мкрад (95 %), то есть ±{} мкм в дальнем углу ({corner}); найденное там отклонение — {} мкм",
-        short(far.chord_mm, 3),
-        far.direction_u95_rad * 1e6,
-        um(far.chord_u95_mm),
-        um(far.deviation_mm)
+        "a chord of {chord} mm knows its direction to ±{known_urad:.0} urad (95 %), which is ±{known} um at the far corner ({corner}); the deviation found there is {found} um",
+        "направление хорды {chord} мм известно с точностью ±{known_urad:.0} мкрад (95 %), то есть ±{known} мкм в дальнем углу ({corner}); найденное там отклонение — {found} мкм"
     );
     let help = both!(
         "measure each node more often, or use longer chords: with these readings `--chord-mm {}` halves it",
@@ -294,17 +261,14 @@ fn judge_chords(found: &TrackerCalibration, shared: &Shared, messages: &Messages
         short(needed, 3)
     );
     if far.verdict() == Verdict::Doubtful {
-        warn(messages, Diagnostic::warning(DOUBTFUL, message).help(help));
+        messages.warn(DOUBTFUL, message, help);
         return Ok(());
     }
     let message = both!(
         "these traverses cannot carry a correction by chords: {message}",
         "эти проходы не дают поправки по хордам: {message:#}"
     );
-    Err(Failure::Refused(vec![Report {
-        source: None,
-        diagnostics: vec![Diagnostic::error(UNFIT, message).help(help)],
-    }]))
+    Err(Failure::alone(UNFIT, message, help))
 }
 
 /// The interval tables: directions of every interval with their standard uncertainties.
@@ -376,13 +340,8 @@ fn report(
         let [x, y, z] = [0, 1, 2].map(|column| show(g[(row, column)]));
         out.push(&Text::same(format!("  {x:>11.7} {y:>11.7} {z:>11.7}\n")));
     }
-    out.push(&both!(
-        "  r01        {:.6} {:.6} {:.6} mm\n",
-        "  r01        {:.6} {:.6} {:.6} мм\n",
-        r01.x,
-        r01.y,
-        r01.z
-    ));
+    let r01 = three(&r01, 6);
+    out.push(&both!("  r01        {r01} mm\n", "  r01        {r01} мм\n"));
     let factor = found.far_corner.coverage_factor;
     out.push(&Text::pair(
         "\nISO 230-1, lines through the common point; 95 %\n",
@@ -446,25 +405,17 @@ fn of_traverse(axis: usize, traverse: &MeanTraverse) -> Text {
             "повторов нет: по неровности линии, оценка сверху",
         ),
     };
-    let s = traverse.scatter_mm * 1e3;
+    let named = |mm: &Vector| format!("x {:.2} y {:.2} z {:.2}", mm.x * 1e3, mm.y * 1e3, mm.z * 1e3);
+    let [start, end] = [first, last].map(|node| short(node.commanded_mm, 3));
+    let (nodes, scatter) = (traverse.nodes.len(), named(&traverse.scatter_mm));
     let mut out = both!(
-        "traverse {letter}   {} … {} mm, {} nodes; scatter x {:.2} y {:.2} z {:.2} um ({from})\n",
-        "проход {letter}     {} … {} мм, узлов {}; разброс x {:.2} y {:.2} z {:.2} мкм ({from:#})\n",
-        short(first.commanded_mm, 3),
-        short(last.commanded_mm, 3),
-        traverse.nodes.len(),
-        s.x,
-        s.y,
-        s.z
+        "traverse {letter}   {start} … {end} mm, {nodes} nodes; scatter {scatter} um ({from})\n",
+        "проход {letter}     {start} … {end} мм, узлов {nodes}; разброс {scatter} мкм ({from:#})\n"
     );
-    if let Some(reversal) = traverse.reversal_mm {
-        let r = reversal * 1e3;
+    if let Some(reversal) = traverse.reversal_mm.as_ref().map(named) {
         out.push(&both!(
-            "  reversal   x {:.2} y {:.2} z {:.2} um (from below minus from above)\n",
-            "  реверс     x {:.2} y {:.2} z {:.2} мкм (снизу минус сверху)\n",
-            r.x,
-            r.y,
-            r.z
+            "  reversal   {reversal} um (from below minus from above)\n",
+            "  реверс     {reversal} мкм (снизу минус сверху)\n"
         ));
     }
     out
@@ -478,9 +429,7 @@ fn of_machine(changed: &TrackerMachine) -> Text {
     for (axis, own) in changed.axes.iter().enumerate() {
         let letter = Axis::ALL[axis].letter();
         for direction in 0..3 {
-            let values = || own.errors.iter().map(|row| row[direction] * 1e3);
-            let (low, high) =
-                (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+            let (low, high) = span(own.errors.iter().map(|row| row[direction] * 1e3));
             let name = Axis::ALL[direction];
             out.push(&both!(
                 "  E{name}{letter}        {low:.1} … {high:.1} um\n",
@@ -503,17 +452,8 @@ fn of_machine(changed: &TrackerMachine) -> Text {
         ));
     }
     if let [Some(SetUp::Frame(motion))] = changed.setups.as_slice() {
-        let (t, r) = (motion.shift_mm, motion.rotation_rad() * 1e6);
-        out.push(&both!(
-            "  set-up     shift {:.4} {:.4} {:.4} mm, rotation {:.1} {:.1} {:.1} urad of the instrument\n",
-            "  установка  сдвиг {:.4} {:.4} {:.4} мм, поворот {:.1} {:.1} {:.1} мкрад прибора\n",
-            t.x,
-            t.y,
-            t.z,
-            r.x,
-            r.y,
-            r.z
-        ));
+        let moved = moved(motion);
+        out.push(&both!("  set-up     {moved} of the instrument\n", "  установка  {moved:#} прибора\n"));
     }
     out.push(&both!(
         "  field      known to ±{:.2} um at 95 % of the points of the volume, frames taken off; deviations found {:.2} um\n",

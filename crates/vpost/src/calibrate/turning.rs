@@ -10,19 +10,19 @@ use calibration::turning::{
     calibrate,
 };
 use clap::Args;
-use diagnostic::{Diagnostic, Speaks, Text, both};
+use diagnostic::{Speaks, Text, both};
 use machine_model::{Axis, Command, PathModel, Vector};
-use machine_profile::{Calibrated, LatheParts, Profile};
-use measurement_files::{Row, Sheet, numbered};
+use machine_profile::{LatheParts, Profile};
+use measurement_files::{Row, numbered};
 
-use super::codes::{AXES, CELL, OUTLIER, UNFIT, UNITS, failure, question};
+use super::codes::{AXES, CELL, UNFIT, UNITS, failure, question};
 use super::output::{Output, Target};
 use super::page::Shown;
 use super::sources;
 use crate::arguments::Shared;
 use crate::conditions::conditions;
 use crate::file;
-use crate::message::{Failure, Messages, Report};
+use crate::message::{Failure, Messages};
 
 use shown::Pieces;
 
@@ -50,7 +50,7 @@ struct Outcome<'a> {
     found: &'a TurningCalibration,
     holdout: Option<HeldOut>,
     base: &'a TurningBase,
-    parts: &'a Parts,
+    names: &'a Names,
     /// Readings that the adjustment saw.
     rows: &'a [TurnedReading],
     /// All diameters say when they were cut.
@@ -65,12 +65,15 @@ pub(crate) const MOST_UM: f64 = 2000.0;
 
 #[derive(Default)]
 struct Parts {
-    rows: Vec<TurnedReading>,
-    sheets: Vec<Sheet>,
-    places: Vec<(usize, usize)>,
+    read: sources::Read<TurnedReading>,
+    names: Names,
+}
+
+/// Names of parts and tools, by their numbers.
+#[derive(Default)]
+struct Names {
     parts: Vec<String>,
     tools: Vec<String>,
-    temperatures: Vec<f64>,
 }
 
 /// From the gauge point to the tip of the tool of this name, mm: `H1`, or `T0101` whose offset is H1, an edge's name behind it;
@@ -136,23 +139,19 @@ pub(crate) fn stood_at(
         );
         return Err(row.refuse(AXES, "z_mm", message, help).into());
     }
-    Ok(Command { linear_mm, rotary_rad: Vector::zeros(), tool_mm, direction: [0; 3], ..Default::default() })
+    Ok(Command { linear_mm, tool_mm, ..Command::default() })
 }
 
 impl Parts {
     fn read(&mut self, path: &Path, profile: &Profile, ignore: &[String]) -> Result<(), Failure> {
         let sheet = sources::sheet(path, COLUMNS, EXPECTED, ignore)?;
         sheet.need(&["part", "z_mm", "diameter_mm", "d_um"], EXPECTED)?;
-        for (line, row) in sheet.rows().enumerate() {
-            let read = self.reading(&row, profile)?;
-            self.temperatures.extend(row.number("temp_c")?);
-            self.rows.push(read);
-            self.places.push((self.sheets.len(), line));
-        }
-        self.sheets.push(sheet);
-        Ok(())
+        let names = &mut self.names;
+        self.read.add(sheet, |row| names.reading(row, profile))
     }
+}
 
+impl Names {
     fn reading(&mut self, row: &Row<'_>, profile: &Profile) -> Result<TurnedReading, Failure> {
         let feature = match row.text("feature").to_lowercase().as_str() {
             "" | "diameter" | "диаметр" => Feature::Diameter,
@@ -160,14 +159,8 @@ impl Parts {
             other => {
                 let message =
                     both!("`{other}` is no feature of a test piece", "`{other}` — не элемент образца");
-                return Err(row
-                    .refuse(
-                        CELL,
-                        "feature",
-                        message,
-                        both!("write diameter or face", "напишите diameter или face"),
-                    )
-                    .into());
+                let help = both!("write diameter or face", "напишите diameter или face");
+                return Err(row.refuse(CELL, "feature", message, help).into());
             }
         };
         let name = part_name(row)?;
@@ -195,28 +188,11 @@ impl Parts {
         }
         if diameter_mm <= 0.0 && feature == Feature::Diameter {
             let message = both!("a diameter is above 0", "диаметр больше 0");
-            return Err(row
-                .refuse(
-                    CELL,
-                    "diameter_mm",
-                    message,
-                    both!("give the commanded diameter", "дайте заданный диаметр"),
-                )
-                .into());
+            let help = both!("give the commanded diameter", "дайте заданный диаметр");
+            return Err(row.refuse(CELL, "diameter_mm", message, help).into());
         }
         let command = stood_at(row, profile, tool_mm, z_mm, diameter_mm)?;
-        let uncertainty_mm = row.number("u_um")?.map(|u| u * 1e-3);
-        if uncertainty_mm.is_some_and(|u| u <= 0.0) {
-            let message = both!("an uncertainty is above zero", "неопределённость больше нуля");
-            return Err(row
-                .refuse(
-                    CELL,
-                    "u_um",
-                    message,
-                    both!("give the standard uncertainty in um", "дайте стандартную неопределённость в мкм"),
-                )
-                .into());
-        }
+        let uncertainty_mm = sources::uncertainty_mm(row, "u_um")?;
         Ok(TurnedReading {
             part,
             tool,
@@ -227,18 +203,6 @@ impl Parts {
             uncertainty_mm,
             time_s: row.number("time_s")?,
         })
-    }
-
-    fn refused(&self, error: &CalibrationError) -> Failure {
-        if let CalibrationError::Outlier { point, .. } = error {
-            let (sheet, line) = self.places[*point];
-            if let Some(row) = self.sheets[sheet].row(line) {
-                let help =
-                    both!("measure it again, or take the row out", "измерьте снова или уберите строку");
-                return row.refuse(OUTLIER, "d_um", error.text(), help).into();
-            }
-        }
-        failure("", &[], error)
     }
 }
 
@@ -260,19 +224,15 @@ fn named(term: Term, base: &TurningBase) -> (&'static str, f64, f64) {
 
 /// `vpost calibrate turning`
 pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    if shared.job.machine.is_none() {
-        return Err(question(
+    let unknown = || {
+        question(
             both!("which lathe? its profile is not known", "какой токарный станок? его профиль неизвестен"),
             both!("add `-m LATHE.toml`", "добавьте `-m LATHE.toml`"),
-        ));
-    }
-    let mut output = Output::start_any(&arguments.target, shared)?;
-    let Some(profile) = output.base.clone() else {
-        return Err(question(
-            both!("which lathe? its profile is not known", "какой токарный станок? его профиль неизвестен"),
-            both!("add `-m LATHE.toml`", "добавьте `-m LATHE.toml`"),
-        ));
+        )
     };
+    shared.job.machine.as_ref().ok_or_else(unknown)?;
+    let mut output = Output::start_any(&arguments.target, shared)?;
+    let profile = output.base.clone().ok_or_else(unknown)?;
     let Some(lathe) = profile.lathe.clone() else {
         return Err(Failure::option(
             both!(
@@ -292,45 +252,32 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
     for path in &arguments.files {
         parts.read(path, &profile, ignore)?;
     }
-    let trained = parts.rows.len();
+    let trained = parts.read.rows.len();
     if let Some(path) = &arguments.holdout {
         parts.read(path, &profile, ignore)?;
     }
-    by_effects(&mut parts.rows, &profile, &base, shared)?;
-    let (rows, held) = parts.rows.split_at(trained);
+    by_effects(&mut parts.read.rows, &profile, &base, shared)?;
+    let (rows, held) = parts.read.rows.split_at(trained);
     let stated = rows.iter().filter(|row| row.uncertainty_mm.is_some()).count();
-    if stated > 0 && stated < rows.len() {
-        return Err(question(
-            both!(
-                "{stated} of {} readings state their uncertainty, the others do not",
-                "неопределённость указана у {stated} показаний из {}, у остальных нет",
-                rows.len()
-            ),
-            both!(
-                "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
-                "заполните столбец u_um во всех строках или пропустите его: `--ignore-column u_um`"
-            ),
-        ));
-    }
-    let found = calibrate(rows, &base, &parts.parts).map_err(|error| parts.refused(&error))?;
+    sources::all_state_or_none(stated, rows.len())?;
+    let found =
+        calibrate(rows, &base, &parts.names.parts).map_err(|error| parts.read.refused("d_um", &error))?;
     let holdout = (!held.is_empty()).then(|| found.held_out(held, &base)).transpose();
-    let holdout = holdout.map_err(|error| parts.refused(&error))?;
+    let holdout = holdout.map_err(|error| parts.read.refused("d_um", &error))?;
     let timed = rows.iter().all(|row| row.feature != Feature::Diameter || row.time_s.is_some());
-    let outcome = Outcome { found: &found, holdout, base: &base, parts: &parts, rows, timed };
+    let outcome = Outcome { found: &found, holdout, base: &base, names: &parts.names, rows, timed };
     file::print(outcome.report().in_language(messages.language()).as_bytes())?;
     if let Some(path) = &arguments.json {
-        let mut text = serde_json::to_string_pretty(&outcome.json()).expect("plain values always serialise");
-        text.push('\n');
-        file::write(path, text.as_bytes())?;
+        file::write(path, &jobs::summary::json(&outcome.json()))?;
     }
     let refuted = holdout.filter(|judged| judged.rms_after_mm > judged.rms_before_mm + 1e-9);
     let page = |target: &Target, uncertainty_mm: Option<f64>| {
-        let page = Pieces::new(&outcome, held, messages.language(), refuted.is_some());
+        let page = Pieces::new(&outcome, held, refuted.is_some());
         let page = page.map_err(|error| failure("", &[], &CalibrationError::Axes(error.text())))?;
         let shown = Shown { html: arguments.html.clone(), ..Shown::default() };
         let mut files = arguments.files.clone();
         files.extend(arguments.holdout.clone());
-        shown.write(&page, &files, target, shared, mean(&parts.temperatures), uncertainty_mm)
+        shown.write(&page, &files, target, shared, parts.read.temperature_c(), uncertainty_mm)
     };
     if let Some(judged) = refuted {
         page(&Target { output: None, ..arguments.target.clone() }, None)?;
@@ -345,24 +292,13 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
             "look for a sign, or for parts of another machine or clamping; nothing was written",
             "ищите ошибку в знаке или образцы другого станка или установки; ничего не записано"
         );
-        let diagnostics = vec![Diagnostic::error(UNFIT, message).help(help)];
-        return Err(Failure::Refused(vec![Report { source: None, diagnostics }]));
+        return Err(Failure::alone(UNFIT, message, help));
     }
     write(&mut output, &found, &base);
     let uncertainty_mm = output.with_base_mm(found.field_u95_mm, messages);
-    let measured = Calibrated {
-        temperature_c: mean(&parts.temperatures),
-        repeatability_um: Some(found.noise_mm * 1e3),
-        uncertainty_um: Some(uncertainty_mm * 1e3),
-        ..Calibrated::default()
-    };
-    output.calibrated(&arguments.target, messages, measured)?;
-    output.write(&arguments.target, messages)?;
+    let known_mm = [Some(found.noise_mm), Some(uncertainty_mm)];
+    output.write(&arguments.target, messages, parts.read.temperature_c(), known_mm)?;
     page(&arguments.target, Some(uncertainty_mm))
-}
-
-fn mean(all: &[f64]) -> Option<f64> {
-    (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
 }
 
 /// The lathe as its profile knows it.
@@ -437,26 +373,24 @@ fn write(output: &mut Output, found: &TurningCalibration, base: &TurningBase) {
 }
 
 /// Name of a tool or, where there is none, of its part.
-fn owner(found: &calibration::turning::Offset, parts: &Parts) -> String {
+fn owner(found: &calibration::turning::Offset, names: &Names) -> String {
     match found.tool {
-        Some(tool) => parts.tools[tool].clone(),
-        None => parts.parts[found.part].clone(),
+        Some(tool) => names.tools[tool].clone(),
+        None => names.parts[found.part].clone(),
     }
 }
 
 impl Outcome<'_> {
     fn report(&self) -> Text {
-        let Self { found, holdout, base, parts, timed, rows: _ } = *self;
-        let shared = found.shared_mm.map(|shared_mm| shared_mm * 1e3);
+        let Self { found, holdout, base, names, .. } = *self;
+        let parts = found.shared_mm.map(|mm| mm * 1e3).map_or_else(
+            || both!("are too few to tell by how much they differ", "неизвестно: их слишком мало"),
+            |um| both!("by {um:.3} um beyond that", "сверх того {um:.3} мкм"),
+        );
         let mut out = both!(
-            "test pieces: diameters scatter by {:.3} um (standard deviation), parts {}\n",
-            "образцы: разброс диаметров {:.3} мкм (стандартное отклонение), между образцами {:#}\n",
-            found.noise_mm * 1e3,
-            match shared {
-                Some(um) => both!("by {um:.3} um beyond that", "сверх того {um:.3} мкм"),
-                None =>
-                    Text::pair("are too few to tell by how much they differ", "неизвестно: их слишком мало",),
-            }
+            "test pieces: diameters scatter by {:.3} um (standard deviation), parts {parts}\n",
+            "образцы: разброс диаметров {:.3} мкм (стандартное отклонение), между образцами {parts:#}\n",
+            found.noise_mm * 1e3
         );
         for own in found.terms.iter().chain(&found.not_there) {
             let (key, before, scale) = named(own.term, base);
@@ -477,29 +411,13 @@ impl Outcome<'_> {
             "  уровень F-критериев: {} %; интервалы 95-процентные\n",
             LEVEL * 100.0
         ));
-        for [a, b] in &found.not_told_apart {
-            let help = match (a.english(), b.english()) {
-                ("growth", "wear") | ("wear", "growth") if !timed => {
-                    Text::pair(": add the column time_s", "; добавьте столбец time_s")
-                }
-                ("growth", "wear") | ("wear", "growth") => Text::pair(
-                    ": measure a second part with a new edge while warm, or cut the first size again when warm",
-                    "; измерьте второй образец с новой кромкой на прогретом станке или проточите первый размер снова после прогрева",
-                ),
-                (_, "what else differs from part to part") => {
-                    Text::pair(": measure a further part", "; измерьте ещё один образец")
-                }
-                _ => Text::EMPTY,
-            };
-            out.push(&both!(
-                "  {a} and {b} cannot be told apart by these parts{help}\n",
-                "  по этим образцам не различить {a:#} и {b:#}{help:#}\n"
-            ));
+        for open in self.not_told_apart() {
+            out.push(&both!("  {open}\n", "  {open:#}\n"));
         }
         for offset in &found.offsets {
             let interval =
                 offset.u.map_or_else(String::new, |u| format!(" ± {:.3}", u.half_width_95() * 1e3));
-            let (owner, radius_um) = (owner(offset, parts), offset.radius_mm * 1e3);
+            let (owner, radius_um) = (owner(offset, names), offset.radius_mm * 1e3);
             let wear_mm = -2.0 * offset.radius_mm;
             out.push(&both!(
                 "  size of {owner}: {radius_um:.3}{interval} um on the radius; with this profile enter {wear_mm:.4} mm as wear of X on the diameter\n",
@@ -518,21 +436,42 @@ impl Outcome<'_> {
             "fitted {before:.3} -> {after:.3} um RMS on the diameter\n",
             "подгонка: СКЗ {before:.3} -> {after:.3} мкм на диаметр\n"
         ));
-        if let Some(judged) = holdout {
+        if let Some(HeldOut { rows, rms_before_mm, rms_after_mm, max_after_mm }) = holdout {
+            let [before, after, most] = [rms_before_mm, rms_after_mm, max_after_mm].map(|mm| mm * 1e3);
             out.push(&both!(
-                "held out {:.3} -> {:.3} um RMS, at most {:.3} um ({} diameters, each part at its own size)\n",
-                "контрольные: СКЗ {:.3} -> {:.3} мкм, не больше {:.3} мкм (диаметров {}, каждый образец по своему размеру)\n",
-                judged.rms_before_mm * 1e3,
-                judged.rms_after_mm * 1e3,
-                judged.max_after_mm * 1e3,
-                judged.rows
+                "held out {before:.3} -> {after:.3} um RMS, at most {most:.3} um ({rows} diameters, each part at its own size)\n",
+                "контрольные: СКЗ {before:.3} -> {after:.3} мкм, не больше {most:.3} мкм (диаметров {rows}, каждый образец по своему размеру)\n"
             ));
         }
         out
     }
 
+    /// Pairs of causes that these parts leave open, and what would settle each.
+    fn not_told_apart(&self) -> Vec<Text> {
+        let one = |[a, b]: &[Text; 2]| {
+            let help = match (a.english(), b.english()) {
+                ("growth", "wear") | ("wear", "growth") if !self.timed => {
+                    Text::pair(": add the column time_s", "; добавьте столбец time_s")
+                }
+                ("growth", "wear") | ("wear", "growth") => Text::pair(
+                    ": measure a second part with a new edge while warm, or cut the first size again when warm",
+                    "; измерьте второй образец с новой кромкой на прогретом станке или проточите первый размер снова после прогрева",
+                ),
+                (_, "what else differs from part to part") => {
+                    Text::pair(": measure a further part", "; измерьте ещё один образец")
+                }
+                _ => Text::EMPTY,
+            };
+            both!(
+                "{a} and {b} cannot be told apart by these parts{help}",
+                "по этим образцам не различить {a:#} и {b:#}{help:#}"
+            )
+        };
+        self.found.not_told_apart.iter().map(one).collect()
+    }
+
     fn json(&self) -> serde_json::Value {
-        let Self { found, holdout, base, parts, rows, timed: _ } = *self;
+        let Self { found, holdout, base, names, rows, timed: _ } = *self;
         use serde_json::json;
         let known = |u: Uncertainty, scale: f64| {
             let freedom = u.freedom.is_finite().then_some(u.freedom);
@@ -551,7 +490,7 @@ impl Outcome<'_> {
         let covariance: Vec<Vec<f64>> = (0..scales.len()).map(row).collect();
         let offset = |own: &calibration::turning::Offset| {
             let known = own.u.map(|u| known(u, 1e3));
-            json!({ "tool": owner(own, parts), "radius_um": own.radius_mm * 1e3, "u_um": known.map(|u| u.0),
+            json!({ "tool": owner(own, names), "radius_um": own.radius_mm * 1e3, "u_um": known.map(|u| u.0),
                     "degrees_of_freedom": known.and_then(|u| u.1), "u95_um": known.map(|u| u.2) })
         };
         let mut counted: Vec<usize> = rows.iter().map(|row| row.part).collect();

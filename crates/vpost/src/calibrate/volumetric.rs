@@ -1,24 +1,23 @@
 //! `vpost calibrate volumetric`.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use calibration::rigid_motion::RigidMotion;
 use calibration::volumetric::{Options, VolumetricCalibration, calibrate};
-use calibration::{CalibrationError, Point, PointReading, SetUp};
+use calibration::{Point, PointReading, SetUp};
 use clap::Args;
-use diagnostic::{Diagnostic, Speaks, Text, both};
+use diagnostic::{Text, both};
 use machine_model::{Axis, Vector};
-use machine_profile::Calibrated;
-use measurement_files::{Row, Sheet, micro};
+use measurement_files::{Row, micro, numbered};
 
 use crate::arguments::Shared;
 use crate::conditions::conditions;
 use crate::file;
-use crate::message::{Failure, Messages, Report};
+use crate::message::{Failure, Messages};
 
-use super::codes::{CELL, DOUBTFUL, OUTLIER, UNFIT, failure, question};
-use super::output::{Output, Target, warn};
-use super::sources;
+use super::codes::{DOUBTFUL, UNFIT, question};
+use super::output::{Output, Target};
+use super::sources::{self, span, three};
 
 /// `vpost calibrate volumetric FILES… -o PROFILE`
 #[derive(Debug, Args)]
@@ -44,27 +43,14 @@ const EXPECTED: Text = Text::pair(
     "ожидалось: run,x_mm,y_mm,z_mm и dx_um,dy_um,dz_um, или xm_mm,ym_mm,zm_mm, или length_mm,bx_mm,by_mm,bz_mm",
 );
 
-/// The points of all files and where each of them stands.
-struct Read {
-    points: Vec<Point>,
-    sheets: Vec<Sheet>,
-    /// Sheet and row of each point.
-    places: Vec<(usize, usize)>,
-    temperatures: Vec<f64>,
-    /// Names of the runs, with the file where there are several.
-    runs: Vec<String>,
-}
-
-fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read, Failure> {
-    let mut all = Read {
-        points: Vec::new(),
-        sheets: Vec::new(),
-        places: Vec::new(),
-        temperatures: Vec::new(),
-        runs: Vec::new(),
-    };
+/// The points of all files, and the names of their runs, with the file where there are several.
+fn read(
+    arguments: &Volumetric,
+    shared: &Shared,
+    output: &Output,
+) -> Result<(sources::Read<Point>, Vec<String>), Failure> {
+    let (mut all, mut runs) = (sources::Read::default(), Vec::new());
     let said = conditions(&shared.job)?;
-    let mut known = BTreeMap::new();
     for path in &arguments.files {
         let sheet = sources::sheet(path, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;
         sheet.need(
@@ -92,39 +78,21 @@ fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read
                 ),
             )?;
         }
-        for (line, row) in sheet.rows().enumerate() {
+        let file = sheet.name().to_owned();
+        all.add(sheet, |row| {
             let mut name = row.text("run").into_owned();
             if arguments.files.len() > 1 || name.is_empty() {
-                name = format!("{} {name}", sheet.name()).trim_end().to_owned();
+                name = format!("{file} {name}").trim_end().to_owned();
             }
-            let run = *known.entry(name).or_insert_with_key(|name| {
-                all.runs.push(name.clone());
-                all.runs.len() - 1
-            });
-            let mut point = point(&row, run, output)?;
-            let here = sources::conditions_of(&row, said, arguments.target.temperature)?;
+            let mut point = point(row, numbered(&mut runs, &name), output)?;
+            let here = sources::conditions_of(row, said, arguments.target.temperature)?;
             point.by_effects_mm = output.by_effects_mm(&point.command, &here)?;
-            all.temperatures.extend(row.number("temp_c")?);
-            all.places.push((all.sheets.len(), line));
-            all.points.push(point);
-        }
-        all.sheets.push(sheet);
+            Ok(point)
+        })?;
     }
-    let stated = all.points.iter().filter(|p| p.uncertainty_mm.is_some()).count();
-    if stated > 0 && stated < all.points.len() {
-        return Err(question(
-            both!(
-                "{stated} of {} readings state their uncertainty, the others do not",
-                "неопределённость указана у {stated} показаний из {}, у остальных нет",
-                all.points.len()
-            ),
-            both!(
-                "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
-                "заполните столбец u_um во всех строках или пропустите его: `--ignore-column u_um`"
-            ),
-        ));
-    }
-    Ok(all)
+    let stated = all.rows.iter().filter(|point: &&Point| point.uncertainty_mm.is_some()).count();
+    sources::all_state_or_none(stated, all.rows.len())?;
+    Ok((all, runs))
 }
 
 fn point(row: &Row<'_>, run: usize, output: &Output) -> Result<Point, Failure> {
@@ -141,18 +109,7 @@ fn point(row: &Row<'_>, run: usize, output: &Output) -> Result<Point, Failure> {
         let deviations_um = row.any_of(["dx_um", "dy_um", "dz_um"])?;
         PointReading::Deviation(deviations_um.map(|um| um.map(|um| um * 1e-3)))
     };
-    let uncertainty_mm = row.number("u_um")?.map(|u| u * 1e-3);
-    if uncertainty_mm.is_some_and(|u| u <= 0.0) {
-        let message = both!("an uncertainty is above zero", "неопределённость больше нуля");
-        return Err(row
-            .refuse(
-                CELL,
-                "u_um",
-                message,
-                both!("give the standard uncertainty in um", "дайте стандартную неопределённость в мкм"),
-            )
-            .into());
-    }
+    let uncertainty_mm = sources::uncertainty_mm(row, "u_um")?;
     Ok(Point { run, command, by_effects_mm: Vector::zeros(), reading, uncertainty_mm })
 }
 
@@ -160,55 +117,19 @@ fn point(row: &Row<'_>, run: usize, output: &Output) -> Result<Point, Failure> {
 pub(super) fn run(arguments: &Volumetric, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let mut output = Output::start(&arguments.target, shared)?;
     let base = output.measured_from(&arguments.target)?;
-    let read = read(arguments, shared, &output)?;
+    let (read, runs) = read(arguments, shared, &output)?;
     let options = Options { nodes: arguments.nodes, holdout_every: arguments.holdout_every };
-    let found = calibrate(&read.points, &base, options).map_err(|error| refused(&read, &error))?;
-    file::print(report(&found, &read.runs).in_language(messages.language()).as_bytes())?;
+    let found = calibrate(&read.rows, &base, options).map_err(|error| read.refused("x_mm", &error))?;
+    file::print(report(&found, &runs).in_language(messages.language()).as_bytes())?;
     judge(&found, messages)?;
     output.changed(&base, &found.axes, &found.description);
     output.set_up(&found.setups);
-    let mean = |all: &[f64]| (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64);
-    output.calibrated(
-        &arguments.target,
-        messages,
-        Calibrated {
-            temperature_c: mean(&read.temperatures),
-            repeatability_um: Some(found.estimate.rms() * 1e3),
-            uncertainty_um: Some(found.field_u95_mm * 1e3),
-            ..Calibrated::default()
-        },
-    )?;
-    output.write(&arguments.target, messages)
-}
-
-/// What contradicts the readings, an outlier at its row.
-fn refused(read: &Read, error: &CalibrationError) -> Failure {
-    let row = match error {
-        CalibrationError::Outlier { point, .. } => {
-            let (sheet, line) = read.places[*point];
-            read.sheets[sheet].row(line)
-        }
-        _ => None,
-    };
-    match row {
-        Some(row) => row
-            .refuse(
-                OUTLIER,
-                "x_mm",
-                error.text(),
-                both!("measure it again, or take the row out", "измерьте снова или уберите строку"),
-            )
-            .into(),
-        None => failure("", &[], error),
-    }
+    let known_mm = [Some(found.estimate.rms()), Some(found.field_u95_mm)];
+    output.write(&arguments.target, messages, read.temperature_c(), known_mm)
 }
 
 /// Refuses what held-out readings refute; warns where the readings scatter more than they state.
 fn judge(found: &VolumetricCalibration, messages: &Messages) -> Result<(), Failure> {
-    let refuse = |message: Text, help: Text| {
-        let diagnostics = vec![Diagnostic::error(UNFIT, message).help(help)];
-        Err(Failure::Refused(vec![Report { source: None, diagnostics }]))
-    };
     let misfit = found.estimate.misfit;
     let stated = found.estimate.degrees_of_freedom.is_none();
     if let Some(([before, after], count)) = found.holdout
@@ -220,38 +141,33 @@ fn judge(found: &VolumetricCalibration, messages: &Messages) -> Result<(), Failu
             before * 1e3,
             after * 1e3
         );
-        return refuse(
-            message,
-            both!(
-                "measure more points, or fit less: `--nodes 3`",
-                "измерьте больше точек или определяйте меньше: `--nodes 3`"
-            ),
+        let help = both!(
+            "measure more points, or fit less: `--nodes 3`",
+            "измерьте больше точек или определяйте меньше: `--nodes 3`"
         );
+        return Err(Failure::alone(UNFIT, message, help));
     }
     if stated && misfit > CONTRADICTION {
-        return refuse(
-            both!(
-                "the readings contradict every machine of this chain: the best one leaves {misfit:.1} times what `u_um` states",
-                "показания противоречат любому станку с такой цепью: лучший оставляет в {misfit:.1} раза больше, чем говорит `u_um`"
-            ),
-            both!(
-                "look for exchanged or shifted columns; if the machine is that rough, give more `--nodes` or a larger u_um",
-                "ищите переставленные или сдвинутые столбцы; если станок так неровен, дайте больше `--nodes` или больший u_um"
-            ),
+        let message = both!(
+            "the readings contradict every machine of this chain: the best one leaves {misfit:.1} times what `u_um` states",
+            "показания противоречат любому станку с такой цепью: лучший оставляет в {misfit:.1} раза больше, чем говорит `u_um`"
         );
+        let help = both!(
+            "look for exchanged or shifted columns; if the machine is that rough, give more `--nodes` or a larger u_um",
+            "ищите переставленные или сдвинутые столбцы; если станок так неровен, дайте больше `--nodes` или больший u_um"
+        );
+        return Err(Failure::alone(UNFIT, message, help));
     }
     if stated && misfit > ROUGH {
         let message = both!(
             "the best machine leaves {misfit:.1} times what `u_um` states: uncertainties are widened by as much",
             "лучший станок оставляет в {misfit:.1} раза больше, чем говорит `u_um`: неопределённости увеличены во столько же раз"
         );
-        warn(
-            messages,
-            Diagnostic::warning(DOUBTFUL, message).help(both!(
-                "give more `--nodes`, or state what the readings really scatter",
-                "дайте больше `--nodes` или укажите действительный разброс показаний"
-            )),
+        let help = both!(
+            "give more `--nodes`, or state what the readings really scatter",
+            "дайте больше `--nodes` или укажите действительный разброс показаний"
         );
+        messages.warn(DOUBTFUL, message, help);
     }
     Ok(())
 }
@@ -262,6 +178,12 @@ const CONTRADICTION: f64 = 10.0;
 /// Above this the stated uncertainty does not explain what is left.
 const ROUGH: f64 = 1.5;
 
+/// How an instrument stood.
+pub(super) fn moved(motion: &RigidMotion) -> Text {
+    let (shift, turn) = (three(&motion.shift_mm, 4), three(&(motion.rotation_rad() * 1e6), 1));
+    both!("shift {shift} mm, rotation {turn} urad", "сдвиг {shift} мм, поворот {turn} мкрад")
+}
+
 fn report(found: &VolumetricCalibration, runs: &[String]) -> Text {
     let mut out = Text::pair(
         "change from … to, largest half width of the 95 % intervals\n",
@@ -269,8 +191,7 @@ fn report(found: &VolumetricCalibration, runs: &[String]) -> Text {
     );
     for f in &found.functions {
         let (scale, unit) = micro(f.function < 3);
-        let low = f.values.iter().copied().fold(f64::INFINITY, f64::min) * scale;
-        let high = f.values.iter().copied().fold(f64::NEG_INFINITY, f64::max) * scale;
+        let (low, high) = span(f.values.iter().map(|value| value * scale));
         let u = f.half_widths_95.iter().copied().fold(0.0, f64::max) * scale;
         let (function, axis) = (Axis::ALL[f.function], Axis::ALL[f.axis]);
         out.push(&both!(
@@ -318,24 +239,13 @@ fn report(found: &VolumetricCalibration, runs: &[String]) -> Text {
     for (run, setup) in runs.iter().zip(&found.setups) {
         out.push(&match setup {
             Some(SetUp::Frame(motion)) => {
-                let (t, r) = (motion.shift_mm, motion.rotation_rad() * 1e6);
-                both!(
-                    "set-up {run}: shift {:.4} {:.4} {:.4} mm, rotation {:.1} {:.1} {:.1} urad\n",
-                    "установка {run}: сдвиг {:.4} {:.4} {:.4} мм, поворот {:.1} {:.1} {:.1} мкрад\n",
-                    t.x,
-                    t.y,
-                    t.z,
-                    r.x,
-                    r.y,
-                    r.z
-                )
+                let moved = moved(motion);
+                both!("set-up {run}: {moved}\n", "установка {run}: {moved:#}\n")
             }
-            Some(SetUp::Station { place_mm: p, zero_mm }) => both!(
-                "station {run}: {:.4} {:.4} {:.4} mm, zero {zero_mm:.4} mm\n",
-                "станция {run}: {:.4} {:.4} {:.4} мм, нуль {zero_mm:.4} мм\n",
-                p.x,
-                p.y,
-                p.z
+            Some(SetUp::Station { place_mm, zero_mm }) => both!(
+                "station {run}: {} mm, zero {zero_mm:.4} mm\n",
+                "станция {run}: {} мм, нуль {zero_mm:.4} мм\n",
+                three(place_mm, 4)
             ),
             None => Text::EMPTY,
         });

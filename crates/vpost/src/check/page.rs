@@ -1,14 +1,18 @@
 //! The check as one page: the tool path coloured by its error before and after, the worst blocks by line.
 
-use diagnostic::{Language, Text, say};
-use maud::{Markup, html};
+use std::collections::BTreeMap;
+
+use diagnostic::{Language, Text, both};
 use path_comparison::{Comparison, Trace, Way};
+use report::body::{Body, Fact, Table};
 use report::chart::Amounts;
 use report::chart::solid::{Solid, Stretch, path};
-use report::page::{Page, Section, figure, table};
-use report::text::{MICROMETRES, Numbers, shown};
+use report::numbers::{count, digits, number, prose};
+use report::page::Page;
+use report::text::short;
 
 use crate::file::without_folders;
+use crate::origin::{MACHINE, MODEL, PROFILE};
 
 /// What the page is made of.
 pub(super) struct Facts<'a> {
@@ -37,154 +41,129 @@ const MOST_PLACES: usize = 20_000;
 const TURN_RAD: f64 = 0.2;
 
 pub(super) fn html(comparison: &Comparison, facts: &Facts<'_>, json: &str, language: Language) -> String {
-    let sections = vec![
-        Section {
-            id: "result",
-            title: Text::pair("Result", "Результат"),
-            body: result(comparison, facts, language),
-        },
-        Section {
-            id: "path",
-            title: Text::pair("The tool path", "Траектория инструмента"),
-            body: paths(comparison, facts, language),
-        },
-        Section {
-            id: "worst",
-            title: Text::pair("Worst blocks", "Худшие кадры"),
-            body: worst(comparison, facts, language),
-        },
-        Section {
-            id: "provenance",
-            title: Text::pair("Where this comes from", "Откуда эти данные"),
-            body: provenance(facts, language),
-        },
-    ];
-    Page {
-        language,
-        title: &say!(language, "Check \u{2013} {}", "Проверка \u{2014} {}", facts.output),
-        head: head(comparison, facts, language),
-        sections,
-        json,
-        command: "check",
-        schema: "vpost.check/1",
-    }
-    .into_html()
+    let title = both!("Check \u{2013} {}", "Проверка \u{2014} {}", facts.output);
+    let mut page = Page::new(language, title, "check", "vpost.check/1");
+    head(&mut page.head, comparison, facts);
+    result(page.section("result", both!("Result", "Результат")), comparison, facts);
+    paths(page.section("path", both!("The tool path", "Траектория инструмента")), comparison, facts);
+    let out = page.section("worst", both!("Worst blocks", "Худшие кадры"));
+    out.heading(&AS_POSTED);
+    worst(out, facts.input, comparison, facts.text, |trace| Some(trace.line), |found| found.0);
+    out.heading(&AS_CORRECTED);
+    worst(out, facts.output, comparison, facts.output_text, |trace| trace.after_line, |found| found.1);
+    page.provenance(provenance(facts));
+    page.into_html(json)
 }
 
-fn head(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Markup {
-    let verdict = match facts.passed {
-        true => say!(language, "PASSED", "ПРОЙДЕНО"),
-        false => say!(language, "FAILED", "НЕ ПРОЙДЕНО"),
+const AS_POSTED: Text = Text::pair("As posted", "Исходная программа");
+const AS_CORRECTED: Text = Text::pair("As corrected", "Исправленная программа");
+
+fn head(out: &mut Body, comparison: &Comparison, facts: &Facts<'_>) {
+    let (machine, output) = (facts.machine, without_folders(facts.output));
+    out.muted(&both!(
+        "Both programs through the machine model: {machine}, {output}",
+        "Обе программы по модели станка: {machine}, {output}"
+    ));
+    let [before, after, limit] =
+        [comparison.before.largest_mm, comparison.after.largest_mm, facts.limit_mm].map(um);
+    let (verdict, next_step) = match facts.passed {
+        true => (
+            both!("PASSED", "ПРОЙДЕНО"),
+            both!(
+                "Run the corrected program. It holds for this machine as its profile describes it, with the zeros and tools below.",
+                "Запускайте исправленную программу. Она годится для этого станка, каким его описывает профиль, с нулями и инструментами ниже."
+            ),
+        ),
+        false => (
+            both!("FAILED", "НЕ ПРОЙДЕНО"),
+            both!(
+                "Do not run the corrected program: see the findings, and correct the program as posted once more.",
+                "Исправленную программу не запускайте: смотрите, что найдено, и исправьте исходную программу заново."
+            ),
+        ),
     };
-    let [before, after, limit] = [comparison.before.largest_mm, comparison.after.largest_mm, facts.limit_mm]
-        .map(|mm| um(mm, language));
-    html! {
-        p.muted {
-            (say!(language, "Both programs through the machine model: ", "Обе программы по модели станка: "))
-            (shown(facts.machine)) ", " (shown(without_folders(facts.output)))
-        }
-        p { span.verdict { (verdict) } }
-        h1 {
-            (say!(
-                language,
-                "As posted the tool is up to {before} \u{b5}m off its path, as corrected up to {after} \u{b5}m; allowed are {limit} \u{b5}m",
-                "По исходной программе инструмент отходит от траектории до {before} мкм, по исправленной — до {after} мкм; допустимо {limit} мкм"
-            ))
-        }
-        p { (next_step(facts, language)) }
-        (facts.origin.line(language))
-    }
+    out.verdict(
+        &verdict,
+        &both!(
+            "As posted the tool is up to {before} \u{b5}m off its path, as corrected up to {after} \u{b5}m; allowed are {limit} \u{b5}m",
+            "По исходной программе инструмент отходит от траектории до {before:#} мкм, по исправленной — до {after:#} мкм; допустимо {limit:#} мкм"
+        ),
+    );
+    out.p(&next_step);
+    out.muted(&facts.origin.said());
 }
 
-/// What to do with this result.
-fn next_step(facts: &Facts<'_>, language: Language) -> String {
-    if facts.passed {
-        say!(
-            language,
-            "Run the corrected program. It holds for this machine as its profile describes it, with the zeros and tools below.",
-            "Запускайте исправленную программу. Она годится для этого станка, каким его описывает профиль, с нулями и инструментами ниже."
-        )
-    } else {
-        say!(
-            language,
-            "Do not run the corrected program: see the findings, and correct the program as posted once more.",
-            "Исправленную программу не запускайте: смотрите, что найдено, и исправьте исходную программу заново."
-        )
-    }
-}
-
-fn result(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Markup {
-    let [wanted, commanded] = [comparison.wanted, comparison.commanded].map(|count| language.count(count));
+fn result(out: &mut Body, comparison: &Comparison, facts: &Facts<'_>) {
+    let [wanted, commanded] = [comparison.wanted, comparison.commanded].map(count);
+    let motions = both!(
+        "{wanted} as posted, {commanded} as corrected",
+        "{wanted:#} в исходной, {commanded:#} в исправленной"
+    );
     let largest = |mm: f64, line: u64| {
-        let um = um(mm, language);
-        say!(language, "{um} \u{b5}m, line {line} as posted", "{um} мкм, строка {line} исходной")
+        let um = um(mm);
+        both!("{um} \u{b5}m, line {line} as posted", "{um:#} мкм, строка {line} исходной")
     };
-    html! {
-        dl {
-            dt { (say!(language, "feed motions", "рабочих движений")) }
-            dd {
-                (say!(
-                    language,
-                    "{wanted} as posted, {commanded} as corrected",
-                    "{wanted} в исходной, {commanded} в исправленной"
-                ))
-            }
-            dt { (say!(language, "largest before", "наибольшее до")) }
-            dd { (largest(comparison.before.largest_mm, comparison.before.line)) }
-            dt { (say!(language, "largest after", "наибольшее после")) }
-            dd { (largest(comparison.after.largest_mm, comparison.after.line)) }
-            dt { (say!(language, "moves to a corrected start", "подводов к исправленному началу")) }
-            dd { (language.count(comparison.approaches)) }
-        }
-        @if !facts.findings.is_empty() {
-            h3 { (say!(language, "Findings", "Что найдено")) }
-            ul { @for finding in facts.findings { li { (shown(&language.prose(finding))) } } }
-        }
+    let (before, after) = (&comparison.before, &comparison.after);
+    out.facts([
+        Fact::new(both!("feed motions", "рабочих движений"), &motions),
+        Fact::new(both!("largest before", "наибольшее до"), &largest(before.largest_mm, before.line)),
+        Fact::new(both!("largest after", "наибольшее после"), &largest(after.largest_mm, after.line)),
+        Fact::new(
+            both!("moves to a corrected start", "подводов к исправленному началу"),
+            &count(comparison.approaches),
+        ),
+    ]);
+    if !facts.findings.is_empty() {
+        out.heading(&both!("Findings", "Что найдено"));
+        out.list(&facts.findings.iter().map(prose).collect::<Vec<_>>());
     }
 }
 
-fn paths(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Markup {
+fn paths(out: &mut Body, comparison: &Comparison, facts: &Facts<'_>) {
     let Some(solid) = solid(&comparison.traces) else {
-        let why = say!(
-            language,
+        out.p(&both!(
             "The program feeds nowhere: there is no path to draw.",
             "В программе нет движений на рабочей подаче: рисовать нечего."
-        );
-        return html! { p { (why) } };
+        ));
+        return;
     };
     let left = comparison.after.largest_mm.max(facts.limit_mm) * 1e3;
     // One scale for before and after: what the correction brings is what is seen.
-    let both = (comparison.before.largest_mm * 1e3).max(left);
-    let drawing = |title: &str, value: fn(&Trace) -> f64, largest: f64| {
+    let whole = (comparison.before.largest_mm * 1e3).max(left);
+    let mut draw = |title: Text, value: fn(&Trace) -> f64, largest: f64, caption: Text| {
         let all = stretches(&comparison.traces, value, largest);
         let start = comparison.traces.first().map(|first| first.way.at(0.0).into());
-        let amounts = Amounts { largest, within: None, unit: MICROMETRES.in_language(language) };
-        path(language, title, solid, &all, start, &amounts)
+        let amounts = Amounts { largest, within: None };
+        out.figure(&path(out.language(), &title, solid, &all, start, &amounts), &caption);
     };
-    let posted = say!(language, "Tool path as posted", "Траектория по исходной программе");
-    let posted_caption = say!(
-        language,
-        "Axis commands of the feed motions as posted, coloured by the largest distance of the tool from each motion.",
-        "Координаты осей в рабочих движениях исходной программы; цвет — наибольшее расстояние инструмента от каждого движения."
+    draw(
+        both!("Tool path as posted", "Траектория по исходной программе"),
+        |t| t.before_mm * 1e3,
+        whole,
+        both!(
+            "Axis commands of the feed motions as posted, coloured by the largest distance of the tool from each motion.",
+            "Координаты осей в рабочих движениях исходной программы; цвет — наибольшее расстояние инструмента от каждого движения."
+        ),
     );
-    let corrected = say!(language, "Tool path as corrected", "Траектория по исправленной программе");
-    let corrected_caption = say!(
-        language,
-        "The same motions as corrected, on the same scale.",
-        "Те же движения по исправленной программе, на той же шкале."
+    draw(
+        both!("Tool path as corrected", "Траектория по исправленной программе"),
+        |t| t.after_mm * 1e3,
+        whole,
+        both!(
+            "The same motions as corrected, on the same scale.",
+            "Те же движения по исправленной программе, на той же шкале."
+        ),
     );
-    let rest = say!(language, "What is left", "Что осталось");
-    let rest_caption = say!(
-        language,
-        "The same on a scale of its own, which ends at what is allowed, or at the largest if that is more.",
-        "То же на своей шкале: она кончается на допустимом или на наибольшем, если оно больше."
-    );
-    html! {
-        (figure(language, &drawing(&posted, |t| t.before_mm * 1e3, both), &posted_caption, None))
-        (figure(language, &drawing(&corrected, |t| t.after_mm * 1e3, both), &corrected_caption, None))
-        @if both > left {
-            (figure(language, &drawing(&rest, |t| t.after_mm * 1e3, left), &rest_caption, None))
-        }
+    if whole > left {
+        draw(
+            both!("What is left", "Что осталось"),
+            |t| t.after_mm * 1e3,
+            left,
+            both!(
+                "The same on a scale of its own, which ends at what is allowed, or at the largest if that is more.",
+                "То же на своей шкале: она кончается на допустимом или на наибольшем, если оно больше."
+            ),
+        );
     }
 }
 
@@ -254,62 +233,52 @@ fn stretches_apart(traces: &[Trace], value: fn(&Trace) -> f64, largest: f64, apa
     all
 }
 
-fn worst(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Markup {
-    let list = |text: &str, line: fn(&Trace) -> Option<u64>, of: fn(&(f64, f64)) -> f64| {
-        let lines: Vec<&str> = text.lines().collect();
-        // A line may be several motions: the worst of them counts.
-        let mut by_line: std::collections::BTreeMap<u64, (f64, f64)> = std::collections::BTreeMap::new();
-        for trace in &comparison.traces {
-            let Some(line) = line(trace) else { continue };
-            let found = by_line.entry(line).or_default();
-            *found = (found.0.max(trace.before_mm), found.1.max(trace.after_mm));
-        }
-        let mut all: Vec<(u64, (f64, f64))> = by_line.into_iter().collect();
-        all.sort_by(|a, b| of(&b.1).total_cmp(&of(&a.1)).then(a.0.cmp(&b.0)));
-        let rows: Vec<Vec<String>> = all
-            .into_iter()
-            .take(WORST)
-            .map(|(line, (before, after))| {
-                let text = usize::try_from(line).ok().and_then(|n| lines.get(n.checked_sub(1)?));
-                let text = report::text::short(text.copied().unwrap_or_default(), 80);
-                vec![line.to_string(), um(before, language), um(after, language), text]
-            })
-            .collect();
-        let header = match language {
-            Language::English => ["line", "before, \u{b5}m", "after, \u{b5}m", "block"],
-            Language::Russian => ["строка", "до, мкм", "после, мкм", "кадр"],
-        };
-        table(language, &header, &[0, 1, 2], &rows)
-    };
-    let of = |name: &str| say!(language, "Lines of {}.", "Строки файла {}.", shown(without_folders(name)));
-    html! {
-        h3 { (say!(language, "As posted", "Исходная программа")) }
-        p.muted { (of(facts.input)) }
-        (list(facts.text, |trace| Some(trace.line), |found| found.0))
-        h3 { (say!(language, "As corrected", "Исправленная программа")) }
-        p.muted { (of(facts.output)) }
-        (list(facts.output_text, |trace| trace.after_line, |found| found.1))
+fn worst(
+    out: &mut Body,
+    name: &str,
+    comparison: &Comparison,
+    text: &str,
+    line: fn(&Trace) -> Option<u64>,
+    of: fn(&(f64, f64)) -> f64,
+) {
+    out.muted(&both!("Lines of {}.", "Строки файла {}.", without_folders(name)));
+    let lines: Vec<&str> = text.lines().collect();
+    // A line may be several motions: the worst of them counts.
+    let mut by_line: BTreeMap<u64, (f64, f64)> = BTreeMap::new();
+    for trace in &comparison.traces {
+        let Some(line) = line(trace) else { continue };
+        let found = by_line.entry(line).or_default();
+        *found = (found.0.max(trace.before_mm), found.1.max(trace.after_mm));
     }
+    let mut all: Vec<(u64, (f64, f64))> = by_line.into_iter().collect();
+    all.sort_by(|a, b| of(&b.1).total_cmp(&of(&a.1)).then(a.0.cmp(&b.0)));
+    let block = |line: u64| lines.get(usize::try_from(line).ok()?.checked_sub(1)?).copied();
+    let table = Table::of(all.into_iter().take(WORST))
+        .numbers(both!("line", "строка"), |(line, _)| Text::same(line.to_string()))
+        .numbers(both!("before, \u{b5}m", "до, мкм"), |(_, (before, _))| um(*before))
+        .numbers(both!("after, \u{b5}m", "после, мкм"), |(_, (_, after))| um(*after))
+        .words(both!("block", "кадр"), |(line, _)| {
+            Text::same(short(block(*line).unwrap_or_default(), 80))
+        });
+    out.table(&table);
 }
 
-fn provenance(facts: &Facts<'_>, language: Language) -> Markup {
-    html! {
-        dl {
-            dt { (say!(language, "as posted", "исходная программа")) } dd { (shown(facts.input)) }
-            dt { (say!(language, "as corrected", "исправленная программа")) } dd { (shown(facts.output)) }
-            dt { (say!(language, "machine", "станок")) } dd { (shown(facts.machine)) }
-            dt { (say!(language, "profile and its tables", "профиль и его таблицы")) } dd { (shown(facts.profile)) " " span.muted { "BLAKE3 " (facts.profile_hash) } }
-            dt { (say!(language, "model", "модель")) } dd { (facts.engine) }
-            @for (name, place) in &facts.setup {
-                dt { (shown(name)) }
-                dd { (place.map(|v| language.digits(v, 3)).join(" ")) (say!(language, " mm", " мм")) }
-            }
-            (facts.origin.rows(language))
-            dt { (say!(language, "made by", "создано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.check/1" }
-        }
-    }
+fn provenance(facts: &Facts<'_>) -> Vec<Fact> {
+    let mut all = vec![
+        Fact::same(both!("as posted", "исходная программа"), facts.input),
+        Fact::same(both!("as corrected", "исправленная программа"), facts.output),
+        Fact::same(MACHINE, facts.machine),
+        Fact::file(PROFILE, facts.profile, Some(facts.profile_hash.to_owned())),
+        Fact::same(MODEL, facts.engine),
+    ];
+    all.extend(facts.setup.iter().map(|(name, place)| {
+        let place = Text::join(&place.map(|v| digits(v, 3)), " ");
+        Fact::new(Text::same(name), &both!("{place} mm", "{place:#} мм"))
+    }));
+    all.extend(facts.origin.facts());
+    all
 }
 
-fn um(mm: f64, language: Language) -> String {
-    language.number(mm * 1e3)
+fn um(mm: f64) -> Text {
+    number(mm * 1e3)
 }

@@ -131,7 +131,7 @@ pub(super) fn write(
             ("fact_output", facts.output.to_owned()),
             ("fact_machine", facts.machine.to_owned()),
             ("fact_profile", format!("{} (BLAKE3 {})", facts.profile, facts.profile_hash)),
-            ("fact_calibrated", facts.origin.said(messages.language())),
+            ("fact_calibrated", facts.origin.said().in_language(messages.language()).to_owned()),
             ("fact_engine", facts.engine.to_owned()),
             ("fact_typed", crate::origin::command()),
             ("fact_command", format!("vpost {} check", env!("CARGO_PKG_VERSION"))),

@@ -139,7 +139,7 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
     }
     match arguments.next {
         Some(form) => plan::print_next(form, &diagnosis, &model, shared, messages),
-        None => file::print(summary::text(&diagnosis, &changes, messages.language()).as_bytes()),
+        None => file::print(summary::text(&diagnosis, &changes).in_language(messages.language()).as_bytes()),
     }
 }
 

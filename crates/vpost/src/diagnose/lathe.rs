@@ -8,7 +8,7 @@ use calibration::turning::{
 };
 use diagnostic::{Speaks, Text, both};
 use machine_profile::{LatheParts, Profile};
-use measurement_files::{Row, Sheet, numbered};
+use measurement_files::{Row, numbered};
 use serde_json::{Value, json};
 
 use super::Diagnose;
@@ -39,11 +39,14 @@ pub(super) struct ProfileFile {
 /// Parts that were read.
 #[derive(Default)]
 struct Parts {
-    sheets: Vec<Sheet>,
-    /// By row: its sheet and line.
-    places: Vec<(usize, usize)>,
-    rows: Vec<CauseRow>,
-    /// The same as the model takes them.
+    read: sources::Read<CauseRow>,
+    also: Also,
+}
+
+/// What else rows say.
+#[derive(Default)]
+struct Also {
+    /// The rows as the model takes them.
     commands: Vec<TurnedReading>,
     parts: Vec<String>,
     tools: Vec<String>,
@@ -62,7 +65,7 @@ pub(super) fn run(
     let Some(measurements) = &arguments.measurements else { return Ok(()) };
     let mut parts = Parts::default();
     parts.read(measurements, profile, &arguments.ignore_column)?;
-    let seen = parts.rows.len();
+    let seen = parts.read.rows.len();
     if let Some(path) = &arguments.holdout {
         parts.read(path, profile, &arguments.ignore_column)?;
     }
@@ -75,7 +78,7 @@ pub(super) fn run(
         clamping: bar.clamping,
         steady_rests_mm: bar.steady_rests_mm.clone(),
     });
-    let (rows, held) = parts.rows.split_at(seen);
+    let (rows, held) = parts.read.rows.split_at(seen);
     let found = lathe_causes(rows, held, bar.as_ref()).map_err(|error| {
         question(
             error.text(),
@@ -120,19 +123,8 @@ fn only_what_a_lathe_has(arguments: &Diagnose) -> Result<(), Failure> {
     }
 }
 
-impl Parts {
-    fn read(&mut self, path: &Path, profile: &Profile, ignore: &[String]) -> Result<(), Failure> {
-        let sheet = sources::sheet(path, COLUMNS, EXPECTED, ignore)?;
-        sheet.need(&["part", "z_mm", "diameter_mm"], EXPECTED)?;
-        for (line, row) in sheet.rows().enumerate() {
-            self.one(&row, profile)?;
-            self.places.push((self.sheets.len(), line));
-        }
-        self.sheets.push(sheet);
-        Ok(())
-    }
-
-    fn one(&mut self, row: &Row<'_>, profile: &Profile) -> Result<(), Failure> {
+impl Also {
+    fn one(&mut self, row: &Row<'_>, profile: &Profile) -> Result<CauseRow, Failure> {
         let name = part_name(row)?;
         let tool = row.text("tool");
         let tool_mm = vector_mm(profile, &tool).map_err(|help| {
@@ -182,16 +174,6 @@ impl Parts {
         let part = numbered(&mut self.parts, &name);
         let tool = (!tool.is_empty()).then(|| numbered(&mut self.tools, &tool));
         let time_s = row.number("time_s")?;
-        self.rows.push(CauseRow {
-            part,
-            tool,
-            z_mm,
-            diameter_mm,
-            gap_mm: read_um * 1e-3,
-            time_s,
-            angle_rad: angle_deg.map(f64::to_radians),
-            uncertainty_mm,
-        });
         self.commands.push(TurnedReading {
             part,
             tool,
@@ -202,15 +184,33 @@ impl Parts {
             uncertainty_mm: None,
             time_s,
         });
-        Ok(())
+        Ok(CauseRow {
+            part,
+            tool,
+            z_mm,
+            diameter_mm,
+            gap_mm: read_um * 1e-3,
+            time_s,
+            angle_rad: angle_deg.map(f64::to_radians),
+            uncertainty_mm,
+        })
+    }
+}
+
+impl Parts {
+    fn read(&mut self, path: &Path, profile: &Profile, ignore: &[String]) -> Result<(), Failure> {
+        let sheet = sources::sheet(path, COLUMNS, EXPECTED, ignore)?;
+        sheet.need(&["part", "z_mm", "diameter_mm"], EXPECTED)?;
+        let also = &mut self.also;
+        self.read.add(sheet, |row| also.one(row, profile))
     }
 
     /// Refuses rows that one noise does not describe, and what the model does not take off.
     fn fit_each_other(&self, lathe: &LatheParts) -> Result<(), Failure> {
-        let of = |what: &dyn Fn(&CauseRow) -> bool| self.rows.iter().filter(|row| what(row)).count();
+        let of = |what: &dyn Fn(&CauseRow) -> bool| self.read.rows.iter().filter(|row| what(row)).count();
         let stated = of(&|row| row.uncertainty_mm.is_some());
         let angled = of(&|row| row.angle_rad.is_some());
-        let is_some = |count: usize| count > 0 && count < self.rows.len();
+        let is_some = |count: usize| count > 0 && count < self.read.rows.len();
         if is_some(stated) || (is_some(angled) && stated == 0) {
             return Err(question(
                 both!(
@@ -241,15 +241,16 @@ impl Parts {
     /// Takes off what the profile says of each row.
     fn predict(&mut self, profile: &Profile, lathe: &LatheParts, shared: &Shared) -> Result<(), Failure> {
         let base = base_of(profile, lathe);
-        by_effects(&mut self.commands, profile, &base, shared)?;
+        by_effects(&mut self.also.commands, profile, &base, shared)?;
         let stretch = Stretch { low_mm: 0.0, high_mm: 1.0 };
-        let predicted = base.predicted_mm(&Change::default(), stretch, &self.commands).map_err(|error| {
-            question(
-                error.text(),
-                both!("run `vpost profile check` on it", "запустите для него `vpost profile check`"),
-            )
-        })?;
-        for (row, diameter_mm) in self.rows.iter_mut().zip(predicted) {
+        let predicted =
+            base.predicted_mm(&Change::default(), stretch, &self.also.commands).map_err(|error| {
+                question(
+                    error.text(),
+                    both!("run `vpost profile check` on it", "запустите для него `vpost profile check`"),
+                )
+            })?;
+        for (row, diameter_mm) in self.read.rows.iter_mut().zip(predicted) {
             row.gap_mm -= 0.5 * diameter_mm;
         }
         Ok(())
@@ -273,29 +274,23 @@ impl Said<'_> {
             out.push(&text);
             out.push(&Text::same("\n"));
         };
+        let (rms, noise, rows) = (found.rms_mm * 1e3, found.noise_mm * 1e3, self.rows.len());
         line(both!(
-            "gap     {:.2} um RMS on the radius beyond sizes and clampings, noise {:.2} um ({} rows)",
-            "невязка {:.2} мкм (среднеквадратичное, по радиусу, без размеров и установок), шум {:.2} мкм (строк {})",
-            found.rms_mm * 1e3,
-            found.noise_mm * 1e3,
-            self.rows.len()
+            "gap     {rms:.2} um RMS on the radius beyond sizes and clampings, noise {noise:.2} um ({rows} rows)",
+            "невязка {rms:.2} мкм (среднеквадратичное, по радиусу, без размеров и установок), шум {noise:.2} мкм (строк {rows})"
         ));
         line(both!("        {}", "        {:#}", meaning(found.verdict)));
-        if let Some((sheet, row)) = found.outlier.and_then(|row| self.parts.places.get(row)) {
-            let place = self.parts.sheets.get(*sheet).and_then(|sheet| sheet.row(*row));
+        if let Some(row) = found.outlier.and_then(|row| self.parts.read.row(row)) {
             let message = both!(
                 "it does not belong to its part's others",
                 "оно не вяжется с остальными показаниями той же детали"
             );
             let help = both!("measure it again, or take the row out", "измерьте снова или уберите строку");
-            if let Some(row) = place {
-                let part = row.text("part");
-                let z = row.text("z_mm");
-                line(both!(
-                    "        part {part}, Z {z}: {message}; {help}",
-                    "        деталь {part}, Z {z}: {message:#}; {help:#}"
-                ));
-            }
+            let (part, z) = (row.text("part"), row.text("z_mm"));
+            line(both!(
+                "        part {part}, Z {z}: {message}; {help}",
+                "        деталь {part}, Z {z}: {message:#}; {help:#}"
+            ));
         }
         for own in &found.causes {
             let numbers: Vec<String> =
@@ -304,11 +299,10 @@ impl Said<'_> {
             let numbers = numbers.join(", ");
             line(both!("\ncause   {id}  {numbers}", "\nпричина {id}  {numbers}"));
             line(both!("        {}", "        {:#}", sentence(own)));
+            let [before, after] = own.rms_mm.map(|mm| mm * 1e3);
             line(both!(
-                "        RMS {:.2} -> {:.2} um",
-                "        среднеквадратичное {:.2} -> {:.2} мкм",
-                own.rms_mm[0] * 1e3,
-                own.rms_mm[1] * 1e3
+                "        RMS {before:.2} -> {after:.2} um",
+                "        среднеквадратичное {before:.2} -> {after:.2} мкм"
             ));
             if !own.rivals.is_empty() {
                 let rivals = own.rivals.join(", ");
@@ -317,12 +311,10 @@ impl Said<'_> {
             line(both!("        {}", "        {:#}", self.remedy(own)));
         }
         if let Some(unseen) = found.unseen {
+            let (rows, [before, after]) = (unseen.rows, unseen.rms_mm.map(|mm| mm * 1e3));
             line(both!(
-                "\nunseen parts: {:.2} -> {:.2} um RMS ({} rows, each part at its own size)",
-                "\nконтрольные детали: {:.2} -> {:.2} мкм (строк {}, каждая деталь при своём размере)",
-                unseen.rms_mm[0] * 1e3,
-                unseen.rms_mm[1] * 1e3,
-                unseen.rows
+                "\nunseen parts: {before:.2} -> {after:.2} um RMS ({rows} rows, each part at its own size)",
+                "\nконтрольные детали: {before:.2} -> {after:.2} мкм (строк {rows}, каждая деталь при своём размере)"
             ));
         }
         if let Some((text, _)) = self.next() {

@@ -1,6 +1,6 @@
 //! What a field does to small boxes of commands, cell by cell of the map's grid: equation (96) of `docs/equations.md`.
 
-use diagnostic::{Language, Text, say};
+use diagnostic::{Text, both};
 use error_map::ErrorMap;
 use machine_model::{Matrix, PathModel, Range, Vector};
 
@@ -61,8 +61,8 @@ pub(super) const WORDS: [Text; 9] = [
 ];
 
 /// Unit of one of them.
-pub(super) fn unit(which: usize, language: Language) -> String {
-    if which < 3 { say!(language, "um/m", "мкм/м") } else { say!(language, "urad", "мкрад") }
+pub(super) fn unit(which: usize) -> Text {
+    if which < 3 { both!("um/m", "мкм/м") } else { both!("urad", "мкрад") }
 }
 
 /// All cells, X fastest; none where an axis has one node, or where the model is one of axes.

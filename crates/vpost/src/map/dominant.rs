@@ -1,14 +1,13 @@
 //! Which deviations make the error of a map: what the first screen names.
 
-use diagnostic::{Language, say};
+use diagnostic::{Text, both};
 use error_budget::{Budget, Machine};
 use machine_model::effects::Conditions;
 use machine_model::{EngineId, Vector, WithEffects};
 use machine_profile::Profile;
-use maud::{Markup, html};
 use rayon::prelude::*;
-use report::page::table;
-use report::text::Numbers;
+use report::body::{Body, Table};
+use report::numbers::number;
 
 use super::options::{Asked, command};
 
@@ -67,62 +66,56 @@ pub(super) fn dominant(
         .collect()
 }
 
-fn um(mm: f64, language: Language) -> String {
-    language.number(mm * 1e3)
+fn um(mm: f64) -> Text {
+    number(mm * 1e3)
 }
 
 /// The sentence of the first screen; nothing where nothing is known of single deviations.
-pub(super) fn sentence(all: &[Dominant], language: Language) -> Option<String> {
+pub(super) fn sentence(all: &[Dominant]) -> Option<Text> {
     let largest = all.iter().map(|own| own.alone_mm).fold(0.0, f64::max);
-    let named: Vec<String> = all
+    let named: Vec<Text> = all
         .iter()
         .take(NAMED)
         // A tenth of the largest is none that one would begin with.
         .filter(|own| own.alone_mm > 0.1 * largest)
         .map(|own| {
-            let (name, um) = (called(&own.name, language), um(own.alone_mm, language));
-            say!(language, "{name} (alone {um} \u{b5}m)", "{name} (само по себе {um} мкм)")
+            let (name, um) = (called(&own.name), um(own.alone_mm));
+            both!("{name} (alone {um} \u{b5}m)", "{name:#} (само по себе {um:#} мкм)")
         })
         .collect();
-    let named = named.join(", ");
-    (!named.is_empty())
-        .then(|| say!(language, "What makes most of it: {named}.", "Больше всего вносят: {named}."))
+    let said = Text::join(&named, ", ");
+    (!named.is_empty()).then(|| both!("What makes most of it: {said}.", "Больше всего вносят: {said:#}."))
 }
 
 /// A symbol of ISO 230-1 with its kind in a word, for whoever does not read symbols: `EC0Y squareness`.
-fn called(name: &str, language: Language) -> String {
+fn called(name: &str) -> Text {
     let kind = match name.as_bytes() {
-        [b'E', b'A'..=b'C', b'0', b'X'..=b'Z'] => say!(language, "squareness", "перпендикулярность"),
-        [b'E', a @ b'X'..=b'Z', b] if a == b => say!(language, "positioning", "позиционирование"),
-        [b'E', b'X'..=b'Z', b'X'..=b'Z'] => say!(language, "straightness", "прямолинейность"),
-        [b'E', b'A'..=b'C', b'X'..=b'Z'] => say!(language, "angle", "угол"),
-        _ => return name.to_owned(),
+        [b'E', b'A'..=b'C', b'0', b'X'..=b'Z'] => both!("squareness", "перпендикулярность"),
+        [b'E', a @ b'X'..=b'Z', b] if a == b => both!("positioning", "позиционирование"),
+        [b'E', b'X'..=b'Z', b'X'..=b'Z'] => both!("straightness", "прямолинейность"),
+        [b'E', b'A'..=b'C', b'X'..=b'Z'] => both!("angle", "угол"),
+        _ => return Text::same(name),
     };
-    format!("{name} {kind}")
+    both!("{name} {kind}", "{name} {kind:#}")
 }
 
-/// All of them as a table.
-pub(super) fn section(all: &[Dominant], language: Language) -> Markup {
-    let rows: Vec<Vec<String>> = all
-        .iter()
-        .map(|own| vec![own.name.clone(), um(own.alone_mm, language), um(own.without_mm, language)])
-        .collect();
-    let header = match language {
-        Language::English => ["deviation", "largest with it alone, \u{b5}m", "largest without it, \u{b5}m"],
-        Language::Russian => ["отклонение", "наибольшее с ним одним, мкм", "наибольшее без него, мкм"],
-    };
-    html! {
-        p {
-            (say!(
-                language,
-                "Symbols of ISO 230-1, at up to five places along each axis of the map, in order of what is left without it. More, and what each deviation may be, says ",
-                "Обозначения по ISO 230-1, до пяти мест вдоль каждой оси карты; первым стоит то, без которого остаётся меньше всего. Подробнее, с допуском на каждое отклонение, говорит "
-            ))
-            code { "vpost budget" }
-            "."
-        }
-        (table(language, &header, &[1, 2], &rows))
+/// All of them as a table; nothing where there are none.
+pub(super) fn section(out: &mut Body, all: &[Dominant]) {
+    if all.is_empty() {
+        return;
     }
+    out.typed(&both!(
+        "Symbols of ISO 230-1, at up to five places along each axis of the map, in order of what is left without it. More, and what each deviation may be, says `vpost budget`.",
+        "Обозначения по ISO 230-1, до пяти мест вдоль каждой оси карты; первым стоит то, без которого остаётся меньше всего. Подробнее, с допуском на каждое отклонение, говорит `vpost budget`."
+    ));
+    let table = Table::of(all)
+        .words(both!("deviation", "отклонение"), |own| Text::same(&own.name))
+        .numbers(
+            both!("largest with it alone, \u{b5}m", "наибольшее с ним одним, мкм"),
+            |own| um(own.alone_mm),
+        )
+        .numbers(both!("largest without it, \u{b5}m", "наибольшее без него, мкм"), |own| um(own.without_mm));
+    out.table(&table);
 }
 
 #[cfg(test)]
@@ -139,8 +132,8 @@ mod tests {
             ("EX0C", "EX0C"),
             ("backlash X", "backlash X"),
         ] {
-            assert_eq!(called(symbol, Language::English), word);
+            assert_eq!(called(symbol).english(), word);
         }
-        assert_eq!(called("EYX", Language::Russian), "EYX прямолинейность");
+        assert_eq!(format!("{:#}", called("EYX")), "EYX прямолинейность");
     }
 }

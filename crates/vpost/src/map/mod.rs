@@ -19,7 +19,6 @@ pub use arguments::Map;
 use diagnostic::both;
 use jobs::map::model;
 use machine_model::{Range, Volume};
-use report::text::Numbers;
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
@@ -65,7 +64,7 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
     let doubts = conditions::doubts(&profile, id).into_iter().flat_map(|report| report.diagnostics);
     let facts = page::Facts {
         dominant,
-        doubts: doubts.map(|doubt| messages.language().prose(&doubt.message)).collect(),
+        doubts: doubts.map(|doubt| doubt.message).collect(),
         ..facts(arguments, shared, &profile, machine(&shared.job)?, &loaded.hash)
     };
     if let Some(path) = &arguments.viewer {
@@ -75,7 +74,7 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
         let json = String::from_utf8(json::bytes(&study)).expect("JSON is UTF-8");
         file::write(path, page::html(&study, &facts, &json, messages.language()).as_bytes())?;
     }
-    file::print(text::page(&study, messages.language()).as_bytes())
+    file::print(text::page(&study).in_language(messages.language()).as_bytes())
 }
 
 /// What was asked, as it was typed.

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use diagnostic::{both, say};
+use diagnostic::{Text, both};
 use error_map::Nodes;
 use jobs::causes::Causes;
 use machine_model::{Models, PathModel, Vector};
 use machine_profile::Profile;
-use report::text::Numbers;
+use report::numbers::digits;
 use report::viewer::scene::{Place, Scene};
 use report::viewer::{Figures, Kind, Viewer};
 
@@ -72,10 +72,11 @@ pub(super) fn write(
     scene.of = scene.places.len();
     let count = scene.of.to_string();
     let language = messages.language();
-    let vector = |v: &Vector| v.iter().map(|mm| language.digits(*mm, 3)).collect::<Vec<_>>().join(" ");
+    let said = |text: &Text| text.in_language(language).to_owned();
+    let tool = Text::join(&study.tool_mm.iter().map(|mm| digits(*mm, 3)).collect::<Vec<_>>(), " ");
     let grid = axes.iter().zip(["X", "Y", "Z"]).map(|(nodes, axis)| {
-        let [low, high] = [nodes.range_mm().low, nodes.range_mm().high].map(|mm| language.digits(mm, 3));
-        say!(language, "{axis} {low} \u{2026} {high} mm", "{axis} {low} \u{2026} {high} мм")
+        let [low, high] = [nodes.range_mm().low, nodes.range_mm().high].map(|mm| digits(mm, 3));
+        both!("{axis} {low} \u{2026} {high} mm", "{axis} {low:#} \u{2026} {high:#} мм")
     });
     let page = Viewer {
         kind: Kind::Map,
@@ -95,10 +96,10 @@ pub(super) fn write(
         facts: &[
             ("fact_machine", format!("{}, {}", study.machine, facts.chain)),
             ("fact_profile", format!("{} (BLAKE3 {})", facts.profile, facts.profile_hash)),
-            ("fact_calibrated", facts.origin.said(language)),
+            ("fact_calibrated", said(&facts.origin.said())),
             ("fact_engine", study.engine.name().to_owned()),
-            ("fact_grid", grid.collect::<Vec<_>>().join(", ")),
-            ("fact_tool", say!(language, "{} mm", "{} мм", vector(&study.tool_mm))),
+            ("fact_grid", said(&Text::join(&grid.collect::<Vec<_>>(), ", "))),
+            ("fact_tool", said(&both!("{tool} mm", "{tool:#} мм"))),
             ("fact_typed", crate::origin::command()),
             ("fact_command", format!("vpost {} map", env!("CARGO_PKG_VERSION"))),
         ],

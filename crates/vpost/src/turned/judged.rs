@@ -1,7 +1,8 @@
 //! How far a surface leaves the programmed one, and what kind of deviation that is.
 
 use diagnostic::{Text, both};
-pub(crate) use report::text::number as um;
+use report::numbers::figures;
+pub(crate) use report::numbers::number as um;
 
 use super::surface::{Place, Surface, Turned};
 
@@ -116,38 +117,38 @@ impl Form {
             Lead::Size if self.size_um > 0.0 => {
                 both!(
                     "its diameter is {size} \u{b5}m too large",
-                    "его диаметр больше заданного на {size} мкм"
+                    "его диаметр больше заданного на {size:#} мкм"
                 )
             }
             Lead::Size => {
                 both!(
                     "its diameter is {size} \u{b5}m too small",
-                    "его диаметр меньше заданного на {size} мкм"
+                    "его диаметр меньше заданного на {size:#} мкм"
                 )
             }
             Lead::Cone if self.cone_um > 0.0 => both!(
                 "it is a cone, {} \u{b5}m thicker on the diameter at the end away from the chuck",
-                "он конусный, у дальнего от патрона конца толще на {} мкм по диаметру",
+                "он конусный, у дальнего от патрона конца толще на {:#} мкм по диаметру",
                 um(self.cone_um)
             ),
             Lead::Cone => both!(
                 "it is a cone, {} \u{b5}m thicker on the diameter at the chuck",
-                "он конусный, у патрона толще на {} мкм по диаметру",
+                "он конусный, у патрона толще на {:#} мкм по диаметру",
                 um(-self.cone_um)
             ),
             Lead::Barrel => both!(
                 "it is a barrel, {} \u{b5}m thicker on the diameter in the middle",
-                "он бочкообразный, в середине толще на {} мкм по диаметру",
+                "он бочкообразный, в середине толще на {:#} мкм по диаметру",
                 um(self.barrel_um)
             ),
             Lead::Saddle => both!(
                 "it is a saddle, {} \u{b5}m thinner on the diameter in the middle",
-                "он седлообразный, в середине тоньше на {} мкм по диаметру",
+                "он седлообразный, в середине тоньше на {:#} мкм по диаметру",
                 um(-self.barrel_um)
             ),
             Lead::Other => both!(
                 "its generatrix leaves a straight line by {} \u{b5}m on the radius",
-                "его образующая отходит от прямой на {} мкм по радиусу",
+                "его образующая отходит от прямой на {:#} мкм по радиусу",
                 um(self.straightness_um)
             ),
         }
@@ -216,8 +217,8 @@ pub(super) fn ridges(places: &[Place]) -> Vec<Ridge> {
 }
 
 /// A place, mm.
-pub(crate) fn mm(value: f64) -> String {
-    crate::number::short(value, 3).replacen('-', "\u{2212}", 1)
+pub(crate) fn mm(value: f64) -> Text {
+    figures(crate::number::short(value, 3).replacen('-', "\u{2212}", 1))
 }
 
 #[cfg(test)]

@@ -6,8 +6,6 @@ mod page;
 mod surface;
 mod wear;
 
-use std::fmt::Write;
-
 use diagnostic::{Code, Diagnostic, both};
 use machine_profile::Profile;
 use rewrite::Manner;
@@ -70,11 +68,11 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
         file::write(path, html.as_bytes())?;
     }
     let out = match (arguments.wear, arguments.json) {
-        (true, _) => wear::list(&surface, &turned, &settings),
-        (false, true) => json(&turned),
-        (false, false) => csv(&turned),
+        (true, _) => wear::list(&surface, &turned, &settings).into_bytes(),
+        (false, true) => jobs::summary::json(&turned),
+        (false, false) => csv(&turned).into_bytes(),
     };
-    file::print(out.as_bytes())
+    file::print(&out)
 }
 
 fn no_lathe(name: &str, profile: &Profile) -> Failure {
@@ -116,39 +114,24 @@ fn correction(
     }
 }
 
-fn json(turned: &Turned) -> String {
-    let mut text = serde_json::to_string_pretty(turned).expect("plain values always serialise");
-    text.push('\n');
-    text
-}
-
 fn csv(turned: &Turned) -> String {
     let mut out = String::from(
         "z_mm,radius_mm,diameter_mm,nominal_radius_mm,radius_error_um,roundness_um,roundness_zone_um,roughness_um,roughness_usual_um",
     );
-    let mut line = |text: std::fmt::Arguments<'_>| out.write_fmt(text).expect("a string takes all");
     for order in 2..=HIGHEST_WAVE {
-        line(format_args!(",wave_{order}_um"));
+        out.push_str(&format!(",wave_{order}_um"));
     }
-    line(format_args!("\n"));
-    let or_nothing = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(value, 6));
-    for place in &turned.places {
-        line(format_args!(
-            "{},{},{},{},{},{},{},{},{}",
-            fixed(place.z_mm, 6),
-            fixed(place.radius_mm, 9),
-            fixed(place.diameter_mm, 9),
-            fixed(place.nominal_radius_mm, 9),
-            fixed(place.radius_error_um, 6),
-            fixed(place.roundness_um, 6),
-            fixed(place.roundness_zone_um, 6),
-            or_nothing(place.roughness_um),
-            or_nothing(place.roughness_usual_um),
-        ));
-        for wave in &place.waves_um {
-            line(format_args!(",{}", fixed(*wave, 6)));
-        }
-        line(format_args!("\n"));
+    out.push('\n');
+    for p in &turned.places {
+        let radii = [p.radius_mm, p.diameter_mm, p.nominal_radius_mm].map(|mm| fixed(mm, 9));
+        let um = |um: f64| fixed(um, 6);
+        let or_nothing = |value: Option<f64>| value.map_or_else(String::new, um);
+        let mut cells = vec![um(p.z_mm)];
+        cells.extend(radii);
+        cells.extend([p.radius_error_um, p.roundness_um, p.roundness_zone_um].map(um));
+        cells.extend([p.roughness_um, p.roughness_usual_um].map(or_nothing));
+        cells.extend(p.waves_um.iter().copied().map(um));
+        out.push_str(&(cells.join(",") + "\n"));
     }
     out
 }

@@ -1,9 +1,10 @@
 //! What a lathe turns as one page: the outline, its roundness, its roughness, and what a correction will bring.
 
-use diagnostic::{Language, Text, both, say};
-use maud::{Markup, html};
-use report::page::{Page, Section, table_of};
-use report::text::{Numbers, number, shown};
+use diagnostic::{Language, Text, both};
+use report::body::{Body, Fact, Table};
+use report::numbers::{number, or_dash};
+use report::page::Page;
+use report::text::shown;
 use serde::Serialize;
 use turning::Lathe;
 
@@ -11,7 +12,7 @@ use super::judged::{Form, Outline, mm, ridges, um};
 use super::surface::{HIGHEST_WAVE, Stretch, Surface, Turned};
 use crate::file;
 use crate::message::{Failure, Wording};
-use crate::origin::Origin;
+use crate::origin::{Origin, PROFILE};
 use crate::settings::Settings;
 
 mod outline;
@@ -61,7 +62,6 @@ struct Cylinder<'a> {
 
 /// All that the sections are made of.
 struct Shown<'a> {
-    language: Language,
     facts: &'a Facts<'a>,
     surface: &'a Surface,
     turned: &'a Turned,
@@ -82,8 +82,7 @@ pub(super) fn html(
     lathe: &Lathe,
     language: Language,
 ) -> Result<String, Failure> {
-    let page = Shown {
-        language,
+    let shown = Shown {
         facts,
         surface,
         turned,
@@ -97,30 +96,27 @@ pub(super) fn html(
     };
     let numbers = Figures {
         turned,
-        tolerance_um: page.tolerance_um(),
-        sections: &page.sections,
-        corrected: page.corrected(),
+        tolerance_um: shown.tolerance_um(),
+        sections: &shown.sections,
+        corrected: shown.corrected(),
     };
     let json = serde_json::to_string(&numbers).expect("plain values always serialise");
-    let title =
-        page.say(&both!("Turned \u{2013} {}", "Точение \u{2014} {}", file::without_folders(facts.name)));
-    let made = Page {
-        language,
-        title: &title,
-        head: page.head(),
-        sections: page.sections(),
-        json: &json,
-        command: "predict --lathe",
-        schema: "vpost.turned/1",
-    };
-    Ok(made.into_html())
+    let title = both!("Turned \u{2013} {}", "Точение \u{2014} {}", file::without_folders(facts.name));
+    let mut page = Page::new(language, title, "predict --lathe", "vpost.turned/1");
+    shown.head(&mut page.head);
+    shown.outline(page.section("outline", both!("Radius along Z", "Радиус вдоль Z")));
+    shown.cylinder_table(page.section("cylinders", both!("Cylinders", "Цилиндры")));
+    shown.roundness(page.section("roundness", both!("Roundness", "Круглость")));
+    let roughness = both!("Theoretical roughness", "Теоретическая шероховатость");
+    shown.roughness(page.section("roughness", roughness));
+    page.provenance(shown.provenance()).muted(&both!(
+        "The tip counts as a point; the surface is what the lathe's model turns, not what was measured.",
+        "Вершина резца считается точкой; поверхность — та, которую точит модель станка, а не измеренная."
+    ));
+    Ok(page.into_html(&json))
 }
 
 impl Shown<'_> {
-    fn say(&self, text: &Text) -> String {
-        self.language.prose(text)
-    }
-
     fn tolerance_um(&self) -> f64 {
         self.facts.settings.options.tolerance_mm * 1e3
     }
@@ -146,7 +142,7 @@ impl Shown<'_> {
     }
 
     /// The first screen: what is wrong, how bad, what a correction will bring.
-    fn head(&self) -> Markup {
+    fn head(&self, out: &mut Body) {
         let cylinders = self.cylinders();
         // The cylinder that is worst: a size, a cone or a bend of so much on the diameter.
         let worst = cylinders.iter().filter_map(|c| Some((c, c.before?))).max_by(|(_, a), (_, b)| {
@@ -166,56 +162,56 @@ impl Shown<'_> {
             |off| {
                 both!(
                     "The turned surface is up to {} \u{b5}m off the programmed one, Z {} mm from the chuck; the tolerance is {} \u{b5}m",
-                    "Обточенная поверхность отходит от заданной до {} мкм, Z {} мм от торца патрона; допуск {} мкм",
+                    "Обточенная поверхность отходит от заданной до {:#} мкм, Z {:#} мм от торца патрона; допуск {:#} мкм",
                     um(off.deviation_um.abs()),
                     mm(off.z_mm),
                     um(self.tolerance_um())
                 )
             },
         );
-        html! {
-            p.muted { (shown(&self.facts.settings.profile.name)) ", " (shown(file::without_folders(self.facts.name))) }
-            p { span.verdict { (self.say(&verdict)) } }
-            h1 { (self.say(&wrong)) }
-            @if let Some((cylinder, form)) = worst { p { (self.say(&what(cylinder.stretch, form))) } }
-            (self.gain(worst.map(|(cylinder, _)| cylinder)))
-            p { (self.say(&self.kept())) }
-            (Origin::of(&self.facts.settings.profile).line(self.language))
+        let (machine, name) = (&self.facts.settings.profile.name, file::without_folders(self.facts.name));
+        out.muted(&Text::same(format!("{machine}, {name}")));
+        out.verdict(&verdict, &wrong);
+        if let Some((cylinder, form)) = worst {
+            out.p(&what(cylinder.stretch, form));
         }
+        self.gain(out, worst.map(|(cylinder, _)| cylinder));
+        out.p(&self.kept());
+        out.muted(&Origin::of(&self.facts.settings.profile).said());
     }
 
     /// What a correction will bring.
-    fn gain(&self, worst: Option<&Cylinder<'_>>) -> Markup {
+    fn gain(&self, out: &mut Body, worst: Option<&Cylinder<'_>>) {
         match (self.correction, self.after.as_ref().and_then(|after| after.largest)) {
             (Correction::Turned(_), Some(off)) => {
                 let mut text = both!(
                     "Corrected by vpost the surface is up to {} \u{b5}m off, Z {} mm.",
-                    "После исправления программы поверхность отходит до {} мкм, Z {} мм.",
+                    "После исправления программы поверхность отходит до {:#} мкм, Z {:#} мм.",
                     um(off.deviation_um.abs()),
                     mm(off.z_mm)
                 );
                 if let Some(after) = worst.and_then(|worst| worst.after) {
+                    let [size, cone, bend] = [after.size_um, after.cone_um, after.straightness_um].map(um);
                     text.push(&both!(
-                        " That cylinder: diameter {} \u{b5}m off, cone {} \u{b5}m, straightness {} \u{b5}m.",
-                        " Этот цилиндр: диаметр отходит на {} мкм, конусообразность {} мкм, прямолинейность образующей {} мкм.",
-                        um(after.size_um),
-                        um(after.cone_um),
-                        um(after.straightness_um)
+                        " That cylinder: diameter {size} \u{b5}m off, cone {cone} \u{b5}m, straightness {bend} \u{b5}m.",
+                        " Этот цилиндр: диаметр отходит на {size:#} мкм, конусообразность {cone:#} мкм, прямолинейность образующей {bend:#} мкм."
                     ));
                 }
-                html! { p { (self.say(&text)) } }
+                out.p(&text);
             }
-            (Correction::Turned(_), None) => html! {},
-            (Correction::Unchanged, _) => html! {
-                p { (self.say(&both!("The program needs no correction within the tolerance.", "В пределах допуска программу исправлять не нужно."))) }
-            },
-            (Correction::Refused(failure), _) => html! {
-                p { (self.say(&both!(
+            (Correction::Turned(_), None) => {}
+            (Correction::Unchanged, _) => out.p(&both!(
+                "The program needs no correction within the tolerance.",
+                "В пределах допуска программу исправлять не нужно."
+            )),
+            (Correction::Refused(failure), _) => {
+                out.p(&both!(
                     "vpost does not correct this program, so that nothing is gained until that is settled:",
                     "vpost эту программу не исправляет; пока это не улажено, улучшения не будет:"
-                ))) }
-                div.scroll tabindex="0" { pre { (shown_lines(&Wording::plain().quiet().speaking(self.language).text(failure))) } }
-            },
+                ));
+                let message = Wording::plain().quiet().speaking(out.language()).text(failure);
+                out.lines(&message.lines().map(shown).collect::<Vec<_>>().join("\n"));
+            }
         }
     }
 
@@ -225,186 +221,128 @@ impl Shown<'_> {
         let roundness = places().map(|place| place.roundness_um).fold(0.0, f64::max);
         let mut text = both!(
             "Roundness (RONt, least squares) is up to {} \u{b5}m: it comes from the spindle, and moving X and Z along the part does not change it.",
-            "Отклонение от круглости (RONt, по средней окружности) до {} мкм: оно идёт от шпинделя, перемещения X и Z его не меняют.",
+            "Отклонение от круглости (RONt, по средней окружности) до {:#} мкм: оно идёт от шпинделя, перемещения X и Z его не меняют.",
             um(roundness)
         );
         let asynchronous_um = self.turned.asynchronous_um;
         if asynchronous_um > 0.0 {
             text.push(&both!(
                 " On top of all this comes what the spindle does not repeat, a band of {} \u{b5}m.",
-                " Ко всему добавляется то, что шпиндель не повторяет, — полоса {} мкм.",
+                " Ко всему добавляется то, что шпиндель не повторяет, — полоса {:#} мкм.",
                 um(asynchronous_um)
             ));
         }
         text
     }
 
-    fn sections(&self) -> Vec<Section> {
-        let mut out = vec![
-            Section {
-                id: "outline",
-                title: Text::pair("Radius along Z", "Радиус вдоль Z"),
-                body: self.outline(),
-            },
-            Section {
-                id: "cylinders",
-                title: Text::pair("Cylinders", "Цилиндры"),
-                body: self.cylinder_table(),
-            },
-            Section {
-                id: "roundness", title: Text::pair("Roundness", "Круглость"), body: self.roundness()
-            },
-            Section {
-                id: "roughness",
-                title: Text::pair("Theoretical roughness", "Теоретическая шероховатость"),
-                body: self.roughness(),
-            },
-        ];
-        out.push(Section {
-            id: "provenance",
-            title: Text::pair("Where this comes from", "Откуда эти данные"),
-            body: self.provenance(),
-        });
-        out
-    }
-
-    fn cylinder_table(&self) -> Markup {
-        let pair = |before: Option<f64>, after: Option<f64>| match (before, after) {
-            (Some(before), Some(after)) => format!("{} \u{2192} {}", um(before), um(after)),
-            (Some(before), None) => um(before),
-            (None, _) => "\u{2014}".to_owned(),
-        };
-        let row = |c: &Cylinder<'_>| {
-            let of = |get: fn(&Form) -> f64| pair(c.before.as_ref().map(get), c.after.as_ref().map(get));
-            vec![
-                mm(2.0 * c.stretch.nominal_radius_mm),
-                format!("{} \u{2026} {}", mm(c.stretch.from_z_mm), mm(c.stretch.to_z_mm)),
-                of(|form| form.size_um),
-                of(|form| form.cone_um),
-                of(|form| form.barrel_um),
-                of(|form| form.straightness_um),
-                pair(Some(c.stretch.cylindricity_um), c.corrected.map(|after| after.cylindricity_um)),
-                pair(
-                    Some(c.stretch.cylindricity_zone_um),
-                    c.corrected.map(|after| after.cylindricity_zone_um),
-                ),
-            ]
-        };
-        let rows: Vec<Vec<String>> = self.cylinders().iter().map(row).collect();
-        if rows.is_empty() {
-            return html! { p { (self.say(&both!(
+    fn cylinder_table(&self, out: &mut Body) {
+        let cylinders = self.cylinders();
+        if cylinders.is_empty() {
+            out.p(&both!(
                 "No stretch of one radius is three places long.",
                 "Участков одного радиуса длиной в три места нет."
-            ))) } };
+            ));
+            return;
         }
-        let header = [
-            both!("\u{d8}, mm", "\u{d8}, мм"),
-            both!("Z, mm", "Z, мм"),
-            both!("size, \u{b5}m", "размер, мкм"),
-            both!("cone", "конус"),
-            both!("barrel", "бочка"),
-            both!("straightness", "прямолинейность"),
-            both!("CYLt", "CYLt"),
-            both!("CYLt, zone", "CYLt, зона"),
-        ];
-        html! {
-            (table_of(self.language, &header, &[0, 1, 2, 3, 4, 5, 6, 7], &rows))
-            p.muted { (self.say(&both!(
-                "Before and, behind the arrow, after the correction. Size: mean deviation of the diameter. Cone: growth of the diameter from the end at the chuck to the other. Barrel: diameter in the middle less that at both ends, a saddle below zero. Straightness of the generatrix about its least-squares line, on the radius. CYLt: cylindricity by least squares and by the minimum zone (ISO 12180), spindle included.",
-                "До исправления и, за стрелкой, после него. Размер: среднее отклонение диаметра. Конус: рост диаметра от конца у патрона к другому. Бочка: диаметр в середине минус диаметр на концах, ниже нуля — седло. Прямолинейность образующей относительно её средней линии, по радиусу. CYLt: отклонение от цилиндричности по среднему цилиндру и по минимальной зоне (ISO 12180), вместе со шпинделем."
-            ))) }
-        }
+        let pair = |before: Option<f64>, after: Option<f64>| match (before.map(um), after.map(um)) {
+            (Some(before), Some(after)) => Text::join([&before, &after], " \u{2192} "),
+            (before, _) => before.unwrap_or(Text::same("\u{2014}")),
+        };
+        let of = |get: fn(&Form) -> f64| {
+            move |c: &&Cylinder<'_>| pair(c.before.as_ref().map(get), c.after.as_ref().map(get))
+        };
+        let both = |get: fn(&Stretch) -> f64| {
+            move |c: &&Cylinder<'_>| pair(Some(get(c.stretch)), c.corrected.map(get))
+        };
+        let table = Table::of(&cylinders)
+            .numbers(both!("\u{d8}, mm", "\u{d8}, мм"), |c| mm(2.0 * c.stretch.nominal_radius_mm))
+            .numbers(both!("Z, mm", "Z, мм"), |c| from_to(c.stretch.from_z_mm, c.stretch.to_z_mm))
+            .numbers(both!("size, \u{b5}m", "размер, мкм"), of(|form| form.size_um))
+            .numbers(both!("cone", "конус"), of(|form| form.cone_um))
+            .numbers(both!("barrel", "бочка"), of(|form| form.barrel_um))
+            .numbers(both!("straightness", "прямолинейность"), of(|form| form.straightness_um))
+            .numbers(Text::same("CYLt"), both(|stretch| stretch.cylindricity_um))
+            .numbers(both!("CYLt, zone", "CYLt, зона"), both(|stretch| stretch.cylindricity_zone_um));
+        out.table(&table);
+        out.muted(&both!(
+            "Before and, behind the arrow, after the correction. Size: mean deviation of the diameter. Cone: growth of the diameter from the end at the chuck to the other. Barrel: diameter in the middle less that at both ends, a saddle below zero. Straightness of the generatrix about its least-squares line, on the radius. CYLt: cylindricity by least squares and by the minimum zone (ISO 12180), spindle included.",
+            "До исправления и, за стрелкой, после него. Размер: среднее отклонение диаметра. Конус: рост диаметра от конца у патрона к другому. Бочка: диаметр в середине минус диаметр на концах, ниже нуля — седло. Прямолинейность образующей относительно её средней линии, по радиусу. CYLt: отклонение от цилиндричности по среднему цилиндру и по минимальной зоне (ISO 12180), вместе со шпинделем."
+        ));
     }
 
-    fn roughness(&self) -> Markup {
-        let rows: Vec<Vec<String>> = ridges(&self.turned.places)
-            .iter()
-            .map(|ridge| {
-                let more = ridge.exact_um.map(|exact| 100.0 * (exact / ridge.usual_um - 1.0));
-                vec![
-                    format!("{} \u{2026} {}", mm(ridge.z_mm[0]), mm(ridge.z_mm[1])),
-                    mm(ridge.feed_mm),
-                    mm(ridge.nose_mm),
-                    ridge.exact_um.map_or_else(|| "\u{2014}".to_owned(), um),
-                    um(ridge.usual_um),
-                    more.map_or_else(String::new, |percent| format!("{} %", number(percent))),
-                ]
-            })
-            .collect();
-        if rows.is_empty() {
-            return html! { p { (self.say(&both!(
+    fn roughness(&self, out: &mut Body) {
+        let ridges = ridges(&self.turned.places);
+        if ridges.is_empty() {
+            out.p(&both!(
                 "Not known: it needs a feed a turn in the program and the nose of the tool in the profile (noses).",
                 "Неизвестна: нужны подача на оборот в программе и радиус при вершине в профиле (noses)."
-            ))) } };
+            ));
+            return;
         }
-        let header = [
-            both!("Z, mm", "Z, мм"),
-            both!("feed f, mm a turn", "подача f, мм/об"),
-            both!("nose r, mm", "радиус r, мм"),
-            both!("exact, \u{b5}m", "точно, мкм"),
-            both!("f\u{b2}/8r, \u{b5}m", "f\u{b2}/8r, мкм"),
-            both!("difference", "разница"),
-        ];
-        html! {
-            (table_of(self.language, &header, &[0, 1, 2, 3, 4, 5], &rows))
-            p.muted { (self.say(&both!(
-                "Height of the ridge that the nose leaves between two turns, the geometry alone; a dash where the nose does not meet its own cut of the turn before.",
-                "Высота гребешка, который вершина оставляет между двумя оборотами, только геометрия; прочерк там, где вершина не встречает свой след прошлого оборота."
-            ))) }
-        }
+        let table = Table::of(ridges)
+            .numbers(both!("Z, mm", "Z, мм"), |ridge| from_to(ridge.z_mm[0], ridge.z_mm[1]))
+            .numbers(both!("feed f, mm a turn", "подача f, мм/об"), |ridge| mm(ridge.feed_mm))
+            .numbers(both!("nose r, mm", "радиус r, мм"), |ridge| mm(ridge.nose_mm))
+            .numbers(both!("exact, \u{b5}m", "точно, мкм"), |ridge| or_dash(ridge.exact_um, um))
+            .numbers(both!("f\u{b2}/8r, \u{b5}m", "f\u{b2}/8r, мкм"), |ridge| um(ridge.usual_um))
+            .numbers(both!("difference", "разница"), |ridge| {
+                let more = |exact: f64| number(100.0 * (exact / ridge.usual_um - 1.0));
+                let percent = Text::same("%");
+                ridge.exact_um.map_or(Text::EMPTY, |exact| Text::join([&more(exact), &percent], " "))
+            });
+        out.table(&table);
+        out.muted(&both!(
+            "Height of the ridge that the nose leaves between two turns, the geometry alone; a dash where the nose does not meet its own cut of the turn before.",
+            "Высота гребешка, который вершина оставляет между двумя оборотами, только геометрия; прочерк там, где вершина не встречает свой след прошлого оборота."
+        ));
     }
 
-    fn roundness(&self) -> Markup {
-        let zones: Vec<Vec<String>> = self.sections.iter().map(Drawn::row).collect();
-        let header = [
-            both!("Z, mm", "Z, мм"),
-            both!("RONt, \u{b5}m", "RONt, мкм"),
-            both!("RONt, zone", "RONt, зона"),
-            both!("eccentric X", "эксцентриситет X"),
-            both!("eccentric Y", "эксцентриситет Y"),
-        ];
-        let mut waves_header = vec![both!("waves a turn", "волн на оборот")];
-        waves_header
-            .extend(self.sections.iter().map(|drawn| both!("Z {}, \u{b5}m", "Z {}, мкм", mm(drawn.z_mm()))));
-        let waves: Vec<Vec<String>> = (2..=HIGHEST_WAVE)
-            .map(|order| {
-                let cells = self.sections.iter().map(|drawn| drawn.wave(order));
-                std::iter::once(order.to_string()).chain(cells).collect()
-            })
-            .collect();
-        let numbers: Vec<usize> = (0..waves_header.len()).collect();
-        html! {
-            div.side { @for drawn in &self.sections { (drawn.figure(&self.sections, self.language)) } }
-            (table_of(self.language, &header, &[0, 1, 2, 3, 4], &zones))
-            h3 { (say!(self.language, "Harmonics", "Гармоники")) }
-            (table_of(self.language, &waves_header, &numbers, &waves))
-            p.muted { (self.say(&both!(
-                "Amplitude, half of what the wave spans, and in degrees where its crest lies, from X+ of the workpiece. One wave a turn is the centre: eccentricity, and no roundness.",
-                "Амплитуда, половина размаха волны, и место её вершины в градусах от X+ детали. Одна волна на оборот — это центр: эксцентриситет, а не круглость."
-            ))) }
+    fn roundness(&self, out: &mut Body) {
+        out.side(|out| self.sections.iter().for_each(|drawn| drawn.figure(out, &self.sections)));
+        let zones = Table::of(&self.sections)
+            .numbers(both!("Z, mm", "Z, мм"), |drawn| mm(drawn.z_mm))
+            .numbers(both!("RONt, \u{b5}m", "RONt, мкм"), |drawn| um(drawn.roundness_um))
+            .numbers(both!("RONt, zone", "RONt, зона"), |drawn| um(drawn.roundness_zone_um))
+            .numbers(both!("eccentric X", "эксцентриситет X"), |drawn| um(drawn.centre_um[0]))
+            .numbers(both!("eccentric Y", "эксцентриситет Y"), |drawn| um(drawn.centre_um[1]));
+        out.table(&zones);
+        out.heading(&both!("Harmonics", "Гармоники"));
+        let mut waves = Table::of(2..=HIGHEST_WAVE)
+            .numbers(both!("waves a turn", "волн на оборот"), |order| {
+                Text::same(order.to_string())
+            });
+        for drawn in &self.sections {
+            let z = mm(drawn.z_mm);
+            waves = waves.numbers(both!("Z {z}, \u{b5}m", "Z {z:#}, мкм"), |order| drawn.wave(*order));
         }
+        out.table(&waves);
+        out.muted(&both!(
+            "Amplitude, half of what the wave spans, and in degrees where its crest lies, from X+ of the workpiece. One wave a turn is the centre: eccentricity, and no roundness.",
+            "Амплитуда, половина размаха волны, и место её вершины в градусах от X+ детали. Одна волна на оборот — это центр: эксцентриситет, а не круглость."
+        ));
     }
 
-    fn provenance(&self) -> Markup {
-        let settings = self.facts.settings;
-        html! {
-            dl {
-                dt { (say!(self.language, "program", "программа")) }
-                dd { (shown(self.facts.name)) " " span.muted { "BLAKE3 " (blake3::hash(self.facts.text).to_string()) } }
-                dt { (say!(self.language, "lathe", "станок")) } dd { (shown(&settings.profile.name)) }
-                dt { (say!(self.language, "profile and its tables", "профиль и его таблицы")) }
-                dd { (shown(&settings.profile_name)) " " span.muted { "BLAKE3 " (settings.profile_hash.to_string()) } }
-                dt { (say!(self.language, "places along Z", "места вдоль Z")) }
-                dd { (self.turned.places.len()) ", " (self.language.figures(mm(self.surface.step_mm))) " " (say!(self.language, "mm apart", "мм друг от друга")) }
-                (Origin::of(&settings.profile).rows(self.language))
-                dt { (say!(self.language, "made by", "создано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.turned/1" }
-            }
-            p.muted { (self.say(&both!(
-                "The tip counts as a point; the surface is what the lathe's model turns, not what was measured.",
-                "Вершина резца считается точкой; поверхность — та, которую точит модель станка, а не измеренная."
-            ))) }
-        }
+    fn provenance(&self) -> Vec<Fact> {
+        let Facts { name, text, settings, .. } = self.facts;
+        let (places, apart) = (self.turned.places.len(), mm(self.surface.step_mm));
+        let program = Some(blake3::hash(text).to_string());
+        let mut all = vec![
+            Fact::file(both!("program", "программа"), name, program),
+            Fact::same(both!("lathe", "станок"), &settings.profile.name),
+            Fact::file(PROFILE, &settings.profile_name, Some(settings.profile_hash.to_string())),
+            Fact::new(
+                both!("places along Z", "места вдоль Z"),
+                &both!("{places}, {apart} mm apart", "{places}, {apart:#} мм друг от друга"),
+            ),
+        ];
+        all.extend(Origin::of(&settings.profile).facts());
+        all
     }
+}
+
+/// A stretch along Z.
+fn from_to(from_mm: f64, to_mm: f64) -> Text {
+    Text::join([&mm(from_mm), &mm(to_mm)], " \u{2026} ")
 }
 
 /// The cylinder of the corrected part on that of the program: places at a shoulder may belong to another.
@@ -423,11 +361,6 @@ fn what(stretch: &Stretch, form: Form) -> Text {
     let most = form.says();
     both!(
         "The worst cylinder is \u{d8} {diameter}, Z {from} to {to}: {most}.",
-        "Худший цилиндр \u{d8} {diameter}, Z от {from} до {to}: {most:#}."
+        "Худший цилиндр \u{d8} {diameter:#}, Z от {from:#} до {to:#}: {most:#}."
     )
-}
-
-/// Lines of a message, each made visible.
-fn shown_lines(text: &str) -> String {
-    text.lines().map(shown).collect::<Vec<_>>().join("\n")
 }

@@ -2,15 +2,15 @@
 
 use std::path::PathBuf;
 
-use diagnostic::{Language, say};
-use maud::{Markup, html};
-use report::text::{Numbers, shown};
+use diagnostic::{Text, both};
+use report::body::{Body, Fact};
+use report::numbers::digits;
 use serde_json::{Value, json};
 
 use crate::arguments::Shared;
 use crate::figures::round;
 use crate::message::Failure;
-use crate::origin::{command, command_row};
+use crate::origin::{MACHINE, MEASUREMENTS, celsius, command, command_fact};
 use crate::{file, profile};
 
 use super::super::output::Target;
@@ -25,12 +25,18 @@ struct Named {
     hash: Option<String>,
 }
 
+impl Named {
+    fn fact(&self, name: Text) -> Fact {
+        Fact::file(name, &self.name, self.hash.clone())
+    }
+}
+
 /// What the page says of where it comes from.
 pub(in super::super) struct Facts {
     files: Vec<Named>,
     base: Option<(String, Named)>,
     /// The profile that was written.
-    pub(in super::super) written: Option<PathBuf>,
+    written: Option<PathBuf>,
     written_hash: Option<String>,
     instrument: Option<String>,
     date: Option<String>,
@@ -112,53 +118,46 @@ impl Facts {
         found
     }
 
-    /// The section at the end of the page.
-    pub(super) fn section(&self, language: Language) -> Markup {
-        let said = |value: &Option<String>, option: &str| {
-            html! {
-                @match value {
-                    Some(value) => (shown(value)),
-                    None => span.muted { (say!(language, "not stated ({option})", "не указано ({option})")) },
-                }
-            }
-        };
-        let named = |f: &Named| {
-            html! {
-                (shown(&f.name))
-                @if let Some(hash) = &f.hash { " " span.muted { "BLAKE3 " (hash) } }
-            }
-        };
-        let temperature =
-            self.temperature_c.map(|t| language.figures(format!("{} \u{b0}C", crate::number::short(t, 2))));
-        html! {
-            dl {
-                @for file in &self.files { dt { (say!(language, "measurements", "измерения")) } dd { (named(file)) } }
-                @if let Some((machine, base)) = &self.base {
-                    dt { (say!(language, "machine", "станок")) } dd { (shown(machine)) }
-                    dt { (say!(language, "base profile and its tables", "исходный профиль и его таблицы")) }
-                    dd { (named(base)) }
-                }
-                @if let (Some(path), Some(hash)) = (&self.written, &self.written_hash) {
-                    dt { (say!(language, "profile written, with its tables", "записанный профиль с таблицами")) }
-                    dd { (shown(&file::name(path))) " " span.muted { "BLAKE3 " (hash) } }
-                }
-                dt { (say!(language, "instrument", "прибор")) } dd { (said(&self.instrument, "--instrument")) }
-                dt { (say!(language, "date", "дата")) } dd { (said(&self.date, "--date")) }
-                dt { (say!(language, "temperature", "температура")) } dd { (said(&temperature, "--temperature")) }
-                @if let Some(u) = self.uncertainty_um {
-                    dt { (say!(language, "uncertainty", "неопределённость")) }
-                    dd {
-                        (say!(
-                            language,
-                            "{} \u{b5}m, which 95 % of the places of the volume keep",
-                            "{} мкм, её выдерживают 95 % мест рабочего объёма",
-                            language.digits(u, 3)
-                        ))
-                    }
-                }
-                dt { (say!(language, "made by", "создано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", " (SCHEMA) }
-                (command_row(language))
-            }
+    /// Whether there is a profile to correct by.
+    pub(in super::super) fn say_written(&self, out: &mut Body) {
+        match &self.written {
+            Some(path) => out.p(&both!("Written to {}.", "Записано в {}.", file::name(path))),
+            None => out.muted(&both!(
+                "No profile was written: add -o PROFILE.toml to correct by these readings.",
+                "Профиль не записан: чтобы исправлять по этим измерениям, добавьте -o PROFILE.toml."
+            )),
         }
+    }
+
+    /// For the section at the end of the page.
+    pub(super) fn rows(&self) -> Vec<Fact> {
+        let said = |name: Text, value: Option<Text>, option: &str| match value {
+            Some(value) => Fact::new(name, &value),
+            None => Fact::unknown(name, both!("not stated ({option})", "не указано ({option})")),
+        };
+        let mut all: Vec<Fact> = self.files.iter().map(|file| file.fact(MEASUREMENTS)).collect();
+        if let Some((machine, base)) = &self.base {
+            all.push(Fact::same(MACHINE, machine));
+            all.push(base.fact(both!("base profile and its tables", "исходный профиль и его таблицы")));
+        }
+        if let (Some(path), Some(hash)) = (&self.written, &self.written_hash) {
+            let name = both!("profile written, with its tables", "записанный профиль с таблицами");
+            all.push(Fact::file(name, &file::name(path), Some(hash.clone())));
+        }
+        let [instrument, date] = [&self.instrument, &self.date].map(|value| value.as_ref().map(Text::same));
+        all.push(said(both!("instrument", "прибор"), instrument, "--instrument"));
+        all.push(said(both!("date", "дата"), date, "--date"));
+        let temperature = self.temperature_c.map(celsius);
+        all.push(said(both!("temperature", "температура"), temperature, "--temperature"));
+        all.extend(self.uncertainty_um.map(|um| {
+            let um = digits(um, 3);
+            let kept = both!(
+                "{um} \u{b5}m, which 95 % of the places of the volume keep",
+                "{um:#} мкм, её выдерживают 95 % мест рабочего объёма"
+            );
+            Fact::new(both!("uncertainty", "неопределённость"), &kept)
+        }));
+        all.push(command_fact());
+        all
     }
 }

@@ -13,8 +13,8 @@ mod runs;
 use std::path::PathBuf;
 
 use clap::Args;
-use diagnostic::{Language, Text, say};
-use report::page::{Page, Section};
+use diagnostic::Language;
+use report::page::Page;
 
 pub(super) use bars::Bars;
 pub(super) use facts::Facts;
@@ -82,31 +82,10 @@ impl Shown {
     }
 }
 
-/// Where nothing was written.
-const NOT_WRITTEN: Text = Text::pair(
-    "No profile was written: add -o PROFILE.toml to correct by these readings.",
-    "Профиль не записан: чтобы исправлять по этим измерениям, добавьте -o PROFILE.toml.",
-);
-
-fn written_to(name: &str, language: Language) -> String {
-    say!(language, "Written to {}.", "Записано в {}.", report::text::shown(name))
-}
-
 fn html(found: &dyn Found, facts: &Facts, json: &str, language: Language) -> String {
-    let mut sections = found.sections(language);
-    sections.push(Section {
-        id: "provenance",
-        title: Text::pair("Where this comes from", "Откуда эти данные"),
-        body: facts.section(language),
-    });
-    Page {
-        language,
-        title: &found.title(language),
-        head: found.head(facts, language),
-        sections,
-        json,
-        command: "calibrate",
-        schema: facts::SCHEMA,
-    }
-    .into_html()
+    let mut page = Page::new(language, found.title(), "calibrate", facts::SCHEMA);
+    found.head(&mut page.head, facts);
+    found.sections(&mut page);
+    page.provenance(facts.rows());
+    page.into_html(json)
 }

@@ -4,14 +4,16 @@ use std::fmt::Write;
 
 use calibration::functions::Function;
 use calibration::iso230_2::{Evaluation, HeldOut, Runs};
-use diagnostic::{Language, Text, say};
+use diagnostic::{Text, both};
 use machine_model::Axis;
 use measurement_files::series::Series;
+use report::text::MICROMETRES;
 use serde_json::{Value, json};
 
 use crate::figures::{fixed, round};
 
 use super::super::iso_report;
+use super::super::sources::span;
 
 /// One error function that was read.
 pub(in super::super) struct Read {
@@ -46,10 +48,7 @@ impl Read {
         runs: Runs,
         evaluation: Option<Evaluation>,
     ) -> Self {
-        let (low, high) = function
-            .mean
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+        let (low, high) = span(function.mean.iter().copied());
         Self {
             axis: series.axis,
             name: series.name(),
@@ -69,12 +68,8 @@ impl Read {
     }
 
     /// To µm or µrad.
-    pub(super) fn scale(&self, language: Language) -> (f64, String) {
-        if self.is_angle {
-            (1e6, say!(language, "\u{b5}rad", "мкрад"))
-        } else {
-            (1e3, say!(language, "\u{b5}m", "мкм"))
-        }
+    pub(super) fn scale(&self) -> (f64, Text) {
+        if self.is_angle { (1e6, both!("\u{b5}rad", "мкрад")) } else { (1e3, MICROMETRES.clone()) }
     }
 
     fn json(&self) -> Value {

@@ -5,17 +5,16 @@ mod rows;
 
 use calibration::Base;
 use calibration::rtest::{HeldOut, RotaryTables, Term, calibrate};
-use diagnostic::{Diagnostic, Speaks, Text, both};
+use diagnostic::{Speaks, Text, both};
 use machine_model::{Description, RigidBody};
-use machine_profile::Calibrated;
 
 use crate::arguments::Shared;
 use crate::file;
-use crate::message::{Failure, Messages, Report};
+use crate::message::{Failure, Messages};
 
 use super::codes::{AXES, CONTRADICTED, DOUBTFUL, OPEN, OUTLIER, UNFIT, UNSAID, failure, question};
 use super::options::RTest;
-use super::output::{Output, error_table, warn};
+use super::output::{Output, error_table};
 use rows::Rows;
 
 /// What is left of the readings, in units of their stated uncertainty, is a contradiction above this.
@@ -56,9 +55,9 @@ pub(super) fn run(arguments: &RTest, shared: &Shared, messages: &Messages) -> Re
             "check centre_mm, the tool vector and the signs of the angles; nothing is wrong where the rows are points anywhere",
             "проверьте centre_mm, вектор инструмента и знаки углов; если строки — произвольные точки, ошибки нет"
         );
-        warn(messages, Diagnostic::warning(DOUBTFUL, message).help(help));
+        messages.warn(DOUBTFUL, message, help);
     }
-    let found = calibrate(&rows.readings, &base, &rows.runs).map_err(|error| refused(&rows, &error))?;
+    let found = calibrate(&rows.read.rows, &base, &rows.runs).map_err(|error| refused(&rows, &error))?;
     let held = match &arguments.holdout {
         Some(path) => {
             let held = Rows::read(std::slice::from_ref(path), arguments, &profile, &output, shared)?;
@@ -69,10 +68,7 @@ pub(super) fn run(arguments: &RTest, shared: &Shared, messages: &Messages) -> Re
     let text = report::text(&found, held.as_ref(), &rows);
     file::print(text.in_language(messages.language()).as_bytes())?;
     if let Some(path) = &arguments.json {
-        let mut text = serde_json::to_string_pretty(&report::json(&found, held.as_ref(), &rows))
-            .expect("plain values always serialise");
-        text.push('\n');
-        file::write(path, text.as_bytes())?;
+        file::write(path, &jobs::summary::json(&report::json(&found, held.as_ref(), &rows)))?;
     }
     judge(&found, held.as_ref(), messages)?;
     if arguments.target.output.is_none() && arguments.target.against.is_none() {
@@ -80,67 +76,49 @@ pub(super) fn run(arguments: &RTest, shared: &Shared, messages: &Messages) -> Re
     }
     write(&mut output, &found);
     let uncertainty_mm = output.with_base_mm(found.field_u95_mm, messages);
-    output.calibrated(
-        &arguments.target,
-        messages,
-        Calibrated {
-            temperature_c: rows.temperature_c(),
-            repeatability_um: Some(found.estimate.sigma * 1e3),
-            uncertainty_um: Some(uncertainty_mm * 1e3),
-            ..Calibrated::default()
-        },
-    )?;
-    output.write(&arguments.target, messages)
+    let known_mm = [Some(found.estimate.sigma), Some(uncertainty_mm)];
+    output.write(&arguments.target, messages, rows.read.temperature_c(), known_mm)
 }
 
 /// What contradicts the readings, an outlier at its row.
 fn refused(rows: &Rows, error: &calibration::CalibrationError) -> Failure {
     use calibration::CalibrationError::{Axes, Contradicted, Outlier, Unobservable};
-    let help = match error {
+    let (code, help) = match error {
         Outlier { point, .. } => {
-            return match rows.refuse(
-                *point,
-                OUTLIER,
-                error.text(),
-                both!("measure it again, or take the row out", "измерьте снова или уберите строку"),
-            ) {
-                Some(refusal) => refusal,
-                None => failure("", &[], error),
-            };
+            let help = both!("measure it again, or take the row out", "измерьте снова или уберите строку");
+            let refusal = rows.refuse(*point, OUTLIER, error.text(), help);
+            return refusal.unwrap_or_else(|| failure("", &[], error));
         }
-        Axes(_) => both!(
-            "is `-m` the profile of the machine that was measured? an R-test turns A, B or C within a run, the ball in its nest",
-            "`-m` — профиль измеренного станка? в R-тесте внутри серии поворачивается A, B или C, а шар остаётся в гнезде"
+        Axes(_) => (
+            AXES,
+            both!(
+                "is `-m` the profile of the machine that was measured? an R-test turns A, B or C within a run, the ball in its nest",
+                "`-m` — профиль измеренного станка? в R-тесте внутри серии поворачивается A, B или C, а шар остаётся в гнезде"
+            ),
         ),
-        Unobservable(_) => both!(
-            "mount the ball beside the axis as well, 100 mm from it, at another height: three places not in one line show all",
-            "ставьте шар и в стороне от оси, в 100 мм от неё, на другой высоте: три точки не на одной прямой покажут всё"
+        Unobservable(_) => (
+            OPEN,
+            both!(
+                "mount the ball beside the axis as well, 100 mm from it, at another height: three places not in one line show all",
+                "ставьте шар и в стороне от оси, в 100 мм от неё, на другой высоте: три точки не на одной прямой покажут всё"
+            ),
         ),
-        Contradicted(_) => both!(
-            "measure again, a file for each machine; or calibrate the linear axes of the profile first",
-            "измерьте снова, на каждый станок свой файл; или сначала откалибруйте линейные оси профиля"
+        Contradicted(_) => (
+            CONTRADICTED,
+            both!(
+                "measure again, a file for each machine; or calibrate the linear axes of the profile first",
+                "измерьте снова, на каждый станок свой файл; или сначала откалибруйте линейные оси профиля"
+            ),
         ),
         _ => return failure("", &[], error),
     };
-    let code = match error {
-        Axes(_) => AXES,
-        Unobservable(_) => OPEN,
-        _ => CONTRADICTED,
-    };
-    refusal(code, error.text(), help)
-}
-
-fn refusal(code: diagnostic::Code, message: Text, help: Text) -> Failure {
-    Failure::Refused(vec![Report {
-        source: None,
-        diagnostics: vec![Diagnostic::error(code, message).help(help)],
-    }])
+    Failure::alone(code, error.text(), help)
 }
 
 /// Judges by rows that the fit did not see; each must stand where the changed machine is known.
 fn held_out(found: &RotaryTables, held: &Rows, base: &Base) -> Result<HeldOut, Failure> {
     let machine = model(&found.description)?;
-    for (row, reading) in held.readings.iter().enumerate() {
+    for (row, reading) in held.read.rows.iter().enumerate() {
         if let Err(error) = machine.rotary_inside(&reading.command) {
             let help = both!(
                 "hold out rows at angles between those that were measured",
@@ -148,10 +126,10 @@ fn held_out(found: &RotaryTables, held: &Rows, base: &Base) -> Result<HeldOut, F
             );
             return Err(held
                 .refuse(row, AXES, error.text(), help.clone())
-                .unwrap_or_else(|| refusal(AXES, error.text(), help)));
+                .unwrap_or_else(|| Failure::alone(AXES, error.text(), help)));
         }
     }
-    if held.readings.len() < 2 * held.runs.len() {
+    if held.read.rows.len() < 2 * held.runs.len() {
         let message = both!(
             "the hold-out has runs of one row: the offset of the run takes all it says",
             "среди отложенных есть серии из одной строки: её целиком забирает сдвиг серии"
@@ -160,9 +138,9 @@ fn held_out(found: &RotaryTables, held: &Rows, base: &Base) -> Result<HeldOut, F
             "hold out several angles of each mounting",
             "откладывайте несколько углов каждой установки шара"
         );
-        return Err(refusal(OPEN, message, help));
+        return Err(Failure::alone(OPEN, message, help));
     }
-    found.held_out(&held.readings, base).map_err(|error| failure("", &[], &error))
+    found.held_out(&held.read.rows, base).map_err(|error| failure("", &[], &error))
 }
 
 fn model(description: &Description) -> Result<RigidBody, Failure> {
@@ -179,7 +157,7 @@ fn model(description: &Description) -> Result<RigidBody, Failure> {
 
 /// Refuses what contradicts what is known of noise or unseen rows; warns where it is doubtful.
 fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> Result<(), Failure> {
-    let doubt = |message: Text, help: Text| warn(messages, Diagnostic::warning(DOUBTFUL, message).help(help));
+    let doubt = |message: Text, help: Text| messages.warn(DOUBTFUL, message, help);
     let sigma_mm = found.estimate.sigma;
     let linear = || {
         both!(
@@ -200,7 +178,7 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
                 "the best machine leaves {times:.1} times what `u_um` states: the rows are of no one machine of this chain",
                 "наилучшая модель оставляет в {times:.1} раза больше, чем указано в `u_um`: строки не от одного станка с этой цепью"
             );
-            return Err(refusal(CONTRADICTED, message, strangers()));
+            return Err(Failure::alone(CONTRADICTED, message, strangers()));
         }
         if times > ROUGH {
             doubt(
@@ -217,7 +195,7 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
             "наилучшая модель оставляет {:.1} мкм: у R-теста такого разброса нет, строки не от одного станка с этой цепью",
             sigma_mm * 1e3
         );
-        return Err(refusal(CONTRADICTED, message, strangers()));
+        return Err(Failure::alone(CONTRADICTED, message, strangers()));
     } else if sigma_mm > SCATTER_MM[1] {
         doubt(
             both!(
@@ -250,7 +228,7 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
             "mount the ball at three places at least, not in one line, at two heights",
             "ставьте шар не меньше чем в трёх местах не на одной прямой, на двух высотах"
         );
-        warn(messages, Diagnostic::warning(UNSAID, message).help(help));
+        messages.warn(UNSAID, message, help);
     }
     let [before, after] = found.rms_mm;
     if found.field_u95_mm > 0.5 * before && before > 2.0 * sigma_mm {
@@ -278,7 +256,7 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
             "mount the ball at three places at least, not in one line",
             "ставьте шар не меньше чем в трёх местах не на одной прямой"
         );
-        return Err(refusal(UNFIT, message, help));
+        return Err(Failure::alone(UNFIT, message, help));
     }
     let Some(judged) = held else { return Ok(()) };
     if judged.rms_after_mm > judged.rms_before_mm && judged.rms_after_mm > ROUGH * sigma_mm {
@@ -293,7 +271,7 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
             "look for rows of another machine or another day; nothing was written",
             "ищите строки другого станка или другого дня; ничего не записано"
         );
-        return Err(refusal(UNFIT, message, help));
+        return Err(Failure::alone(UNFIT, message, help));
     }
     if judged.rms_after_mm > UNSEEN * sigma_mm.max(1e-5) {
         doubt(

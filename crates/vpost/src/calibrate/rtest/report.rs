@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use crate::number::short;
 
+use super::super::sources::span;
 use super::rows::Rows;
 
 const FUNCTIONS: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
@@ -56,7 +57,7 @@ pub(super) fn text(found: &RotaryTables, held: Option<&HeldOut>, rows: &Rows) ->
     let mut out = both!(
         "{} rows in {} runs; noise {:.3} um",
         "строк {} в сериях {}; шум {:.3} мкм",
-        rows.readings.len(),
+        rows.read.rows.len(),
         rows.runs.len(),
         found.estimate.sigma * 1e3
     );
@@ -127,14 +128,11 @@ pub(super) fn text(found: &RotaryTables, held: Option<&HeldOut>, rows: &Rows) ->
         "подгонка: СКЗ {before:.3} -> {after:.3} мкм (отсчётов {})\n",
         found.estimate.residuals.len()
     ));
-    if let Some(judged) = held {
+    if let Some(HeldOut { readings, rms_before_mm, rms_after_mm, max_after_mm, .. }) = held {
+        let [before, after, most] = [rms_before_mm, rms_after_mm, max_after_mm].map(|mm| mm * 1e3);
         out.push(&both!(
-            "held out {:.3} -> {:.3} um RMS, at most {:.3} um ({} readings, each run about its own offset)\n",
-            "контрольные: СКЗ {:.3} -> {:.3} мкм, не больше {:.3} мкм (отсчётов {}, каждая серия относительно своего смещения)\n",
-            judged.rms_before_mm * 1e3,
-            judged.rms_after_mm * 1e3,
-            judged.max_after_mm * 1e3,
-            judged.readings
+            "held out {before:.3} -> {after:.3} um RMS, at most {most:.3} um ({readings} readings, each run about its own offset)\n",
+            "контрольные: СКЗ {before:.3} -> {after:.3} мкм, не больше {most:.3} мкм (отсчётов {readings}, каждая серия относительно своего смещения)\n"
         ));
     }
     let less = if found.not_told_apart.is_empty() {
@@ -172,22 +170,16 @@ fn term_line(own: &FoundTerm) -> Text {
 }
 
 fn functions(table: &WrittenTable) -> Text {
-    let (first, last) = (table.angles_deg[0], table.angles_deg[table.angles_deg.len() - 1]);
+    let (axis, nodes) = (table.axis, table.angles_deg.len());
+    let [first, last] = [table.angles_deg[0], table.angles_deg[nodes - 1]].map(|deg| short(deg, 6));
+    let (um, urad) = (table.between_nodes[0] * 1e3, table.between_nodes[1] * 1e6);
     let mut out = both!(
-        "error functions of {}, written from {} to {} degrees at {} nodes, {:.3} um and {:.3} urad between them\n",
-        "функции погрешностей {}, записаны от {} до {} градусов в узлах ({}), между ними {:.3} мкм и {:.3} мкрад\n",
-        table.axis,
-        short(first, 6),
-        short(last, 6),
-        table.angles_deg.len(),
-        table.between_nodes[0] * 1e3,
-        table.between_nodes[1] * 1e6
+        "error functions of {axis}, written from {first} to {last} degrees at {nodes} nodes, {um:.3} um and {urad:.3} urad between them\n",
+        "функции погрешностей {axis}, записаны от {first} до {last} градусов в узлах ({nodes}), между ними {um:.3} мкм и {urad:.3} мкрад\n"
     );
     for f in (0..6).filter(|f| table.changed[*f]) {
         let (scale, unit) = micro(f < 3);
-        let values = || table.rows.iter().map(|row| row[f] * scale);
-        let (low, high) =
-            (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+        let (low, high) = span(table.rows.iter().map(|row| row[f] * scale));
         let half = table.half_widths_95.iter().map(|row| row[f] * scale).fold(0.0, f64::max);
         let row = format!("  E{}{}   {low:>9.3} … {high:>9.3} ± {half:.3}", FUNCTIONS[f], table.axis);
         out.push(&both!("{row} {unit}\n", "{row} {unit:#}\n"));
@@ -237,7 +229,7 @@ pub(super) fn json(found: &RotaryTables, held: Option<&HeldOut>, rows: &Rows) ->
         .collect();
     let mut out = json!({
         "schema": "vpost.rtest/1",
-        "rows": rows.readings.len(),
+        "rows": rows.read.rows.len(),
         "readings": found.estimate.residuals.len(),
         "noise_um": found.estimate.sigma * 1e3,
         "degrees_of_freedom": freedom,

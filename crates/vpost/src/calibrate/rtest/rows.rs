@@ -1,13 +1,12 @@
 //! Rows of an R-test, or of a probe and a sphere.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use calibration::rtest::BallReading;
-use diagnostic::{Code, Diagnostic, Speaks, Text, both};
+use diagnostic::{Code, Speaks, Text, both};
 use machine_model::{Axis, Command, RigidBody, Vector};
 use machine_profile::Profile;
-use measurement_files::{Row, Sheet};
+use measurement_files::{Row, Sheet, numbered};
 
 use crate::arguments::Shared;
 use crate::calibrate::codes::{AXES, CELL, UNITS, question};
@@ -41,13 +40,9 @@ const SLACK_MM: f64 = 1e-6;
 /// Rows of all files, and where each stands.
 #[derive(Default)]
 pub(super) struct Rows {
-    pub(super) readings: Vec<BallReading>,
+    pub(super) read: sources::Read<BallReading>,
     /// Names of the runs, with the file where there are several.
     pub(super) runs: Vec<String>,
-    sheets: Vec<Sheet>,
-    /// Sheet and row of each reading.
-    places: Vec<(usize, usize)>,
-    temperatures_c: Vec<f64>,
     /// Where an ideal machine would have the tip, workpiece frame, mm.
     nominal_mm: Vec<Vector>,
 }
@@ -63,11 +58,12 @@ impl Rows {
         let mut all = Self::default();
         let said = conditions(&shared.job)?;
         let machine = profile.rigid_body_without_effects();
-        let mut known = BTreeMap::new();
+        let Self { read, runs, nominal_mm } = &mut all;
         for path in files {
             let sheet = sources::sheet(path, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;
             columns(&sheet, arguments.sphere, profile)?;
-            for (line, row) in sheet.rows().enumerate() {
+            let file = sheet.name().to_owned();
+            read.add(sheet, |row| {
                 let mut name = row.text("run").into_owned();
                 if name.is_empty() {
                     let message = both!("the row says no run", "в строке не названа серия");
@@ -75,51 +71,26 @@ impl Rows {
                     return Err(row.refuse(CELL, "run", message, help).into());
                 }
                 if files.len() > 1 {
-                    name = format!("{} {name}", sheet.name());
+                    name = format!("{file} {name}");
                 }
-                let run = *known.entry(name).or_insert_with_key(|name| {
-                    all.runs.push(name.clone());
-                    all.runs.len() - 1
-                });
-                let mut reading = reading(&row, run, arguments.sphere, profile, machine)?;
-                let here = sources::conditions_of(&row, said, arguments.target.temperature)?;
+                let mut reading = reading(row, numbered(runs, &name), arguments.sphere, profile, machine)?;
+                let here = sources::conditions_of(row, said, arguments.target.temperature)?;
                 let by_effects_mm = output.by_effects_mm(&reading.command, &here)?;
                 for (value, by) in reading.deviation_mm.iter_mut().zip(&by_effects_mm) {
                     *value = value.map(|mm| mm - by);
                 }
                 let there = machine.predict(&reading.command);
-                all.nominal_mm.push(there.position_mm - there.error_mm);
-                all.temperatures_c.extend(row.number("temp_c")?);
-                all.places.push((all.sheets.len(), line));
-                all.readings.push(reading);
-            }
-            all.sheets.push(sheet);
+                nominal_mm.push(there.position_mm - there.error_mm);
+                Ok(reading)
+            })?;
         }
-        let stated = all.readings.iter().filter(|r| r.uncertainty_mm.is_some()).count();
-        if stated > 0 && stated < all.readings.len() {
-            return Err(question(
-                both!(
-                    "{stated} of {} rows state their uncertainty, the others do not",
-                    "неопределённость указана в {stated} строках из {}, в остальных нет",
-                    all.readings.len()
-                ),
-                both!(
-                    "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
-                    "заполните столбец u_um во всех строках или пропустите его: `--ignore-column u_um`"
-                ),
-            ));
-        }
+        let stated = all.read.rows.iter().filter(|r| r.uncertainty_mm.is_some()).count();
+        sources::all_state_or_none(stated, all.read.rows.len())?;
         all.turn_as_the_profile_says(profile)?;
         if arguments.sphere {
             all.about_one_place()?;
         }
         Ok(all)
-    }
-
-    /// Mean temperature of the rows that have one, °C.
-    pub(super) fn temperature_c(&self) -> Option<f64> {
-        let count = self.temperatures_c.len();
-        (count > 0).then(|| self.temperatures_c.iter().sum::<f64>() / count as f64)
     }
 
     /// The run in which the ball's place in the workpiece moves farthest by the profile, and how far, mm.
@@ -133,7 +104,7 @@ impl Rows {
     /// The run in which these places, one for each row, are farthest apart, and how far, mm.
     fn farthest(&self, places: &[Vector]) -> Option<(usize, f64)> {
         let spread = |run: usize| {
-            let own = || self.readings.iter().zip(places).filter(|(r, _)| r.run == run).map(|(_, at)| at);
+            let own = || self.read.rows.iter().zip(places).filter(|(r, _)| r.run == run).map(|(_, at)| at);
             let low = own().fold(Vector::repeat(f64::INFINITY), |low, at| low.inf(at));
             (own().fold(Vector::repeat(f64::NEG_INFINITY), |high, at| high.sup(at)) - low).norm()
         };
@@ -155,7 +126,8 @@ impl Rows {
         choices.sort_by_key(Vec::len);
         for turned in choices {
             let places: Vec<Vector> = self
-                .readings
+                .read
+                .rows
                 .iter()
                 .map(|reading| {
                     let mut command = reading.command;
@@ -174,8 +146,7 @@ impl Rows {
 
     /// A refusal at the row of a reading.
     pub(super) fn refuse(&self, reading: usize, code: Code, message: Text, help: Text) -> Option<Failure> {
-        let (sheet, line) = *self.places.get(reading)?;
-        let row = self.sheets.get(sheet)?.row(line)?;
+        let row = self.read.row(reading)?;
         Some(row.refuse_row(code, message, both!("this row", "эта строка"), help).into())
     }
 
@@ -185,11 +156,11 @@ impl Rows {
     fn about_one_place(&mut self) -> Result<(), Failure> {
         let place = |reading: &BallReading| reading.deviation_mm.map(|mm| mm.unwrap_or_default());
         for run in 0..self.runs.len() {
-            let own = || self.readings.iter().filter(|reading| reading.run == run);
+            let own = || self.read.rows.iter().filter(|reading| reading.run == run);
             let count = own().count() as f64;
             let mean = own().map(|r| Vector::from(place(r))).sum::<Vector>() / count;
             let mut far = None;
-            for (k, reading) in self.readings.iter_mut().enumerate().filter(|(_, r)| r.run == run) {
+            for (k, reading) in self.read.rows.iter_mut().enumerate().filter(|(_, r)| r.run == run) {
                 let off = Vector::from(place(reading)) - mean;
                 reading.deviation_mm = [0, 1, 2].map(|i| Some(off[i]));
                 if off.norm() > MOST_MM {
@@ -257,7 +228,7 @@ fn columns(sheet: &Sheet, sphere: bool, profile: &Profile) -> Result<(), Failure
             "give the profile of a machine with A, B or C: an R-test measures its rotary axes",
             "дайте профиль станка с A, B или C: R-тест измеряет его поворотные оси"
         );
-        return Err(Failure::usage(Diagnostic::error(AXES, message).help(help)));
+        return Err(Failure::asks(AXES, message, help));
     }
     let both_ways = |axis: &usize| has[*axis] && profile.description.rotary[*axis].errors_negative.is_some();
     if let Some(axis) = (0..3).find(both_ways) {
@@ -270,7 +241,7 @@ fn columns(sheet: &Sheet, sphere: bool, profile: &Profile) -> Result<(), Failure
             "give a base with one table, the mean of both directions, and `backlash_urad`",
             "дайте профиль с одной таблицей, средней по направлениям, и `backlash_urad`"
         );
-        return Err(Failure::usage(Diagnostic::error(AXES, message).help(help)));
+        return Err(Failure::asks(AXES, message, help));
     }
     if !(0..3).any(|axis| has[axis] && sheet.has(angles[axis])) {
         let wanted: Vec<&str> = (0..3).filter(|axis| has[*axis]).map(|axis| angles[axis]).collect();
@@ -310,7 +281,7 @@ fn other_way(profile: &Profile, turned: &[Axis], [as_said_mm, turned_mm]: [f64; 
     );
     let help =
         both!("write {keys}; the profile says now: {said}", "напишите {keys}; сейчас в профиле: {said:#}");
-    Failure::usage(Diagnostic::error(AXES, message).help(help))
+    Failure::asks(AXES, message, help)
 }
 
 fn reading(

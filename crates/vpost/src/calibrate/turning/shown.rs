@@ -1,17 +1,17 @@
 //! What test pieces of a lathe say, as a page: readings on the curve through them, terms, what cannot be told apart.
 
 use calibration::turning::{Change, Feature, FoundTerm, HeldOut, LEVEL, Term, TurnedReading};
-use diagnostic::{Language, Text, both};
+use diagnostic::{Text, both};
 use machine_model::Unusable;
-use maud::{Markup, html};
+use report::body::{Body, Table};
 use report::chart::{Fitted, Points, fitted};
-use report::page::{Section, figure, table_of};
-use report::text::{Numbers, number, number_of_digits, shown};
+use report::numbers::{digits, figures, number, or_dash};
+use report::page::Page;
+use report::text::opening;
 use serde_json::Value;
 
 use super::super::page::{Facts, Found};
 use super::{Outcome, named, owner};
-use crate::file;
 use crate::turned::judged::{Form, Lead, mm, um};
 
 /// Places of the fitted curve.
@@ -22,7 +22,6 @@ const NOTHING_UM: f64 = 0.1;
 /// What is shown.
 pub(super) struct Pieces<'a> {
     pub(super) of: &'a Outcome<'a>,
-    pub(super) language: Language,
     /// The hold-out got worse, so that nothing was written.
     pub(super) is_refuted: bool,
     curve: Vec<(f64, f64)>,
@@ -50,16 +49,11 @@ impl<'a> Pieces<'a> {
     pub(super) fn new(
         of: &'a Outcome<'a>,
         held: &[TurnedReading],
-        language: Language,
         is_refuted: bool,
     ) -> Result<Self, Unusable> {
         let along = Placing { of };
         let (read, held) = (along.placed(of.rows)?, along.placed(held)?);
-        Ok(Self { of, language, is_refuted, curve: along.curve()?, read, held })
-    }
-
-    fn say(&self, text: &Text) -> String {
-        self.language.prose(text)
+        Ok(Self { of, is_refuted, curve: along.curve()?, read, held })
     }
 
     /// The cone and the barrel that were found, of the curve.
@@ -79,7 +73,7 @@ impl<'a> Pieces<'a> {
                 both!("NOTHING FOUND", "НИЧЕГО НЕ НАЙДЕНО"),
                 both!(
                     "These parts show no taper and no barrel beyond what they scatter, Z {low} to {high}",
-                    "Ни конуса, ни бочки сверх разброса эти образцы не показывают, Z от {low} до {high}"
+                    "Ни конуса, ни бочки сверх разброса эти образцы не показывают, Z от {low:#} до {high:#}"
                 ),
             ),
             Some(form) => {
@@ -88,7 +82,7 @@ impl<'a> Pieces<'a> {
                     form.lead().word(),
                     both!(
                         "A cylinder, Z {low} to {high}, is not turned straight: {says}",
-                        "Цилиндр, Z от {low} до {high}, точится не прямым: {says:#}"
+                        "Цилиндр, Z от {low:#} до {high:#}, точится не прямым: {says:#}"
                     ),
                 )
             }
@@ -100,12 +94,12 @@ impl<'a> Pieces<'a> {
         let [before, after] = self.of.found.rms_mm.map(|mm| um(mm * 1e3));
         let mut text = both!(
             "With what was found in the profile the diameters lie {after} \u{b5}m from the curve where they lay {before} \u{b5}m (RMS).",
-            "С найденным в профиле диаметры отходят от кривой на {after} мкм вместо {before} мкм (среднеквадратичное)."
+            "С найденным в профиле диаметры отходят от кривой на {after:#} мкм вместо {before:#} мкм (среднеквадратичное)."
         );
         match self.of.holdout {
             Some(HeldOut { rows, rms_before_mm, rms_after_mm, max_after_mm }) => text.push(&both!(
                 " Held-out diameters prove it: {rows} of them, {} \u{2192} {} \u{b5}m, at most {} \u{b5}m.",
-                " Контрольные диаметры ({rows}): {} \u{2192} {} мкм, не больше {} мкм.",
+                " Контрольные диаметры ({rows}): {:#} \u{2192} {:#} мкм, не больше {:#} мкм.",
                 um(rms_before_mm * 1e3),
                 um(rms_after_mm * 1e3),
                 um(max_after_mm * 1e3)
@@ -118,193 +112,131 @@ impl<'a> Pieces<'a> {
         text
     }
 
-    fn not_told_apart(&self) -> Vec<Text> {
-        let pairs = &self.of.found.not_told_apart;
-        let one = |[a, b]: &[Text; 2]| {
-            let what_to_do = match (a.english(), b.english()) {
-                ("growth", "wear") | ("wear", "growth") if !self.of.timed => {
-                    both!(": add the column time_s", ": добавьте столбец time_s")
-                }
-                ("growth", "wear") | ("wear", "growth") => both!(
-                    ": measure a second part with a new edge while warm, or cut the first size again when warm",
-                    ": измерьте вторую деталь с новой кромкой на тёплом станке или снова проточите первый размер на тёплом"
-                ),
-                (_, "what else differs from part to part") => {
-                    both!(": measure a further part", ": измерьте ещё одну деталь")
-                }
-                _ => Text::EMPTY,
-            };
-            both!(
-                "These parts cannot tell apart {a} and {b}{what_to_do}",
-                "По этим образцам не различить {a:#} и {b:#}{what_to_do:#}"
-            )
-        };
-        pairs.iter().map(one).collect()
-    }
-
-    fn drawing(&self) -> Markup {
+    fn drawing(&self, out: &mut Body) {
         let series = |series: usize, placed: &[Placed], name: Text| {
             let at = placed.iter().map(|p| (p.z_mm, p.placed_um)).collect();
-            (Points { series, at }, self.say(&name))
+            (Points { series, at }, name)
         };
         let mut points = vec![series(0, &self.read, both!("measured", "измерено"))];
         if !self.held.is_empty() {
             points.push(series(1, &self.held, both!("held out", "контрольные")));
         }
         let drawn = Fitted {
-            label: self.say(&both!("machine Z, mm; diameter, \u{b5}m", "Z станка, мм; диаметр, мкм")),
+            label: both!("machine Z, mm; diameter, \u{b5}m", "Z станка, мм; диаметр, мкм"),
             points,
-            curve: (self.curve.clone(), self.say(&both!("fitted", "подобранная кривая"))),
+            curve: (self.curve.clone(), both!("fitted", "подобранная кривая")),
         };
-        let described = self.say(&both!(
-            "{} diameters, {} held out; they scatter by {} \u{b5}m",
-            "диаметров {}, контрольных {}; разброс {} мкм",
-            self.read.len(),
-            self.held.len(),
-            um(self.of.found.noise_mm * 1e3)
-        ));
+        let (read, held, noise) = (self.read.len(), self.held.len(), um(self.of.found.noise_mm * 1e3));
+        let described = both!(
+            "{read} diameters, {held} held out; they scatter by {noise} \u{b5}m",
+            "диаметров {read}, контрольных {held}; разброс {noise:#} мкм"
+        );
         let caption = both!(
             "Measured minus commanded diameter less what the base profile predicts, each part laid onto the curve by its own size, which is the tool's and not the profile's; growth with time is taken off. 95 % of the curve's places are known within \u{b1} {} \u{b5}m on the radius.",
-            "Измеренный минус заданный диаметр за вычетом предсказания исходного профиля; каждая деталь положена на кривую по своему размеру: он от инструмента, а не от профиля; рост со временем снят. 95 % мест кривой известны в пределах \u{b1} {} мкм по радиусу.",
+            "Измеренный минус заданный диаметр за вычетом предсказания исходного профиля; каждая деталь положена на кривую по своему размеру: он от инструмента, а не от профиля; рост со временем снят. 95 % мест кривой известны в пределах \u{b1} {:#} мкм по радиусу.",
             um(self.of.found.field_u95_mm * 1e3)
         );
-        let title = self.say(&both!("Diameters along Z", "Диаметры вдоль Z"));
-        let drawing = fitted(self.language, &title, &described, &drawn);
-        figure(self.language, &drawing, &self.say(&caption), Some(self.readings()))
+        let read = self.read.iter().map(|placed| (placed, Text::EMPTY));
+        let held = self.held.iter().map(|placed| (placed, both!("held out", "контрольный")));
+        let readings = Table::of(read.chain(held))
+            .words(both!("part", "деталь"), |(placed, _)| Text::same(&placed.part))
+            .numbers(both!("Z, mm", "Z, мм"), |(placed, _)| mm(placed.z_mm))
+            .numbers(both!("read, \u{b5}m", "отсчёт, мкм"), |(placed, _)| um(placed.read_um))
+            .numbers(both!("on the curve's scale", "на шкале кривой"), |(placed, _)| {
+                um(placed.placed_um)
+            })
+            .numbers(both!("from the curve", "от кривой"), |(placed, _)| um(placed.left_um))
+            .words(Text::EMPTY, |(_, which)| which.clone());
+        let title = both!("Diameters along Z", "Диаметры вдоль Z");
+        out.figure_of(&fitted(out.language(), &title, &described, &drawn), &caption, &readings);
     }
 
-    fn readings(&self) -> Markup {
-        let held = self.say(&both!("held out", "контрольный"));
-        let row = |(placed, which): (&Placed, &str)| {
-            vec![
-                placed.part.clone(),
-                mm(placed.z_mm),
-                um(placed.read_um),
-                um(placed.placed_um),
-                um(placed.left_um),
-                which.to_owned(),
-            ]
-        };
-        let read = self.read.iter().map(|placed| (placed, ""));
-        let rows: Vec<Vec<String>> =
-            read.chain(self.held.iter().map(|placed| (placed, held.as_str()))).map(row).collect();
-        let header = [
-            both!("part", "деталь"),
-            both!("Z, mm", "Z, мм"),
-            both!("read, \u{b5}m", "отсчёт, мкм"),
-            both!("on the curve's scale", "на шкале кривой"),
-            both!("from the curve", "от кривой"),
-            Text::EMPTY,
-        ];
-        table_of(self.language, &header, &[1, 2, 3, 4], &rows)
-    }
-
-    fn terms(&self) -> Markup {
+    fn terms(&self, out: &mut Body) {
         let found = self.of.found;
-        let row = |own: &FoundTerm| {
-            let (name, before, scale) = named(own.term, self.of.base);
-            let said = match (own.is_significant, own.term.is_geometry()) {
-                (false, _) => both!("not significant, not written", "незначимо, не записано"),
-                (true, true) if self.is_refuted => both!("refuted, not written", "опровергнуто, не записано"),
-                (true, true) => both!("for the profile", "в профиль"),
-                (true, false) => both!("in the report only", "только в отчёте"),
-            };
-            vec![
-                self.say(&own.term.words()),
-                name.to_owned(),
-                number_of_digits((before + own.value) * scale, 3),
-                number_of_digits(own.u.half_width_95() * scale, 3),
-                match own.u.freedom.is_finite() {
-                    true => crate::number::short(own.u.freedom, 1),
-                    false => "\u{221e}".to_owned(),
-                },
-                if own.f.is_finite() { number(own.f) } else { "\u{221e}".to_owned() },
-                self.say(&said),
-            ]
+        let said = |own: &FoundTerm| match (own.is_significant, own.term.is_geometry()) {
+            (false, _) => both!("not significant, not written", "незначимо, не записано"),
+            (true, true) if self.is_refuted => both!("refuted, not written", "опровергнуто, не записано"),
+            (true, true) => both!("for the profile", "в профиль"),
+            (true, false) => both!("in the report only", "только в отчёте"),
         };
-        let rows: Vec<Vec<String>> = found.terms.iter().chain(&found.not_there).map(row).collect();
-        let header = [
-            both!("term", "составляющая"),
-            both!("name", "имя"),
-            both!("value", "значение"),
-            both!("\u{b1} 95 %", "\u{b1} 95 %"),
-            both!("degrees of freedom", "степеней свободы"),
-            Text::same("F"),
-            Text::EMPTY,
-        ];
-        let pairs = self.not_told_apart();
-        html! {
-            (table_of(self.language, &header, &[2, 3, 4, 5], &rows))
-            p.muted { (self.say(&both!(
-                "Values in the unit of the name, the base included. Written is what an F test at {} % shows.",
-                "Значения в единице имени, вместе с исходным профилем. Записывается то, что значимо по критерию Фишера на уровне {} %.",
-                number(LEVEL * 100.0)
-            ))) }
-            @if found.terms.len() > 1 {
-                h3 { (self.say(&both!("Correlation and covariance", "Корреляция и ковариация"))) }
-                (self.covariance())
-            }
-            h3 { (self.say(&both!("What cannot be told apart", "Что не различить"))) }
-            @if pairs.is_empty() {
-                p { (self.say(&both!("Nothing that was looked for.", "Ничего из того, что искалось."))) }
-            } @else {
-                ul { @for pair in &pairs { li { (self.say(pair)) } } }
-            }
+        let finite = |value: f64, said: Text| if value.is_finite() { said } else { Text::same("\u{221e}") };
+        let rows = found.terms.iter().chain(&found.not_there).map(|own| (own, named(own.term, self.of.base)));
+        let table = Table::of(rows)
+            .words(both!("term", "составляющая"), |(own, _)| own.term.words())
+            .words(both!("name", "имя"), |(_, (name, ..))| Text::same(*name))
+            .numbers(both!("value", "значение"), |(own, (_, before, scale))| {
+                digits((before + own.value) * scale, 3)
+            })
+            .numbers(Text::same("\u{b1} 95 %"), |(own, (.., scale))| digits(own.u.half_width_95() * scale, 3))
+            .numbers(both!("degrees of freedom", "степеней свободы"), |(own, _)| {
+                finite(own.u.freedom, figures(crate::number::short(own.u.freedom, 1)))
+            })
+            .numbers(Text::same("F"), |(own, _)| finite(own.f, number(own.f)))
+            .words(Text::EMPTY, |(own, _)| said(own));
+        out.table(&table);
+        out.muted(&both!(
+            "Values in the unit of the name, the base included. Written is what an F test at {} % shows.",
+            "Значения в единице имени, вместе с исходным профилем. Записывается то, что значимо по критерию Фишера на уровне {:#} %.",
+            number(LEVEL * 100.0)
+        ));
+        if found.terms.len() > 1 {
+            out.heading(&both!("Correlation and covariance", "Корреляция и ковариация"));
+            self.covariance(out);
+        }
+        out.heading(&both!("What cannot be told apart", "Что не различить"));
+        let open: Vec<Text> = self.of.not_told_apart().iter().map(opening).collect();
+        if open.is_empty() {
+            out.p(&both!("Nothing that was looked for.", "Ничего из того, что искалось."));
+        } else {
+            out.list(&open);
         }
     }
 
     /// Above the diagonal correlations, on and below it covariances in the units of the names.
-    fn covariance(&self) -> Markup {
+    fn covariance(&self, out: &mut Body) {
         let found = self.of.found;
         let scales: Vec<f64> = found.terms.iter().map(|own| named(own.term, self.of.base).2).collect();
         let at = |i: usize, k: usize| found.covariance[(i, k)];
         let cell = |i: usize, k: usize| {
             if k <= i {
-                return format!("{:.3e}", at(i, k) * scales[i] * scales[k]).replacen('-', "\u{2212}", 1);
+                let value = format!("{:.3e}", at(i, k) * scales[i] * scales[k]);
+                return figures(value.replacen('-', "\u{2212}", 1));
             }
             let both = (at(i, i) * at(k, k)).sqrt();
-            if both > 0.0 { number_of_digits(at(i, k) / both, 2) } else { "\u{2014}".to_owned() }
+            or_dash((both > 0.0).then(|| at(i, k) / both), |correlation| digits(correlation, 2))
         };
-        let name = |own: &FoundTerm| own.term.words();
-        let mut header = vec![Text::EMPTY];
-        header.extend(found.terms.iter().map(name));
-        let rows: Vec<Vec<String>> = (0..scales.len())
-            .map(|i| {
-                let cells = (0..scales.len()).map(|k| cell(i, k));
-                std::iter::once(self.say(&name(&found.terms[i]))).chain(cells).collect()
-            })
-            .collect();
-        let numbers: Vec<usize> = (1..header.len()).collect();
-        html! {
-            (table_of(self.language, &header, &numbers, &rows))
-            p.muted { (self.say(&both!(
-                "Above the diagonal correlations, on it and below covariances.",
-                "Над диагональю — корреляции, на ней и под ней — ковариации."
-            ))) }
+        let mut table = Table::of(0..scales.len()).words(Text::EMPTY, |i| found.terms[*i].term.words());
+        for (k, own) in found.terms.iter().enumerate() {
+            table = table.numbers(own.term.words(), |i| cell(*i, k));
         }
+        out.table(&table);
+        out.muted(&both!(
+            "Above the diagonal correlations, on it and below covariances.",
+            "Над диагональю — корреляции, на ней и под ней — ковариации."
+        ));
     }
 
-    fn sizes(&self) -> Markup {
+    fn sizes(&self, out: &mut Body) {
         let found = self.of.found;
-        let row = |own: &calibration::turning::Offset| {
-            vec![
-                owner(own, self.of.parts),
-                number_of_digits(own.radius_mm * 1e3, 2),
-                own.u.map_or_else(|| "\u{2014}".to_owned(), |u| number_of_digits(u.half_width_95() * 1e3, 2)),
-                number_of_digits(-2.0 * own.radius_mm, 4),
-            ]
-        };
-        let rows: Vec<Vec<String>> = found.offsets.iter().map(row).collect();
-        let header = [
-            both!("tool or part", "инструмент или деталь"),
-            both!("on the radius, \u{b5}m", "по радиусу, мкм"),
-            Text::same("\u{b1} 95 %"),
-            both!("wear of X to enter, mm on the diameter", "ввести износ X, мм по диаметру"),
-        ];
+        let table = Table::of(&found.offsets)
+            .words(both!("tool or part", "инструмент или деталь"), |own| {
+                Text::same(owner(own, self.of.names))
+            })
+            .numbers(both!("on the radius, \u{b5}m", "по радиусу, мкм"), |own| {
+                digits(own.radius_mm * 1e3, 2)
+            })
+            .numbers(Text::same("\u{b1} 95 %"), |own| {
+                or_dash(own.u.map(|u| u.half_width_95() * 1e3), |half| digits(half, 2))
+            })
+            .numbers(
+                both!("wear of X to enter, mm on the diameter", "ввести износ X, мм по диаметру"),
+                |own| digits(-2.0 * own.radius_mm, 4),
+            );
+        out.table(&table);
         let scatter = match found.shared_mm {
             Some(shared_mm) => both!(
                 "Parts differ by {} \u{b5}m beyond the scatter of single diameters (standard deviation).",
-                "Детали отличаются на {} мкм сверх разброса отдельных диаметров (среднеквадратичное отклонение).",
+                "Детали отличаются на {:#} мкм сверх разброса отдельных диаметров (среднеквадратичное отклонение).",
                 um(shared_mm * 1e3)
             ),
             None => both!(
@@ -312,13 +244,10 @@ impl<'a> Pieces<'a> {
                 "Образцов слишком мало, чтобы сказать, насколько они отличаются."
             ),
         };
-        html! {
-            (table_of(self.language, &header, &[1, 2, 3], &rows))
-            p.muted { (self.say(&both!(
-                "The size of a tool is no geometry: enter it at the control, with the profile that was written in use.",
-                "Размер инструмента — не геометрия: введите его на стойке, когда записанный профиль в работе."
-            ))) " " (self.say(&scatter)) }
-        }
+        out.muted(&both!(
+            "The size of a tool is no geometry: enter it at the control, with the profile that was written in use. {scatter}",
+            "Размер инструмента — не геометрия: введите его на стойке, когда записанный профиль в работе. {scatter:#}"
+        ));
     }
 }
 
@@ -384,7 +313,7 @@ impl Placing<'_> {
             }
             let left_um = left[k] - of_part.iter().sum::<f64>() / of_part.len() as f64;
             out.push(Placed {
-                part: self.of.parts.parts[row.part].clone(),
+                part: self.of.names.parts[row.part].clone(),
                 z_mm: z_mm(row),
                 read_um: row.deviation_mm * 1e3,
                 placed_um: fitted_um(row) + left_um,
@@ -406,58 +335,39 @@ fn between(curve: &[(f64, f64)], z_mm: f64) -> f64 {
 }
 
 impl Found for Pieces<'_> {
-    fn title(&self, _: Language) -> String {
-        self.say(&both!("Test pieces", "Образцы токарного станка"))
+    fn title(&self) -> Text {
+        both!("Test pieces", "Образцы токарного станка")
     }
 
-    fn head(&self, facts: &Facts, _: Language) -> Markup {
+    fn head(&self, out: &mut Body, facts: &Facts) {
         let (word, wrong) = self.wrong();
-        let files = facts.names();
-        html! {
-            p.muted { (self.say(&both!("Test pieces: {}", "Образцы: {}", shown(&files)))) }
-            p { span.verdict { (self.say(&if self.is_refuted { both!("REFUTED", "ОПРОВЕРГНУТО") } else { word })) } }
-            h1 { (self.say(&wrong)) }
-            @if self.is_refuted {
-                p { (self.say(&both!(
-                    "Held-out diameters get worse by it: look for a sign, or for parts of another machine or clamping. Nothing was written.",
-                    "Контрольные диаметры от этого становятся хуже: ищите ошибку в знаке или детали другого станка или установки. Ничего не записано."
-                ))) }
-            }
-            p { (self.say(&self.gain())) }
-            @if self.form().is_some_and(|form| form.lead() == Lead::Cone) {
-                p { (self.say(&both!(
-                    "A cone is a leaning axis: align headstock or tailstock, or let the profile correct it.",
-                    "Конус — это наклон оси: выставьте переднюю или заднюю бабку либо исправляйте профилем."
-                ))) }
-            }
-            @for pair in self.not_told_apart() { p { (self.say(&pair)) "." } }
-            @match (&facts.written, self.is_refuted) {
-                (_, true) => {}
-                (Some(path), false) => p { (self.say(&both!("Written to {}.", "Записано в {}.", shown(&file::name(path))))) }
-                (None, false) => p.muted { (self.say(&both!(
-                    "No profile was written: add -o PROFILE.toml to correct by these parts.",
-                    "Профиль не записан: добавьте -o PROFILE.toml, чтобы исправлять по этим образцам."
-                ))) }
-            }
+        out.muted(&both!("Test pieces: {}", "Образцы: {}", facts.names()));
+        out.verdict(&if self.is_refuted { both!("REFUTED", "ОПРОВЕРГНУТО") } else { word }, &wrong);
+        if self.is_refuted {
+            out.p(&both!(
+                "Held-out diameters get worse by it: look for a sign, or for parts of another machine or clamping. Nothing was written.",
+                "Контрольные диаметры от этого становятся хуже: ищите ошибку в знаке или детали другого станка или установки. Ничего не записано."
+            ));
+        }
+        out.p(&self.gain());
+        if self.form().is_some_and(|form| form.lead() == Lead::Cone) {
+            out.p(&both!(
+                "A cone is a leaning axis: align headstock or tailstock, or let the profile correct it.",
+                "Конус — это наклон оси: выставьте переднюю или заднюю бабку либо исправляйте профилем."
+            ));
+        }
+        for open in self.of.not_told_apart().iter().map(opening) {
+            out.p(&both!("{open}.", "{open:#}."));
+        }
+        if !self.is_refuted {
+            facts.say_written(out);
         }
     }
 
-    fn sections(&self, _: Language) -> Vec<Section> {
-        vec![
-            Section {
-                id: "diameters",
-                title: Text::pair("Diameters along Z", "Диаметры вдоль Z"),
-                body: self.drawing(),
-            },
-            Section {
-                id: "terms", title: Text::pair("What was found", "Что найдено"), body: self.terms()
-            },
-            Section {
-                id: "sizes",
-                title: Text::pair("Sizes of the tools", "Размеры инструментов"),
-                body: self.sizes(),
-            },
-        ]
+    fn sections(&self, page: &mut Page) {
+        self.drawing(page.section("diameters", both!("Diameters along Z", "Диаметры вдоль Z")));
+        self.terms(page.section("terms", both!("What was found", "Что найдено")));
+        self.sizes(page.section("sizes", both!("Sizes of the tools", "Размеры инструментов")));
     }
 
     fn json(&self) -> Value {

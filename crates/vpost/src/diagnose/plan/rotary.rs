@@ -126,13 +126,7 @@ fn line(profile: &Profile, swing: &Swing, tool_mm: Vector) -> Option<Line> {
     let model = profile.rigid_body_without_effects();
     let follow = |target: &Vector, rotary_deg: [f64; 3]| {
         let rotary_rad = Vector::from(rotary_deg.map(f64::to_radians));
-        let state = Command {
-            linear_mm: Vector::zeros(),
-            rotary_rad,
-            tool_mm,
-            direction: [0; 3],
-            ..Default::default()
-        };
+        let state = Command { rotary_rad, tool_mm, ..Command::default() };
         model.same_tip_mm(target, &state, &Vector::zeros())
     };
     let all_deg: Vec<[f64; 3]> = swing

@@ -3,31 +3,31 @@
 use diagnostic::{Language, Text};
 use gap_diagnosis::effect_name;
 use machine_model::effects::EffectKind;
-use maud::{Markup, html};
-use report::text::{Numbers, opening, shown};
+use maud::html;
+use report::body::Body;
+use report::numbers::prose as said;
+use report::text::{opening, shown};
 
 /// The name of an effect; of what the library does not know, its id.
-pub(super) fn named(id: &str, language: Language) -> String {
-    id.parse::<EffectKind>()
-        .map_or_else(|_| id.to_owned(), |kind| effect_name(&kind).in_language(language).to_owned())
+pub(super) fn named(id: &str) -> Text {
+    id.parse::<EffectKind>().map_or_else(|_| Text::same(id), |kind| effect_name(&kind))
 }
 
 /// The heading of a cause: its name, and the id that is typed where that is another.
-pub(in crate::diagnose) fn cause_heading(name: &str, id: &str) -> Markup {
-    html! {
-        h3 { @if name == id { (shown(id)) } @else { (opening(name)) " " code.muted { (shown(id)) } } }
-    }
+pub(in crate::diagnose) fn cause_heading(out: &mut Body, name: &Text, id: &str) {
+    let is_known = name.in_language(out.language()) != id;
+    let opened = opening(name);
+    let name = if is_known { opened.in_language(out.language()) } else { id };
+    out.add(&html! { h3 { (shown(name)) @if is_known { " " code.muted { (shown(id)) } } } });
 }
 
-/// [`Numbers::prose`] in which effects stand by their names, as quotations: those are not declined.
-pub(super) fn prose(text: &Text, language: Language) -> String {
-    in_words(&language.prose(text), language)
+/// [`said`] in which effects stand by their names, as quotations: those are not declined.
+pub(super) fn prose(text: &Text) -> Text {
+    let said = said(text);
+    Text::new(said.english().to_owned(), in_words(said.in_language(Language::Russian)))
 }
 
-fn in_words(text: &str, language: Language) -> String {
-    if language == Language::English {
-        return text.to_owned();
-    }
+fn in_words(text: &str) -> String {
     let is_of_id = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '.');
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
@@ -36,7 +36,8 @@ fn in_words(text: &str, language: Language) -> String {
         let (before, word) = (&rest[..start], &rest[start..start + length]);
         // The full stop of a sentence is none of an id.
         let id = word.trim_end_matches('.');
-        let name = named(id, language);
+        let name = named(id);
+        let name = name.in_language(Language::Russian);
         out.push_str(before);
         if name == id {
             out.push_str(word)
@@ -56,7 +57,6 @@ mod tests {
     fn ids_in_a_sentence_become_names() {
         let said = "объясняет squareness.XY, scale.X, остаётся 12.3 мкм; не отличить от angular.ECX. Файл scale.Xs, -1.5";
         let named = "объясняет «перпендикулярность XY», «масштаб X», остаётся 12.3 мкм; не отличить от «угол ECX». Файл scale.Xs, -1.5";
-        assert_eq!(in_words(said, Language::Russian), named);
-        assert_eq!(in_words(said, Language::English), said);
+        assert_eq!(in_words(said), named);
     }
 }

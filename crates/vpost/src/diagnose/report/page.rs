@@ -1,10 +1,10 @@
 //! The diagnosis as one page, in the order in which people ask: what, how much, where, how sure, what next, from what.
 
-use diagnostic::{Language, Text, say};
+use diagnostic::{Language, Text, both};
 use gap_diagnosis::{Diagnosis, Measurements, Verdict};
-use maud::{Markup, html};
-use report::page::{Page, Section};
-use report::text::{Numbers, shown};
+use report::body::Body;
+use report::numbers::{count, number, percent, prose as said};
+use report::page::Page;
 
 use super::facts::Facts;
 use super::names::prose;
@@ -33,159 +33,100 @@ pub(in crate::diagnose) struct Report<'a> {
 impl Report<'_> {
     /// The page.
     pub(in crate::diagnose) fn html(&self) -> String {
-        let (d, language) = (self.diagnosis, self.language);
-        let rows = Rows::new(d, self.data);
-        let sections = [
-            Some(Section {
-                id: "waterfall",
-                title: Text::pair("How the gap shrinks", "Как уменьшается расхождение"),
-                body: causes::waterfall(d, language),
-            }),
-            Some(Section {
-                id: "causes",
-                title: Text::pair("Causes", "Причины"),
-                body: causes::causes(d, self.changes, language),
-            }),
-            Some(Section {
-                id: "where",
-                title: Text::pair("Where the gap lies", "Где расхождение"),
-                body: causes::places(d, language),
-            }),
-            pictures::strips(d, self.data, &rows, language).map(|body| Section {
-                id: "strips",
-                title: Text::pair(
-                    "The gap over place, time and conditions",
-                    "Расхождение по месту, времени и условиям",
-                ),
-                body,
-            }),
-            pictures::vectors(d, self.data, &rows, language).map(|body| Section {
-                id: "vectors",
-                title: Text::pair("Error vectors", "Векторы погрешности"),
-                body,
-            }),
-            pictures::heat(d, self.data, &rows, language).map(|body| Section {
-                id: "slices",
-                title: Text::pair("Slices through the machine", "Сечения рабочего объёма"),
-                body,
-            }),
-            pictures::distribution(d, &rows, self.facts.tolerance_um, language).map(|body| Section {
-                id: "distribution",
-                title: Text::pair("Before and after", "До и после"),
-                body,
-            }),
-            Some(Section {
-                id: "confounding",
-                title: Text::pair("What looks alike", "Что похоже друг на друга"),
-                body: causes::confounding(d, language),
-            }),
-            Some(Section {
-                id: "unseen",
-                title: Text::pair("Predicted and achieved", "Прогноз и результат"),
-                body: unseen::unseen(d, self.holdout, self.facts, language),
-            }),
-            Some(Section {
-                id: "next",
-                title: Text::pair("What to measure next", "Что измерить дальше"),
-                body: causes::next(d, language),
-            }),
-            Some(Section {
-                id: "outliers",
-                title: Text::pair("Rows left out", "Отброшенные строки"),
-                body: causes::outliers(d, language),
-            }),
-            Some(Section {
-                id: "provenance",
-                title: Text::pair("Where this comes from", "Откуда эти данные"),
-                body: provenance::body(d, self.facts, language),
-            }),
-        ];
+        let (d, data) = (self.diagnosis, self.data);
+        let (verdict, machine) = (d.verdict.words(), &self.facts.machine);
+        let title = both!("{verdict} \u{2013} {machine}", "{verdict:#} \u{2014} {machine}");
+        let mut page = Page::new(self.language, title, "diagnose", "vpost.diagnosis/1");
+        head(&mut page.head, d, self.facts);
         // Where too little was measured there is nothing to draw.
-        let drawn = d.verdict != Verdict::Underpowered || !d.residuals.is_empty();
-        let kept = |s: &Section| drawn || matches!(s.id, "next" | "provenance");
-        Page {
-            language,
-            title: &say!(
-                language,
-                "{verdict} \u{2013} {}",
-                "{verdict:#} \u{2014} {}",
-                self.facts.machine,
-                verdict = d.verdict.words()
-            ),
-            head: head(d, self.facts, language),
-            sections: sections.into_iter().flatten().filter(kept).collect(),
-            json: self.json,
-            command: "diagnose",
-            schema: "vpost.diagnosis/1",
+        let is_drawn = d.verdict != Verdict::Underpowered || !d.residuals.is_empty();
+        if is_drawn {
+            let rows = Rows::new(d, data);
+            let shrinks = both!("How the gap shrinks", "Как уменьшается расхождение");
+            causes::waterfall(page.section("waterfall", shrinks), d);
+            causes::causes(page.section("causes", both!("Causes", "Причины")), d, self.changes);
+            causes::places(page.section("where", both!("Where the gap lies", "Где расхождение")), d);
+            let over =
+                both!("The gap over place, time and conditions", "Расхождение по месту, времени и условиям");
+            pictures::strips(page.section("strips", over), d, data, &rows);
+            let vectors = both!("Error vectors", "Векторы погрешности");
+            pictures::vectors(page.section("vectors", vectors), d, data, &rows);
+            let slices = both!("Slices through the machine", "Сечения рабочего объёма");
+            pictures::heat(page.section("slices", slices), d, data, &rows);
+            let before_after = page.section("distribution", both!("Before and after", "До и после"));
+            pictures::distribution(before_after, d, &rows, self.facts.tolerance_um);
+            let alike = both!("What looks alike", "Что похоже друг на друга");
+            causes::confounding(page.section("confounding", alike), d);
+            let unseen = page.section("unseen", both!("Predicted and achieved", "Прогноз и результат"));
+            unseen::unseen(unseen, d, self.holdout, self.facts);
         }
-        .into_html()
+        causes::next(page.section("next", both!("What to measure next", "Что измерить дальше")), d);
+        if is_drawn {
+            causes::outliers(page.section("outliers", both!("Rows left out", "Отброшенные строки")), d);
+        }
+        provenance::more(page.provenance(provenance::facts(self.facts)), d);
+        page.into_html(self.json)
     }
 }
 
-fn head(d: &Diagnosis, facts: &Facts, language: Language) -> Markup {
-    let g = &d.gap;
-    let [rms, p95, largest, noise] = [g.rms_um, g.p95_um, g.max_um, g.noise_um].map(|um| language.number(um));
-    let rows = language.count(g.rows);
-    html! {
-        p.muted { (say!(language, "Simulation against reality: ", "Модель и действительность: ")) (shown(&facts.machine)) ", " (shown(&facts.measurements.name)) }
-        p { span.verdict { (d.verdict.words().in_language(language)) } }
-        h1 { (shown(&prose(&d.sentence, language))) }
-        @if let Some(words) = in_words(d, language) { p { (shown(&words)) } }
-        p { (meaning(d.verdict).in_language(language)) }
-        @if g.rms_um > 0.0 {
-            p.muted {
-                (say!(
-                    language,
-                    "{rms} \u{b5}m RMS, 95 % below {p95} \u{b5}m, largest {largest} \u{b5}m, noise of a reading {noise} \u{b5}m, {rows} rows.",
-                    "СКЗ {rms} мкм, 95 % ниже {p95} мкм, наибольшее {largest} мкм, шум отсчёта {noise} мкм, строк {rows}."
-                ))
-            }
-        }
-        @if let Some(gain) = gain(d, language) { p { (gain) } }
-        (facts.origin.line(language))
+fn head(out: &mut Body, d: &Diagnosis, facts: &Facts) {
+    let (machine, file) = (&facts.machine, &facts.measurements.name);
+    out.muted(&both!(
+        "Simulation against reality: {machine}, {file}",
+        "Модель и действительность: {machine}, {file}"
+    ));
+    out.verdict(&d.verdict.words(), &prose(&d.sentence));
+    if let Some(words) = in_words(d) {
+        out.p(&words);
     }
+    out.p(&meaning(d.verdict));
+    let g = &d.gap;
+    if g.rms_um > 0.0 {
+        let [rms, p95, largest, noise] = [g.rms_um, g.p95_um, g.max_um, g.noise_um].map(number);
+        let rows = count(g.rows);
+        out.muted(&both!(
+            "{rms} \u{b5}m RMS, 95 % below {p95} \u{b5}m, largest {largest} \u{b5}m, noise of a reading {noise} \u{b5}m, {rows} rows.",
+            "СКЗ {rms:#} мкм, 95 % ниже {p95:#} мкм, наибольшее {largest:#} мкм, шум отсчёта {noise:#} мкм, строк {rows:#}."
+        ));
+    }
+    if let Some(gain) = gain(d) {
+        out.p(&gain);
+    }
+    out.muted(&facts.origin.said());
 }
 
 /// Causes that are said in words on the first screen.
 const IN_WORDS: usize = 3;
 
 /// The largest causes in words.
-fn in_words(d: &Diagnosis, language: Language) -> Option<String> {
-    let said: Vec<String> = d.causes.iter().take(IN_WORDS).map(|c| language.prose(&c.words)).collect();
-    let (said, more) = (said.join("; "), d.causes.len().saturating_sub(IN_WORDS));
+fn in_words(d: &Diagnosis) -> Option<Text> {
+    let words: Vec<Text> = d.causes.iter().take(IN_WORDS).map(|c| said(&c.words)).collect();
+    let (words, more) = (Text::join(&words, "; "), d.causes.len().saturating_sub(IN_WORDS));
     match (d.causes.len(), more) {
         (0, _) => None,
-        (_, 0) => Some(format!("{said}.")),
-        _ => Some(say!(language, "{said}; {more} more below.", "{said}; ещё причин ниже: {more}.")),
+        (_, 0) => Some(both!("{words}.", "{words:#}.")),
+        _ => Some(both!("{words}; {more} more below.", "{words:#}; ещё причин ниже: {more}.")),
     }
 }
 
 /// What a correction by the causes will bring, and what unseen rows say of it.
-fn gain(d: &Diagnosis, language: Language) -> Option<String> {
+fn gain(d: &Diagnosis) -> Option<Text> {
     let s = d.causes.last()?.shrink_predicted;
-    let [low, mid, high] = [s.low, s.mid, s.high].map(|share| language.percent(share));
-    let mut said = say!(
-        language,
-        "With the causes in the profile the gap is forecast to shrink by {mid} ({low} to {high}).",
-        "С причинами в профиле расхождение, по прогнозу, уменьшится на {mid} (от {low} до {high})."
-    );
-    said.push(' ');
-    match &d.holdout {
+    let [low, mid, high] = [s.low, s.mid, s.high].map(percent);
+    let proof = match &d.holdout {
         Some(held) => {
-            let kept = language.percent(held.shrink);
-            said.push_str(&say!(
-                language,
-                "On unseen rows it shrank by {kept}.",
-                "На новых строках оно уменьшилось на {kept}."
-            ));
+            let kept = percent(held.shrink);
+            both!("On unseen rows it shrank by {kept}.", "На новых строках оно уменьшилось на {kept:#}.")
         }
-        None => said.push_str(&say!(
-            language,
+        None => both!(
             "No unseen rows prove it: add --holdout FILE.",
             "Новыми строками это не проверено: добавьте --holdout FILE."
-        )),
-    }
-    Some(said)
+        ),
+    };
+    Some(both!(
+        "With the causes in the profile the gap is forecast to shrink by {mid} ({low} to {high}). {proof}",
+        "С причинами в профиле расхождение, по прогнозу, уменьшится на {mid:#} (от {low:#} до {high:#}). {proof:#}"
+    ))
 }
 
 /// What a verdict asks of its reader.

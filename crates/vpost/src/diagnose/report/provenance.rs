@@ -1,112 +1,81 @@
 //! What the page was made from, and how.
 
-use diagnostic::{Language, say};
+use diagnostic::{Text, both};
 use gap_diagnosis::{Diagnosis, number_name};
-use maud::{Markup, html};
-use report::page::table;
-use report::text::{Numbers, shown};
-
 use jobs::diagnose::File;
+use report::body::{Body, Fact, Table};
+use report::numbers::number;
 
 use super::facts::Facts;
 use super::names::{named, prose};
+use crate::origin::{MACHINE, MEASUREMENTS, MODEL, PROFILE};
 
 /// Most comment lines shown, and most runs.
 const MOST: usize = 60;
 
-pub(super) fn body(d: &Diagnosis, facts: &Facts, language: Language) -> Markup {
-    let runs: Vec<Vec<String>> = d
-        .setup
-        .run_offsets_um
-        .iter()
-        .take(MOST)
-        .map(|(run, o)| std::iter::once(run.clone()).chain(o.map(|um| language.number(um))).collect())
-        .collect();
-    let seen: Vec<Vec<String>> = d
-        .detectable
-        .iter()
-        .map(|s| {
-            let unseen = || say!(language, "not visible on these rows", "на этих строках не виден");
-            let smallest = s.smallest.map_or_else(unseen, |smallest| language.number(smallest));
-            vec![
-                named(&s.effect, language),
-                number_name(&s.parameter).in_language(language).to_owned(),
-                smallest,
-            ]
-        })
-        .collect();
-    let run_header = match language {
-        Language::English => ["run", "x, \u{b5}m", "y, \u{b5}m", "z, \u{b5}m"],
-        Language::Russian => ["серия", "x, мкм", "y, мкм", "z, мкм"],
+/// Files, options and machine.
+pub(super) fn facts(facts: &Facts) -> Vec<Fact> {
+    let file = |name: Text, file: &File| {
+        let comments = file.comments.iter().take(MOST).cloned().collect();
+        Fact::remarked(name, &file.name, Some(file.hash.clone()), comments)
     };
-    let seen_header = match language {
-        Language::English => ["effect", "number", "smallest"],
-        Language::Russian => ["эффект", "параметр", "наименьшее"],
-    };
-    html! {
-        dl {
-            dt { (say!(language, "machine", "станок")) }
-            dd { (shown(&facts.machine)) (say!(language, ", chain ", ", цепь ")) (shown(&facts.chain)) }
-            (file(&say!(language, "measurements", "измерения"), &facts.measurements))
-            (file(&say!(language, "profile and its tables", "профиль и его таблицы"), &facts.profile))
-            @if let Some(holdout) = &facts.holdout { (file(&say!(language, "unseen points", "новые точки"), holdout)) }
-            dt { (say!(language, "model", "модель")) } dd { (shown(&facts.engine)) }
-            dt { (say!(language, "seed", "начальное число")) } dd { (facts.seed) }
-            @if !facts.ignored_columns.is_empty() {
-                dt { (say!(language, "columns passed over", "пропущенные столбцы")) } dd { (shown(&facts.ignored_columns.join(", "))) }
-            }
-            @if !facts.without.is_empty() {
-                dt { (say!(language, "effects left out", "исключённые эффекты")) } dd { (shown(&facts.without.join(", "))) }
-            }
-            (facts.origin.rows(language))
-            dt { (say!(language, "made by", "создано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.diagnosis/1" }
-        }
-        @if !d.notes.is_empty() {
-            h3 { (say!(language, "Notes", "Примечания")) }
-            ul { @for note in &d.notes { li { (shown(&prose(note, language))) } } }
-        }
-        @if !d.residuals.is_empty() {
-            h3 {
-                (say!(
-                    language,
-                    "Set-up: measuring frame against machine frame",
-                    "Установка: система измерения относительно системы станка"
-                ))
-            }
-            p {
-                @let [x, y, z] = d.setup.shift_um.map(|um| language.number(um));
-                @let [a, b, c] = d.setup.rotation_urad.map(|urad| language.number(urad));
-                (say!(
-                    language,
-                    "Shift {x}, {y}, {z} \u{b5}m; rotation {a}, {b}, {c} \u{b5}rad about X, Y, Z. Fitted with everything else, reported, never blamed.",
-                    "Сдвиг {x}; {y}; {z} мкм; поворот {a}; {b}; {c} мкрад вокруг X, Y, Z. Подогнано вместе со всем остальным; сообщается, но причиной не считается."
-                ))
-            }
-            details {
-                summary { (say!(language, "Offsets of the runs", "Смещения серий")) }
-                (table(language, &run_header, &[1, 2, 3], &runs))
-                @if d.setup.run_offsets_um.len() > MOST { p.muted { (say!(language, "The rest is in the JSON.", "Остальное есть в JSON.")) } }
-            }
-            details {
-                summary {
-                    (say!(
-                        language,
-                        "Smallest effects that would have been named",
-                        "Наименьшие эффекты, которые были бы названы"
-                    ))
-                }
-                (table(language, &seen_header, &[2], &seen))
-            }
-        }
-    }
+    let list = |name: Text, all: &[String]| (!all.is_empty()).then(|| Fact::same(name, all.join(", ")));
+    let Facts { machine, chain, .. } = facts;
+    let mut all = vec![
+        Fact::new(MACHINE, &both!("{machine}, chain {chain}", "{machine}, цепь {chain}")),
+        file(MEASUREMENTS, &facts.measurements),
+        file(PROFILE, &facts.profile),
+    ];
+    all.extend(facts.holdout.as_ref().map(|held| file(both!("unseen points", "новые точки"), held)));
+    all.push(Fact::same(MODEL, &facts.engine));
+    all.push(Fact::same(both!("seed", "начальное число"), facts.seed.to_string()));
+    all.extend(list(both!("columns passed over", "пропущенные столбцы"), &facts.ignored_columns));
+    all.extend(list(both!("effects left out", "исключённые эффекты"), &facts.without));
+    all.extend(facts.origin.facts());
+    all
 }
 
-fn file(role: &str, file: &File) -> Markup {
-    html! {
-        dt { (role) }
-        dd {
-            (shown(&file.name)) " " span.muted { "BLAKE3 " (file.hash) }
-            @for comment in file.comments.iter().take(MOST) { br; span.muted { (shown(comment)) } }
-        }
+/// Notes, set-up, and what would have been seen.
+pub(super) fn more(out: &mut Body, d: &Diagnosis) {
+    if !d.notes.is_empty() {
+        out.heading(&both!("Notes", "Примечания"));
+        out.list(&d.notes.iter().map(prose).collect::<Vec<_>>());
     }
+    if d.residuals.is_empty() {
+        return;
+    }
+    out.heading(&both!(
+        "Set-up: measuring frame against machine frame",
+        "Установка: система измерения относительно системы станка"
+    ));
+    let [x, y, z] = d.setup.shift_um.map(number);
+    let [a, b, c] = d.setup.rotation_urad.map(number);
+    out.p(&both!(
+        "Shift {x}, {y}, {z} \u{b5}m; rotation {a}, {b}, {c} \u{b5}rad about X, Y, Z. Fitted with everything else, reported, never blamed.",
+        "Сдвиг {x:#}; {y:#}; {z:#} мкм; поворот {a:#}; {b:#}; {c:#} мкрад вокруг X, Y, Z. Подогнано вместе со всем остальным; сообщается, но причиной не считается."
+    ));
+    let runs = &d.setup.run_offsets_um;
+    out.details(&both!("Offsets of the runs", "Смещения серий"), |out| {
+        let table = Table::of(runs.iter().take(MOST))
+            .words(both!("run", "серия"), |(run, _)| Text::same(run))
+            .numbers(both!("x, \u{b5}m", "x, мкм"), |(_, o)| number(o[0]))
+            .numbers(both!("y, \u{b5}m", "y, мкм"), |(_, o)| number(o[1]))
+            .numbers(both!("z, \u{b5}m", "z, мкм"), |(_, o)| number(o[2]));
+        out.table(&table);
+        if runs.len() > MOST {
+            out.muted(&both!("The rest is in the JSON.", "Остальное есть в JSON."));
+        }
+    });
+    let smallest =
+        both!("Smallest effects that would have been named", "Наименьшие эффекты, которые были бы названы");
+    out.details(&smallest, |out| {
+        let unseen = both!("not visible on these rows", "на этих строках не виден");
+        let table = Table::of(&d.detectable)
+            .words(both!("effect", "эффект"), |s| named(&s.effect))
+            .words(both!("number", "параметр"), |s| number_name(&s.parameter))
+            .numbers(both!("smallest", "наименьшее"), |s| {
+                s.smallest.map_or(unseen.clone(), number)
+            });
+        out.table(&table);
+    });
 }

@@ -30,7 +30,7 @@ impl Report<'_> {
                 .map(|c| Cause {
                     kind: "effect",
                     symbol: c.effect.clone(),
-                    russian: Some(named(&c.effect, Language::Russian)),
+                    russian: Some(format!("{:#}", named(&c.effect))),
                 })
                 .collect(),
             ..Scene::default()
@@ -115,7 +115,7 @@ impl Report<'_> {
             facts: &[
                 ("fact_measurements", format!("{name} (BLAKE3 {})", facts.measurements.hash)),
                 ("fact_machine", format!("{}, {}", facts.machine, facts.chain)),
-                ("fact_calibrated", facts.origin.said(messages.language())),
+                ("fact_calibrated", facts.origin.said().in_language(messages.language()).to_owned()),
                 ("fact_profile", format!("{} (BLAKE3 {})", facts.profile.name, facts.profile.hash)),
                 ("fact_engine", facts.engine.clone()),
                 ("fact_typed", crate::origin::command()),

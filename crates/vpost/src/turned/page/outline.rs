@@ -1,9 +1,9 @@
 //! The outline along Z: programmed, predicted, after the correction.
 
 use diagnostic::both;
-use maud::{Markup, html};
+use report::body::{Body, Table};
 use report::chart::{Curves, curves_with};
-use report::page::{figure, table_of};
+use report::numbers::or_dash;
 use report::scale::nice;
 
 use super::super::judged::{Outline, mm, um};
@@ -15,9 +15,9 @@ const MOST_DRAWN: usize = 1500;
 const SHARE: f64 = 0.12;
 
 impl Shown<'_> {
-    pub(super) fn outline(&self) -> Markup {
+    pub(super) fn outline(&self, out: &mut Body) {
         let Some(largest) = self.before.largest else {
-            return html! { p { (self.say(&both!("No radius is turned.", "Радиус не обточен."))) } };
+            return out.p(&both!("No radius is turned.", "Радиус не обточен."));
         };
         let nominal = self.surface.nominal_mm();
         let radius_mm = nominal.iter().flatten().copied().fold(0.0, f64::max);
@@ -37,89 +37,67 @@ impl Shown<'_> {
         };
         let mut radii = vec![drawn.iter().map(|place| programmed(*place)).collect(), real(&self.before)];
         let mut off = vec![deviations(&self.before)];
-        let names = [
-            both!("programmed", "заданный"),
-            both!("predicted", "предсказанный"),
-            both!("after the correction", "после исправления"),
-        ]
-        .map(|name| self.say(&name));
-        let mut radii_series = vec![("s3", names[0].as_str()), ("s1", names[1].as_str())];
-        let mut off_series = vec![("s1", names[1].as_str())];
+        let predicted = ("s1", both!("predicted", "предсказанный"));
+        let mut off_series = vec![predicted.clone()];
+        let mut radii_series = vec![("s3", both!("programmed", "заданный")), predicted];
         if let Some(after) = &self.after {
+            let corrected = ("s0", both!("after the correction", "после исправления"));
             radii.push(real(after));
             off.push(deviations(after));
-            radii_series.push(("s0", names[2].as_str()));
-            off_series.push(("s0", names[2].as_str()));
+            radii_series.push(corrected.clone());
+            off_series.push(corrected);
         }
-        let along = self.say(&both!("Z from the chuck, mm", "Z от торца патрона, мм"));
-        let label = |of: &str| format!("{along}; {of}");
-        let in_mm = self.say(&both!("radius, mm", "радиус, мм"));
-        let in_um = self.say(&both!("deviation, \u{b5}m", "отклонение, мкм"));
-        let panel = |label: String, values| [Curves { label, at: at.clone(), values }];
-        let numbers = self.numbers(&drawn);
-        html! {
-            (figure(
-                self.language,
-                &curves_with(
-                    self.language,
-                    &self.say(&both!("Radius along Z", "Радиус вдоль Z")),
-                    &self.say(&both!("radius up to {} mm, deviations {times} times as large", "радиус до {} мм, увеличение отклонений {times}\u{d7}", mm(radius_mm))),
-                    &panel(label(&in_mm), radii),
-                    &radii_series,
-                ),
-                &self.say(&both!(
-                    "The outline of the part, its deviations drawn {times} times as large as they are. Faces and shoulders have no radius and are left out.",
-                    "Контур детали, увеличение отклонений {times}\u{d7}. У торцов и уступов радиуса нет, они пропущены."
-                )),
-                None,
-            ))
-            (figure(
-                self.language,
-                &curves_with(
-                    self.language,
-                    &self.say(&both!("Deviation along Z", "Отклонение вдоль Z")),
-                    &self.say(&both!("up to {} \u{b5}m at Z {} mm", "до {} мкм в Z {} мм", um(largest.deviation_um.abs()), mm(largest.z_mm))),
-                    &panel(label(&in_um), off),
-                    &off_series,
-                ),
-                &self.say(&both!(
-                    "How far the surface is off the programmed one, square to it and outwards, on the radius.",
-                    "Насколько поверхность отходит от заданной, по нормали наружу, по радиусу."
-                )),
-                Some(numbers),
-            ))
-        }
+        let language = out.language();
+        let panel = |label, values| [Curves { label, at: at.clone(), values }];
+        let title = both!("Radius along Z", "Радиус вдоль Z");
+        let described = both!(
+            "radius up to {} mm, deviations {times} times as large",
+            "радиус до {:#} мм, увеличение отклонений {times}\u{d7}",
+            mm(radius_mm)
+        );
+        let label = both!("Z from the chuck, mm; radius, mm", "Z от торца патрона, мм; радиус, мм");
+        out.figure(
+            &curves_with(language, &title, &described, &panel(label, radii), &radii_series),
+            &both!(
+                "The outline of the part, its deviations drawn {times} times as large as they are. Faces and shoulders have no radius and are left out.",
+                "Контур детали, увеличение отклонений {times}\u{d7}. У торцов и уступов радиуса нет, они пропущены."
+            ),
+        );
+        let title = both!("Deviation along Z", "Отклонение вдоль Z");
+        let described = both!(
+            "up to {} \u{b5}m at Z {} mm",
+            "до {:#} мкм в Z {:#} мм",
+            um(largest.deviation_um.abs()),
+            mm(largest.z_mm)
+        );
+        let label =
+            both!("Z from the chuck, mm; deviation, \u{b5}m", "Z от торца патрона, мм; отклонение, мкм");
+        out.figure_of(
+            &curves_with(language, &title, &described, &panel(label, off), &off_series),
+            &both!(
+                "How far the surface is off the programmed one, square to it and outwards, on the radius.",
+                "Насколько поверхность отходит от заданной, по нормали наружу, по радиусу."
+            ),
+            &self.numbers(&drawn),
+        );
     }
 
-    fn numbers(&self, drawn: &[usize]) -> Markup {
+    fn numbers<'d>(&self, drawn: &'d [usize]) -> Table<&'d usize> {
         // A table is read, not drawn: a hundred places are enough.
         let step = drawn.len().div_ceil(100).max(1);
-        let cell = |outline: &Outline, place: usize| {
-            outline.deviations_um[place].map_or_else(|| "\u{2014}".to_owned(), um)
-        };
-        let rows: Vec<Vec<String>> = drawn
-            .iter()
-            .step_by(step)
-            .map(|place| {
-                let mut row = vec![
-                    mm(self.surface.z_mm(*place)),
-                    self.surface.nominal_mm()[*place].map_or_else(|| "\u{2014}".to_owned(), mm),
-                    cell(&self.before, *place),
-                ];
-                row.extend(self.after.as_ref().map(|after| cell(after, *place)));
-                row
+        let cell = |outline: &Outline, place: usize| or_dash(outline.deviations_um[place], um);
+        let table = Table::of(drawn.iter().step_by(step))
+            .numbers(both!("Z, mm", "Z, мм"), |place| mm(self.surface.z_mm(**place)))
+            .numbers(both!("programmed radius, mm", "заданный радиус, мм"), |place| {
+                or_dash(self.surface.nominal_mm()[**place], mm)
             })
-            .collect();
-        let mut header = vec![
-            both!("Z, mm", "Z, мм"),
-            both!("programmed radius, mm", "заданный радиус, мм"),
-            both!("predicted, \u{b5}m off", "предсказано, мкм"),
-        ];
-        if self.after.is_some() {
-            header.push(both!("after the correction", "после исправления"));
-        }
-        let numbers: Vec<usize> = (0..header.len()).collect();
-        table_of(self.language, &header, &numbers, &rows)
+            .numbers(both!("predicted, \u{b5}m off", "предсказано, мкм"), |place| {
+                cell(&self.before, **place)
+            });
+        let Some(after) = &self.after else { return table };
+        table.numbers(both!("after the correction", "после исправления"), |place| {
+            cell(after, **place)
+        })
     }
 }
 

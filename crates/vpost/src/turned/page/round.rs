@@ -1,11 +1,10 @@
 //! Cross sections: how round they are.
 
-use diagnostic::{Language, both};
+use diagnostic::{Text, both};
 use machine_model::Vector;
-use maud::Markup;
+use report::body::Body;
 use report::chart::{Magnification, Polar, Round, polar};
-use report::page::figure;
-use report::text::{Numbers, number_of_digits};
+use report::numbers::digits;
 use serde::Serialize;
 use turning::Lathe;
 use units::math;
@@ -30,11 +29,11 @@ struct Wave {
 /// A cross section.
 #[derive(Serialize)]
 pub(super) struct Drawn {
-    z_mm: f64,
-    roundness_um: f64,
-    roundness_zone_um: f64,
+    pub(super) z_mm: f64,
+    pub(super) roundness_um: f64,
+    pub(super) roundness_zone_um: f64,
     /// Centre of the least-squares circle, X and Y of the workpiece.
-    centre_um: [f64; 2],
+    pub(super) centre_um: [f64; 2],
     waves: Vec<Wave>,
     /// Angle, rad, and deviation from the least-squares circle, µm.
     #[serde(skip)]
@@ -110,50 +109,37 @@ impl Drawn {
         }
     }
 
-    pub(super) const fn z_mm(&self) -> f64 {
-        self.z_mm
-    }
-
-    pub(super) fn row(&self) -> Vec<String> {
-        let [x, y] = self.centre_um;
-        vec![mm(self.z_mm), um(self.roundness_um), um(self.roundness_zone_um), um(x), um(y)]
-    }
-
     /// Amplitude and crest of a wave; of a wave too small to be written no crest.
-    pub(super) fn wave(&self, order: u32) -> String {
+    pub(super) fn wave(&self, order: u32) -> Text {
         match self.waves.iter().find(|wave| wave.order == order) {
             Some(wave) if wave.amplitude_um >= 0.005 => {
-                format!("{} ({}\u{b0})", um(wave.amplitude_um), number_of_digits(wave.crest_deg, 0))
+                let (amplitude, crest) = (um(wave.amplitude_um), digits(wave.crest_deg, 0));
+                both!("{amplitude} ({crest}\u{b0})", "{amplitude:#} ({crest:#}\u{b0})")
             }
             Some(_) => um(0.0),
-            None => "\u{2014}".to_owned(),
+            None => Text::same("\u{2014}"),
         }
     }
 
     /// The polar plot, on one scale with those of the other sections.
-    pub(super) fn figure(&self, all: &[Self], language: Language) -> Markup {
+    pub(super) fn figure(&self, out: &mut Body, all: &[Self]) {
         let off = |drawn: &Self| drawn.outline.iter().map(|(_, um)| um.abs()).fold(0.0, f64::max);
         // A circle is drawn as one, and not its last digits.
         let largest = all.iter().map(off).fold(0.01, f64::max);
         let m = Magnification::of(largest, self.radius_um);
-        let times = language.digits(m.times, 0);
         let drawn = Polar {
             axes: ["X", "Y"],
             radius: self.radius_um,
             curves: vec![Round { class: "round s1", at: self.outline.clone() }],
             keys: Vec::new(),
         };
-        let z = mm(self.z_mm);
-        let title = both!("Roundness at Z {z} mm", "Круглость в Z {z} мм");
+        let (z, roundness, times) = (mm(self.z_mm), um(self.roundness_um), digits(m.times, 0));
+        let title = both!("Roundness at Z {z} mm", "Круглость в Z {z:#} мм");
         let described = both!(
-            "RONt {} \u{b5}m, magnified {times} times",
-            "RONt {} мкм, увеличение {times}\u{d7}",
-            um(self.roundness_um)
+            "RONt {roundness} \u{b5}m, magnified {times} times",
+            "RONt {roundness:#} мкм, увеличение {times:#}\u{d7}"
         );
-        let unit = both!("\u{b5}m", "мкм");
-        let caption = both!("Z {z} mm: {described}", "Z {z} мм: {described:#}");
-        let [title, described, unit, caption] =
-            [title, described, unit, caption].map(|text| language.prose(&text));
-        figure(language, &polar(language, &title, &described, &drawn, m, &unit), &caption, None)
+        let caption = both!("Z {z} mm: {described}", "Z {z:#} мм: {described:#}");
+        out.figure(&polar(out.language(), &title, &described, &drawn, m), &caption);
     }
 }
