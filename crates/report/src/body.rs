@@ -3,7 +3,7 @@
 use diagnostic::{Language, Text, both};
 use maud::{Markup, PreEscaped, html};
 
-use crate::page::table;
+use crate::table::table;
 use crate::text::{shown, typed};
 
 /// Parts one below the other.

@@ -14,5 +14,6 @@ pub mod chart;
 pub mod numbers;
 pub mod page;
 pub mod scale;
+mod table;
 pub mod text;
 pub mod viewer;
