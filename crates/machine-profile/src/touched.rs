@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Text, both};
 use machine_model::Way;
 use toml::Spanned;
 use toolpath::AXIS_NAMES;
 
 use crate::error::{CONFLICT, KEY};
-use crate::load::Loader;
+use crate::loader::Loader;
 use crate::number::{Finite, Length};
 use crate::zeros::{
     AlignedTo, End, Found, FoundOffset, OnePlace, Places, ToolThatTouched, TouchPlace, TouchedAt, TouchedBy,
@@ -33,8 +33,7 @@ impl Loader<'_> {
                     "write the word that selects it, like G54 or \"G54.1 P2\"",
                     "напишите слово, которым его выбирают, например G54 или \"G54.1 P2\""
                 );
-                let diagnostic = Diagnostic::error(KEY, message).help(help);
-                self.refuse(offset, diagnostic, both!("of this entry", "в этой записи"));
+                self.refuse(offset, KEY, message, both!("of this entry", "в этой записи"), help);
             }
             let place = match offset.get_ref() {
                 WorkOffset::Place(place) => place,
@@ -65,8 +64,7 @@ impl Loader<'_> {
     }
 
     fn contradicts(&mut self, at: &Spanned<WorkOffset>, message: Text, help: Text) {
-        let diagnostic = Diagnostic::error(CONFLICT, message).help(help);
-        self.refuse(at, diagnostic, both!("of this entry", "в этой записи"));
+        self.refuse(at, CONFLICT, message, both!("of this entry", "в этой записи"), help);
     }
 
     fn aligned(
