@@ -46,14 +46,8 @@ pub fn work_offsets(
                 "дайте файл, который INI-файл называет PARAMETER_FILE, таким, каким его пишет LinuxCNC"
             );
             let message = both!("this line is no parameter of LinuxCNC", "эта строка — не параметр LinuxCNC");
-            return Err(refuse(
-                file,
-                line,
-                UNREADABLE,
-                message,
-                both!("expected a number and its value", "ожидались номер и его значение"),
-                help,
-            ));
+            let label = both!("expected a number and its value", "ожидались номер и его значение");
+            return Err(refuse(file, line, UNREADABLE, message, label, help));
         };
         kept.insert(number, (value, line));
     }

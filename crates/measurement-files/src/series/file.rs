@@ -165,12 +165,8 @@ impl<'f> File<'f> {
     }
 
     pub(super) fn damaged(&self, span: Range<usize>, message: Text) -> Box<Refusal> {
-        self.refuse(
-            UNREADABLE,
-            span,
-            message,
-            both!("the file is damaged; export it again", "файл повреждён; выведите его снова"),
-        )
+        let help = both!("the file is damaged; export it again", "файл повреждён; выведите его снова");
+        self.refuse(UNREADABLE, span, message, help)
     }
 
     pub(super) fn question(&self, message: &Text, help: Text) -> Box<Refusal> {
