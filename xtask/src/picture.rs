@@ -12,7 +12,7 @@ use clap::Args;
 use correction::{Curve, Options as CorrectionOptions, Outside};
 use diagnostic::Diagnostic;
 use machine_model::effects::Conditions;
-use machine_model::{Command, PathModel, Vector};
+use machine_model::{Command, PathModel};
 use machine_profile::Profile;
 use nc_program::{Interpreter, Setup};
 use nc_syntax::{Block, Dialect, Reader};
@@ -220,13 +220,8 @@ fn stroke(
     let mut stroke = Stroke { commanded: Vec::new(), real: Vec::new() };
     for k in 0..=count {
         let commanded = curve.at(k as f64 / count as f64);
-        let command = Command {
-            linear_mm: commanded,
-            rotary_rad: Vector::zeros(),
-            tool_mm: context.tool_mm.into(),
-            datum,
-            ..Default::default()
-        };
+        let command =
+            Command { linear_mm: commanded, tool_mm: context.tool_mm.into(), datum, ..Default::default() };
         let real = commanded + model.error_mm(&command);
         stroke.commanded.push(context.frame.to_program(commanded.into()));
         stroke.real.push(context.frame.to_program(real.into()));

@@ -55,13 +55,7 @@ impl Point {
     /// A point of a machine with linear axes and no effects, approached from nowhere in particular.
     #[must_use]
     pub fn new(run: usize, commanded_mm: Vector, tool_mm: Vector, reading: PointReading) -> Self {
-        let command = Command {
-            linear_mm: commanded_mm,
-            rotary_rad: Vector::zeros(),
-            tool_mm,
-            direction: [0; 3],
-            ..Default::default()
-        };
+        let command = Command { linear_mm: commanded_mm, tool_mm, ..Default::default() };
         Self { run, command, by_effects_mm: Vector::zeros(), reading, uncertainty_mm: None }
     }
 }

@@ -91,8 +91,6 @@ impl WithEffects {
         // Whether a condition is needed depends on the effect and its numbers, never on the place.
         let anywhere = Command {
             linear_mm: base.volume().nearest(&Vector::zeros()),
-            rotary_rad: Vector::zeros(),
-            tool_mm: Vector::zeros(),
             direction: [1; 3],
             ..Default::default()
         };

@@ -282,13 +282,7 @@ mod tests {
     fn grown(runs: usize, growth: f64) -> Option<WorseRun> {
         let row = |run: usize| Row {
             run,
-            command: Command {
-                linear_mm: Vector::zeros(),
-                rotary_rad: Vector::zeros(),
-                tool_mm: Vector::zeros(),
-                direction: [0; 3],
-                ..Default::default()
-            },
+            command: Command::default(),
             conditions: Conditions::default(),
             predicted_mm: Vector::zeros(),
             u_um: [None; 3],
