@@ -9,7 +9,7 @@ use std::path::Path;
 
 use anyhow::{Context, bail};
 use clap::Args;
-use correction::{Curve, Options as CorrectionOptions, Outside};
+use correction::Curve;
 use diagnostic::Diagnostic;
 use machine_model::effects::Conditions;
 use machine_model::{Command, PathModel};
@@ -86,16 +86,7 @@ pub(crate) fn picture() -> anyhow::Result<String> {
     let profile = machine_profile::load(&profile, &|table: &str| std::fs::read(folder.join(table)))
         .map_err(|errors| anyhow::anyhow!("{PROFILE}: {errors:?}"))?;
     let dialect = nc_dialect::builtin(DIALECT).context("the dialect is shipped")?;
-    let setup = Setup {
-        work_offsets: profile.work_offsets.clone(),
-        tools: profile.tools.clone(),
-        default_tool_mm: profile.default_tool_mm,
-        has_rotary: profile.has_rotary(),
-        rotary_matters: profile.rotary_matters(),
-        start_mm: [None; 3],
-        start_deg: [None; 3],
-        ..Default::default()
-    };
+    let setup = crate::bench::setup(&profile);
     let engine = profile.engine(profile.correction.engine, &Conditions::default())?;
     let machine =
         machine_model::FromDatum::new(engine).ok().context("the profile's engine corrects paths")?;
@@ -145,26 +136,8 @@ fn corrected(
     dialect: &Dialect,
     setup: &Setup,
 ) -> anyhow::Result<Vec<u8>> {
-    let job = rewrite::Job {
-        dialect,
-        setup,
-        models: machine_model::Models { axes: machine.machine, tip: None },
-        datums: &machine.datums,
-        options: CorrectionOptions {
-            tolerance_mm: profile.correction.tolerance_um * 1e-3,
-            accept_mm: 5e-3 * profile.correction.tolerance_um,
-            outside: Outside::Refuse,
-            minimum_segment_mm: profile.correction.minimum_segment_mm,
-            orientation_rad: profile.correction.orientation_urad * 1e-6,
-            orientation: correction::Orientation::Tip,
-        },
-        blending_mm: None,
-        decimals_mm: [3; 3],
-        force: false,
-        provenance: "",
-        guards: rewrite::Guards::None,
-        rotary_steps: [(3, 1); 3],
-    };
+    let models = machine_model::Models { axes: machine.machine, tip: None };
+    let job = crate::bench::job(profile, dialect, setup, models, &machine.datums);
     let result = rewrite::correct(text, &job, |_| Ok::<(), Vec<Diagnostic>>(()));
     Ok(result.map_err(refused)?.text)
 }

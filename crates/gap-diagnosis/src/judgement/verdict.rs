@@ -156,7 +156,6 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 /// What rows that no fit has seen say comes last and weighs most: a forecast they refute is PARTIAL, UNKNOWN where they
 /// contradict it, and NO GAP is UNKNOWN where their gap is above [`UNSEEN_GAP`] times the noise, above what noise and
 /// chance make of so many rows, or where a search among these rows alone finds one.
-#[must_use]
 pub(crate) fn verdict(e: &Evidence) -> Verdict {
     let seen = on_the_rows(e);
     let Some(unseen) = e.unseen else { return seen };
