@@ -1,10 +1,9 @@
 //! What a machine is, as far as its control says so.
 
 use diagnostic::both;
-use measurement_files::{Refusal, decoded};
+use measurement_files::Refusal;
 
 use crate::ini::{entries, unit_mm};
-use crate::mtconnect;
 use crate::refusals::{BEYOND, File, UNREADABLE, refuse, refuse_whole};
 
 /// What a machine is; what the file leaves open stays open.
@@ -20,24 +19,8 @@ pub struct Machine {
     pub rotary: Vec<char>,
 }
 
-impl Machine {
-    /// Reads the INI file of a LinuxCNC machine, or what an MTConnect agent answers to `probe`.
-    ///
-    /// * `name` – the file's, in messages
-    /// * `device` – which device of an MTConnect agent, where it has several
-    ///
-    /// # Errors
-    /// It is neither; it is of a lathe or of a machine without X, Y, Z of its own; a limit is no number or two contradict
-    /// each other; a device is not there, or which one nobody says.
-    pub fn read(name: &str, bytes: &[u8], device: Option<&str>) -> Result<Self, Box<Refusal>> {
-        let text = decoded(bytes);
-        let file = (name, text.as_ref());
-        if text.trim_start().starts_with('<') { mtconnect::machine(file, device) } else { of_ini(file) }
-    }
-}
-
 /// The machine of an INI file of LinuxCNC.
-fn of_ini(file: File<'_>) -> Result<Machine, Box<Refusal>> {
+pub(crate) fn of_ini(file: File<'_>) -> Result<Machine, Box<Refusal>> {
     let entries = entries(file)?;
     let first =
         |section: &str, key: &str| entries.iter().find(|entry| entry.is(section, key)).map(|e| e.value);

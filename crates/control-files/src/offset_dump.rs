@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 use diagnostic::both;
 use measurement_files::{Piece, Refusal};
 
-use crate::Length;
 use crate::refusals::{BEYOND, File, UNREADABLE, refuse, refuse_whole};
+use crate::tool_list::Length;
 
 /// A program in which a block writes offsets, and nothing else.
 pub(crate) fn is_one(text: &str) -> bool {

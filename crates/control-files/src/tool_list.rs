@@ -3,8 +3,10 @@
 use diagnostic::{Text, both};
 use measurement_files::{Codes, Kind, Refusal, Sheet};
 
-use crate::Length;
 use crate::refusals::UNREADABLE;
+
+/// The number of a tool length, H1 is 1, and what it adds to X, Y and Z, mm.
+pub type Length = (u32, [f64; 3]);
 
 const KIND: Kind<'static> = Kind {
     columns: "tool length_mm x_mm y_mm z_mm diameter_mm note",

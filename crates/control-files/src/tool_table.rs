@@ -5,8 +5,8 @@
 use diagnostic::{Text, both};
 use measurement_files::{Piece, Refusal};
 
-use crate::Length;
 use crate::refusals::{UNREADABLE, refuse, refuse_whole};
+use crate::tool_list::Length;
 
 /// Of offsets, diameter, angles and place in the magazine.
 const NUMBERS: &str = "PXYZABCUVWDIJQ";

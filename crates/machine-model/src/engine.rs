@@ -119,6 +119,21 @@ pub enum SolveError {
     Undefined(&'static str, &'static str),
 }
 
+/// [`SolveError::OutsideVolume`] for the first axis that leaves the volume (or is not a number).
+pub(crate) fn inside(q: &Vector, volume: &Volume) -> Result<(), SolveError> {
+    for (axis, (range, letter)) in volume.0.iter().zip(['X', 'Y', 'Z']).enumerate() {
+        if !range.contains(q[axis]) {
+            return Err(SolveError::OutsideVolume {
+                axis: letter,
+                value_mm: q[axis],
+                low_mm: range.low,
+                high_mm: range.high,
+            });
+        }
+    }
+    Ok(())
+}
+
 impl SolveError {
     /// True where a place was asked for that lies outside what is calibrated.
     #[must_use]
@@ -197,7 +212,7 @@ pub trait Engine: Send + Sync {
     /// # Errors
     /// What it does not know.
     fn knows(&self, command: &Command) -> Result<(), SolveError> {
-        crate::solve::inside(&command.linear_mm, &self.volume())
+        inside(&command.linear_mm, &self.volume())
     }
 
     /// What to command so that the tool tip comes to `target`.

@@ -10,8 +10,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::basis::Basis;
 use super::columns::{Columns, model};
+use super::found::{BallReading, TurnedAxis};
 use super::terms::Term;
-use super::{BallReading, TurnedAxis};
 use crate::error::CalibrationError;
 use crate::field;
 
