@@ -346,15 +346,11 @@ fn refusal(sheet: &Sheet, runs: &[String], vectors: &[ErrorVector], error: &Fiel
             return of_row(*second, message, both!("the same place", "та же точка"), help);
         }
         FieldError::Exact { vector } => {
-            return of_row(
-                *vector,
-                error.text(),
-                both!("this one", "этот"),
-                both!(
-                    "state an uncertainty of every vector, or of none",
-                    "задайте неопределённость каждого вектора или ни одного"
-                ),
+            let help = both!(
+                "state an uncertainty of every vector, or of none",
+                "задайте неопределённость каждого вектора или ни одного"
             );
+            return of_row(*vector, error.text(), both!("this one", "этот"), help);
         }
         FieldError::Offset { vector, offset_mm } => {
             let um = offset_mm.map(|mm| Length::from_mm(mm).um());

@@ -177,17 +177,16 @@ impl<'f> File<'f> {
 
     pub(super) fn function(&self) -> Result<(usize, Axis), Box<Refusal>> {
         self.told.symbol.ok_or_else(|| {
-            self.question(
-                &both!(
-                    "does not say which error function it holds",
-                    "не говорит, какая в нём функция погрешности"
-                ),
-                both!(
-                    "write `{}=EXX:um`: the standard's symbol and the unit of the deviations",
-                    "напишите `{}=EXX:um`: обозначение по стандарту и единицу отклонений",
-                    self.name
-                ),
-            )
+            let message = both!(
+                "does not say which error function it holds",
+                "не говорит, какая в нём функция погрешности"
+            );
+            let help = both!(
+                "write `{}=EXX:um`: the standard's symbol and the unit of the deviations",
+                "напишите `{}=EXX:um`: обозначение по стандарту и единицу отклонений",
+                self.name
+            );
+            self.question(&message, help)
         })
     }
 
@@ -218,13 +217,11 @@ impl<'f> File<'f> {
 
     pub(super) fn values(&self, options: &Text) -> Result<Values, Box<Refusal>> {
         self.told.values.ok_or_else(|| {
-            self.question(
-                &both!(
-                    "is a control's table: are its numbers what the axis did, or what the control adds?",
-                    "— таблица стойки: её числа — отклонения оси или то, что прибавляет стойка?"
-                ),
-                both!("add `--values {options}`", "добавьте `--values {options:#}`"),
-            )
+            let message = both!(
+                "is a control's table: are its numbers what the axis did, or what the control adds?",
+                "— таблица стойки: её числа — отклонения оси или то, что прибавляет стойка?"
+            );
+            self.question(&message, both!("add `--values {options}`", "добавьте `--values {options:#}`"))
         })
     }
 }

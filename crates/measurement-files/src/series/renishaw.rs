@@ -177,16 +177,9 @@ pub(super) fn columns_of_runs(file: &File<'_>) -> Result<Series, Box<Refusal>> {
     let directions = titles.iter().enumerate().skip(1).map(|(run, title)| {
         let told = || file.told.ways.map(|ways| ways.of(run));
         way(title).or_else(told).or(alone).ok_or_else(|| {
-            file.question(
-                &both!(
-                    "does not say which way the axis went in `{title}`: lost motion is what two directions differ by",
-                    "не говорит, в какую сторону шла ось в `{title}`: мёртвый ход — это разность двух направлений"
-                ),
-                both!(
-                    "add `--runs alternating` (the first towards plus, the next towards minus, and so on), `--runs up` or `--runs down`; or say it in the titles: `Run 1 +`, `Run 2 -`",
-                    "добавьте `--runs alternating` (первый в плюс, следующий в минус и так далее), `--runs up` или `--runs down`; или скажите это в заголовках: `Run 1 +`, `Run 2 -`"
-                ),
-            )
+            let message = both!("does not say which way the axis went in `{title}`: lost motion is what two directions differ by", "не говорит, в какую сторону шла ось в `{title}`: мёртвый ход — это разность двух направлений");
+            let help = both!("add `--runs alternating` (the first towards plus, the next towards minus, and so on), `--runs up` or `--runs down`; or say it in the titles: `Run 1 +`, `Run 2 -`", "добавьте `--runs alternating` (первый в плюс, следующий в минус и так далее), `--runs up` или `--runs down`; или скажите это в заголовках: `Run 1 +`, `Run 2 -`");
+            file.question(&message, help)
         })
     });
     let directions: Vec<i8> = directions.collect::<Result<_, _>>()?;
