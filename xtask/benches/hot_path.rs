@@ -5,7 +5,7 @@ use std::path::Path;
 
 use correction::{Block as Info, Corrector, Options, Outside, Stated};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use machine_model::{Command, EngineId, Vector};
+use machine_model::{Command, EngineId};
 use nc_program::{Interpreter, Setup};
 use nc_syntax::{Block, PlainLine, Reader};
 use toolpath::{Division, Feed, FeedRate, Motion, Position, Shape};
@@ -116,16 +116,8 @@ fn hot_path(c: &mut Criterion) {
     });
     group.finish();
 
-    let commands: Vec<Command> = points
-        .iter()
-        .map(|point| Command {
-            linear_mm: (*point).into(),
-            rotary_rad: Vector::zeros(),
-            tool_mm: Vector::zeros(),
-            direction: [0; 3],
-            ..Default::default()
-        })
-        .collect();
+    let commands: Vec<Command> =
+        points.iter().map(|point| Command { linear_mm: (*point).into(), ..Default::default() }).collect();
     let everywhere = model.everywhere(&commands[0]).expect("three linear axes");
     let mut group = c.benchmark_group("point");
     group.throughput(Throughput::Elements(POINTS as u64));

@@ -11,7 +11,9 @@ use std::process::Command;
 
 use anyhow::Context;
 use clap::Args;
-use nc_syntax::{Block, Reader};
+use machine_profile::Profile;
+use nc_program::Setup;
+use nc_syntax::{Block, Dialect, Reader};
 
 use crate::markdown::table;
 use measure::{Run, in_turn, own_cpu_s, run_anew};
@@ -46,12 +48,7 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
     if options.budget {
         return Ok(text);
     }
-    let built = Command::new(env!("CARGO"))
-        .args(["build", "--release", "--quiet", "-p", "vpost"])
-        .status()
-        .context("cargo")?;
-    anyhow::ensure!(built.success(), "vpost does not build");
-    let vpost = std::env::current_exe()?.with_file_name("vpost");
+    let vpost = crate::gap_bench::released()?;
     let own = tempfile::tempdir()?;
     let folder = options.folder.as_deref().unwrap_or(own.path());
     std::fs::create_dir_all(folder)?;
@@ -199,36 +196,11 @@ fn budget_page(options: &Options) -> anyhow::Result<String> {
         .map_err(|errors| anyhow::anyhow!("{errors:?}"))?;
     let engine = profile.engine(machine_model::EngineId::RigidBody, &Default::default())?;
     let model = engine.path_model().context("rigid-body corrects paths")?;
-    let setup = nc_program::Setup {
-        work_offsets: profile.work_offsets.clone(),
-        tools: profile.tools.clone(),
-        default_tool_mm: profile.default_tool_mm,
-        has_rotary: profile.has_rotary(),
-        rotary_matters: profile.rotary_matters(),
-        start_mm: [None; 3],
-        start_deg: [None; 3],
-        ..Default::default()
-    };
-    let job = rewrite::Job {
-        dialect: nc_dialect::builtin("fanuc").context("a shipped dialect")?,
-        setup: &setup,
-        models: machine_model::Models { axes: model, tip: None },
-        datums: &rewrite::Datums::default(),
-        options: correction::Options {
-            tolerance_mm: profile.correction.tolerance_um * 1e-3,
-            accept_mm: 5e-3 * profile.correction.tolerance_um,
-            outside: correction::Outside::Refuse,
-            minimum_segment_mm: profile.correction.minimum_segment_mm,
-            orientation_rad: profile.correction.orientation_urad * 1e-6,
-            orientation: correction::Orientation::Tip,
-        },
-        blending_mm: None,
-        decimals_mm: [3; 3],
-        force: false,
-        provenance: "BENCHMARK",
-        guards: rewrite::Guards::None,
-        rotary_steps: [(3, 1); 3],
-    };
+    let setup = setup(&profile);
+    let models = machine_model::Models { axes: model, tip: None };
+    let datums = rewrite::Datums::default();
+    let dialect = nc_dialect::builtin("fanuc").context("a shipped dialect")?;
+    let job = rewrite::Job { provenance: "BENCHMARK", ..job(&profile, dialect, &setup, models, &datums) };
     let budget = budget::measure(&program, &job, options.repeat.max(5))?;
     let rows = |parts: &[(&str, f64)]| -> Vec<Vec<String>> {
         parts.iter().map(|(what, ns)| vec![(*what).to_owned(), format!("{ns:.0}")]).collect()
@@ -241,4 +213,48 @@ fn budget_page(options: &Options) -> anyhow::Result<String> {
         table(&["part of a block", "ns"], &rows(&budget.parts)),
         table(&["alone", "ns"], &rows(&budget.points))
     ))
+}
+
+/// What a profile says of a program's zeros and tools.
+pub(crate) fn setup(profile: &Profile) -> Setup {
+    Setup {
+        work_offsets: profile.work_offsets.clone(),
+        tools: profile.tools.clone(),
+        default_tool_mm: profile.default_tool_mm,
+        has_rotary: profile.has_rotary(),
+        rotary_matters: profile.rotary_matters(),
+        ..Default::default()
+    }
+}
+
+/// A correction as the profile has it, of the tip, in micrometres.
+pub(crate) fn job<'j>(
+    profile: &Profile,
+    dialect: &'j Dialect,
+    setup: &'j Setup,
+    models: machine_model::Models<'j>,
+    datums: &'j rewrite::Datums,
+) -> rewrite::Job<'j> {
+    let own = &profile.correction;
+    let options = correction::Options {
+        tolerance_mm: own.tolerance_um * 1e-3,
+        accept_mm: 5e-3 * own.tolerance_um,
+        outside: correction::Outside::Refuse,
+        minimum_segment_mm: own.minimum_segment_mm,
+        orientation_rad: own.orientation_urad * 1e-6,
+        orientation: correction::Orientation::Tip,
+    };
+    rewrite::Job {
+        dialect,
+        setup,
+        models,
+        datums,
+        options,
+        blending_mm: None,
+        decimals_mm: [3; 3],
+        force: false,
+        provenance: "",
+        guards: rewrite::Guards::None,
+        rotary_steps: [(3, 1); 3],
+    }
 }

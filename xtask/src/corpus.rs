@@ -280,34 +280,29 @@ fn finish(mut command: Command) -> anyhow::Result<(Option<i32>, String, String)>
     Ok((status, text(&out)?, text(&messages)?))
 }
 
-fn checked(command: Command) -> anyhow::Result<Verdict> {
+/// What a judge says: motions, deviations before and after, and what failed, by where its JSON has them. `Err`: its messages.
+fn verdict(command: Command, places: [&str; 4]) -> anyhow::Result<Result<Verdict, String>> {
     let (status, out, said) = finish(command)?;
-    let Ok(json) = serde_json::from_str::<serde_json::Value>(&out) else {
-        return Ok(Verdict::Fails(first_line(&said)));
-    };
-    if status == Some(0) {
-        return Ok(Verdict::Holds {
-            motions: json["feed_motions_in"].as_u64().unwrap_or_default(),
-            before_um: json["deviation_before_um"].as_f64().unwrap_or_default(),
-            after_um: json["deviation_after_um"].as_f64().unwrap_or_default(),
-        });
-    }
-    Ok(Verdict::Fails(json["findings"][0].as_str().unwrap_or("no finding").to_owned()))
+    let Ok(json) = serde_json::from_str::<serde_json::Value>(&out) else { return Ok(Err(said)) };
+    let [motions, before, after, failed] = places.map(|place| json.pointer(place));
+    let um = |value: Option<&serde_json::Value>| value.and_then(|um| um.as_f64()).unwrap_or_default();
+    Ok(Ok(if status == Some(0) {
+        let motions = motions.and_then(|count| count.as_u64()).unwrap_or_default();
+        Verdict::Holds { motions, before_um: um(before), after_um: um(after) }
+    } else {
+        Verdict::Fails(failed.and_then(|why| why.as_str()).unwrap_or("no finding").to_owned())
+    }))
+}
+
+fn checked(command: Command) -> anyhow::Result<Verdict> {
+    let places = ["/feed_motions_in", "/deviation_before_um", "/deviation_after_um", "/findings/0"];
+    Ok(verdict(command, places)?.unwrap_or_else(|said| Verdict::Fails(first_line(&said))))
 }
 
 fn judged(command: Command) -> anyhow::Result<Verdict> {
-    let (status, out, said) = finish(command)?;
-    let Ok(json) = serde_json::from_str::<serde_json::Value>(&out) else {
-        return Ok(Verdict::Silent(said.lines().last().unwrap_or("no answer").to_owned()));
-    };
-    if status == Some(0) {
-        return Ok(Verdict::Holds {
-            motions: json["counts"]["moves_in"].as_u64().unwrap_or_default(),
-            before_um: json["before"]["um"].as_f64().unwrap_or_default(),
-            after_um: json["after"]["um"].as_f64().unwrap_or_default(),
-        });
-    }
-    Ok(Verdict::Fails(json["failures"][0].as_str().unwrap_or("no failure").to_owned()))
+    let last = |said: String| said.lines().last().unwrap_or("no answer").to_owned();
+    let places = ["/counts/moves_in", "/before/um", "/after/um", "/failures/0"];
+    Ok(verdict(command, places)?.unwrap_or_else(|said| Verdict::Silent(last(said))))
 }
 
 /// True where the program goes to machine coordinates: the second judge has no work offsets in its interpreter
@@ -338,53 +333,40 @@ fn section(samples: &[Sample], intro: &str) -> String {
             _ => None,
         })
         .collect();
-    let count = |which: &dyn Fn(&Verdict, &Verdict) -> bool| {
-        corrected.iter().filter(|(_, check, referee)| which(check, referee)).count()
-    };
+    let checks = |is: fn(&Verdict) -> bool| corrected.iter().filter(|(_, c, _)| is(c)).count().to_string();
+    let judged = |is: fn(&Verdict) -> bool| corrected.iter().filter(|(.., j)| is(j)).count().to_string();
     let share = |part: usize| format!("{part} ({:.0} %)", 100.0 * part as f64 / total as f64);
-    let wrong = count(&|check, referee| {
-        !matches!(check, Verdict::Holds { .. } | Verdict::Warned(_)) || matches!(referee, Verdict::Fails(_))
-    });
+    let is_wrong = |(_, check, judge): &&(&Sample, &Verdict, &Verdict)| {
+        !matches!(check, Verdict::Holds { .. } | Verdict::Warned(_)) || matches!(judge, Verdict::Fails(_))
+    };
+    let wrong = corrected.iter().filter(is_wrong).count();
     let with_flow = corrected.iter().filter(|(sample, ..)| sample.flow).count();
     let idle = samples.iter().filter(|sample| matches!(sample.fate, Fate::Idle)).count();
     let broken = samples.iter().filter(|sample| matches!(sample.fate, Fate::Broken(_))).count();
     let refused = total - corrected.len() - broken - idle;
     let alone =
         samples.iter().filter(|s| matches!(&s.fate, Fate::Refused(code, _) if code == "VP0141")).count();
-    let mut text = String::from(intro);
-    text += &table(
-        &["", "programs"],
-        &[
-            vec!["all".into(), total.to_string()],
-            vec!["corrected".into(), share(corrected.len())],
-            vec!["… of these with variables, loops or subroutines".into(), with_flow.to_string()],
-            vec![
-                "… of these with options that a message asked for".into(),
-                corrected.iter().filter(|(sample, ..)| !sample.ways.is_empty()).count().to_string(),
-            ],
-            vec!["refused: subroutines alone (VP0141)".into(), share(alone)],
-            vec!["refused for other reasons".into(), share(refused - alone)],
-            vec!["without feed motion, unchanged".into(), share(idle)],
-            vec!["wrong by either judge".into(), wrong.to_string()],
-            vec![
-                "off by what was warned of: a tapped hole (VP0506)".into(),
-                count(&|check, _| matches!(check, Verdict::Warned(_))).to_string(),
-            ],
-            vec!["neither corrected nor refused".into(), broken.to_string()],
-            vec![
-                "held by the closed loop".into(),
-                count(&|check, _| matches!(check, Verdict::Holds { .. })).to_string(),
-            ],
-            vec![
-                "held by the second judge".into(),
-                count(&|_, referee| matches!(referee, Verdict::Holds { .. })).to_string(),
-            ],
-            vec![
-                "not read by the second judge".into(),
-                count(&|_, referee| matches!(referee, Verdict::Silent(_))).to_string(),
-            ],
-        ],
-    );
+    let with_options = corrected.iter().filter(|(sample, ..)| !sample.ways.is_empty()).count();
+    let rows = [
+        ("all", total.to_string()),
+        ("corrected", share(corrected.len())),
+        ("… of these with variables, loops or subroutines", with_flow.to_string()),
+        ("… of these with options that a message asked for", with_options.to_string()),
+        ("refused: subroutines alone (VP0141)", share(alone)),
+        ("refused for other reasons", share(refused - alone)),
+        ("without feed motion, unchanged", share(idle)),
+        ("wrong by either judge", wrong.to_string()),
+        (
+            "off by what was warned of: a tapped hole (VP0506)",
+            checks(|check| matches!(check, Verdict::Warned(_))),
+        ),
+        ("neither corrected nor refused", broken.to_string()),
+        ("held by the closed loop", checks(|check| matches!(check, Verdict::Holds { .. }))),
+        ("held by the second judge", judged(|judge| matches!(judge, Verdict::Holds { .. }))),
+        ("not read by the second judge", judged(|judge| matches!(judge, Verdict::Silent(_)))),
+    ];
+    let rows = rows.map(|(what, count)| vec![what.to_owned(), count]);
+    let mut text = intro.to_owned() + &table(&["", "programs"], &rows);
     let mut codes: BTreeMap<&str, (usize, &str, &str)> = BTreeMap::new();
     for sample in samples {
         if let Fate::Refused(code, message) = &sample.fate {

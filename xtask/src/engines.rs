@@ -67,13 +67,7 @@ pub(crate) struct Inverse {
 }
 
 pub(crate) fn at(linear_mm: Vector) -> Command {
-    Command {
-        linear_mm,
-        rotary_rad: Vector::zeros(),
-        tool_mm: Vector::zeros(),
-        direction: [0; 3],
-        ..Default::default()
-    }
+    Command { linear_mm, ..Default::default() }
 }
 
 /// The same random targets for everybody, a millimetre inside the volume that all engines share.

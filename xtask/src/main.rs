@@ -1,7 +1,6 @@
 //! Long checks: benchmarks, corpora, tables for the docs.
 
 mod bench;
-mod calibration_samples;
 mod corpus;
 mod dist;
 mod engines;
@@ -35,12 +34,6 @@ struct Arguments {
 enum Task {
     /// Measure the correction of large programs; print a page for docs/performance.md.
     Bench(bench::Options),
-    /// Write the sample measurements of `calibrate` into a folder.
-    CalibrationSamples {
-        /// Where they go.
-        #[arg(default_value = "samples/calibration")]
-        folder: PathBuf,
-    },
     /// Measure the correction of many small programs; print a section for docs/performance.md.
     BenchBatch(bench::batch::Options),
     /// Correct LinuxCNC's samples or its test suite, judge each result twice, and write docs/corpus.md.
@@ -82,7 +75,6 @@ enum Task {
 fn main() -> anyhow::Result<()> {
     let text = match Arguments::parse().task {
         Task::Bench(options) => bench::run_all(&options)?,
-        Task::CalibrationSamples { folder } => calibration_samples::write(&folder)?,
         Task::BenchBatch(options) => bench::batch::run_all(&options)?,
         Task::Corpus(options) => corpus::run(&options)?,
         Task::Dist(options) => dist::run(&options)?,

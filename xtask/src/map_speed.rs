@@ -28,15 +28,8 @@ pub(crate) fn page() -> String {
         let axis = |i: usize| Nodes::over(Range { low: 0.0, high: lengths[i] }, counts[i]).expect("nodes");
         let grid = Grid::new([axis(0), axis(1), axis(2)]).expect("a grid");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let error = |i: usize| {
-            machine.error_mm(&Command {
-                linear_mm: grid.place_mm(i),
-                rotary_rad: Vector::zeros(),
-                tool_mm: Vector::zeros(),
-                direction: [0; 3],
-                ..Default::default()
-            })
-        };
+        let error =
+            |i: usize| machine.error_mm(&Command { linear_mm: grid.place_mm(i), ..Default::default() });
         pool.install(|| (0..grid.len()).into_par_iter().with_min_len(256).map(error).collect::<Vec<Vector>>())
     };
     let published = map([22, 22, 21], 1);

@@ -9,10 +9,10 @@ use std::path::Path;
 
 use anyhow::{Context, bail};
 use clap::Args;
-use correction::{Curve, Options as CorrectionOptions, Outside};
+use correction::Curve;
 use diagnostic::Diagnostic;
 use machine_model::effects::Conditions;
-use machine_model::{Command, PathModel, Vector};
+use machine_model::{Command, PathModel};
 use machine_profile::Profile;
 use nc_program::{Interpreter, Setup};
 use nc_syntax::{Block, Dialect, Reader};
@@ -86,16 +86,7 @@ pub(crate) fn picture() -> anyhow::Result<String> {
     let profile = machine_profile::load(&profile, &|table: &str| std::fs::read(folder.join(table)))
         .map_err(|errors| anyhow::anyhow!("{PROFILE}: {errors:?}"))?;
     let dialect = nc_dialect::builtin(DIALECT).context("the dialect is shipped")?;
-    let setup = Setup {
-        work_offsets: profile.work_offsets.clone(),
-        tools: profile.tools.clone(),
-        default_tool_mm: profile.default_tool_mm,
-        has_rotary: profile.has_rotary(),
-        rotary_matters: profile.rotary_matters(),
-        start_mm: [None; 3],
-        start_deg: [None; 3],
-        ..Default::default()
-    };
+    let setup = crate::bench::setup(&profile);
     let engine = profile.engine(profile.correction.engine, &Conditions::default())?;
     let machine =
         machine_model::FromDatum::new(engine).ok().context("the profile's engine corrects paths")?;
@@ -145,26 +136,8 @@ fn corrected(
     dialect: &Dialect,
     setup: &Setup,
 ) -> anyhow::Result<Vec<u8>> {
-    let job = rewrite::Job {
-        dialect,
-        setup,
-        models: machine_model::Models { axes: machine.machine, tip: None },
-        datums: &machine.datums,
-        options: CorrectionOptions {
-            tolerance_mm: profile.correction.tolerance_um * 1e-3,
-            accept_mm: 5e-3 * profile.correction.tolerance_um,
-            outside: Outside::Refuse,
-            minimum_segment_mm: profile.correction.minimum_segment_mm,
-            orientation_rad: profile.correction.orientation_urad * 1e-6,
-            orientation: correction::Orientation::Tip,
-        },
-        blending_mm: None,
-        decimals_mm: [3; 3],
-        force: false,
-        provenance: "",
-        guards: rewrite::Guards::None,
-        rotary_steps: [(3, 1); 3],
-    };
+    let models = machine_model::Models { axes: machine.machine, tip: None };
+    let job = crate::bench::job(profile, dialect, setup, models, &machine.datums);
     let result = rewrite::correct(text, &job, |_| Ok::<(), Vec<Diagnostic>>(()));
     Ok(result.map_err(refused)?.text)
 }
@@ -220,13 +193,8 @@ fn stroke(
     let mut stroke = Stroke { commanded: Vec::new(), real: Vec::new() };
     for k in 0..=count {
         let commanded = curve.at(k as f64 / count as f64);
-        let command = Command {
-            linear_mm: commanded,
-            rotary_rad: Vector::zeros(),
-            tool_mm: context.tool_mm.into(),
-            datum,
-            ..Default::default()
-        };
+        let command =
+            Command { linear_mm: commanded, tool_mm: context.tool_mm.into(), datum, ..Default::default() };
         let real = commanded + model.error_mm(&command);
         stroke.commanded.push(context.frame.to_program(commanded.into()));
         stroke.real.push(context.frame.to_program(real.into()));

@@ -75,7 +75,6 @@ pub fn compare(
     let commands = |places: &[Vector]| -> Vec<Command> {
         let at = |linear_mm: Vector, side: i8| Command {
             linear_mm,
-            rotary_rad: Vector::zeros(),
             tool_mm,
             direction: [side; 3],
             ..Default::default()

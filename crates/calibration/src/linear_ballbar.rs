@@ -360,13 +360,7 @@ fn closure(estimate: &Estimate, mismatch: [Option<usize>; 3]) -> Option<Term> {
 /// All over the base's volume, coming from both sides.
 fn uncertainty_mm(estimate: &Estimate, layout: &Layout, base: &WithEffects) -> f64 {
     let changed: Vec<usize> = layout.squareness.into_iter().chain(layout.play).flatten().collect();
-    let at = |linear_mm: Vector, side: i8| Command {
-        linear_mm,
-        rotary_rad: Vector::zeros(),
-        tool_mm: Vector::zeros(),
-        direction: [side; 3],
-        ..Default::default()
-    };
+    let at = |linear_mm: Vector, side: i8| Command { linear_mm, direction: [side; 3], ..Default::default() };
     let places = field::places_mm(&base.volume().0);
     let commands: Vec<Command> = places.into_iter().flat_map(|place| [at(place, -1), at(place, 1)]).collect();
     let positions = |x: &DVector<f64>| {

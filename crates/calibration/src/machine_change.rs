@@ -55,13 +55,7 @@ impl Point {
     /// A point of a machine with linear axes and no effects, approached from nowhere in particular.
     #[must_use]
     pub fn new(run: usize, commanded_mm: Vector, tool_mm: Vector, reading: PointReading) -> Self {
-        let command = Command {
-            linear_mm: commanded_mm,
-            rotary_rad: Vector::zeros(),
-            tool_mm,
-            direction: [0; 3],
-            ..Default::default()
-        };
+        let command = Command { linear_mm: commanded_mm, tool_mm, ..Default::default() };
         Self { run, command, by_effects_mm: Vector::zeros(), reading, uncertainty_mm: None }
     }
 }
@@ -594,7 +588,7 @@ pub(crate) fn find(points: &[Point], base: &Base, plan: &Plan) -> Result<Found, 
     let readings = DVector::from_fn(rows.len(), |i, _| value(&points[rows[i].point], rows[i].component));
     let known: Option<Vec<f64>> = rows.iter().map(|row| points[row.point].uncertainty_mm).collect();
     let noise = known.as_deref().map_or(Noise::Common, Noise::Known);
-    let mut setups = first_setups(points, base, &geometry.ideal_mm, plan.turned)?;
+    let mut setups = first_setups(points, base, &geometry.ideal_mm, plan)?;
     let mut gauge = layout.gauge(base);
     let mut open = Vec::new();
     let mut values = DVector::zeros(layout.count);
@@ -680,7 +674,7 @@ fn first_setups(
     points: &[Point],
     base: &Base,
     nominal: &[Vector],
-    turned: bool,
+    plan: &Plan,
 ) -> Result<Vec<Option<SetUp>>, CalibrationError> {
     let machine = base.machine()?;
     let runs = points.iter().map(|p| p.run + 1).max().unwrap_or(0);
@@ -700,7 +694,7 @@ fn first_setups(
             .collect();
         let (from, to): (Vec<Vector>, Vec<Vector>) = pairs.unwrap_or_default().into_iter().unzip();
         let mut motion = RigidMotion::nearest(&from, &to);
-        if !turned && !from.is_empty() {
+        if !plan.turned && !from.is_empty() {
             let shift = |all: &[Vector]| all.iter().sum::<Vector>() / all.len() as f64;
             motion = RigidMotion { turn: Matrix3::identity(), shift_mm: shift(&to) - shift(&from) };
         }

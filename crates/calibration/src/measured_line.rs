@@ -39,13 +39,7 @@ impl MeasuredLine {
         let mut sides = [0; 3];
         sides[self.axis] = direction.signum();
         let error = |tool_mm: Vector| {
-            let command = Command {
-                linear_mm,
-                rotary_rad: Vector::zeros(),
-                tool_mm,
-                direction: sides,
-                ..Default::default()
-            };
+            let command = Command { linear_mm, tool_mm, direction: sides, ..Default::default() };
             machine.predict(&command).error_mm
         };
         let here = error(self.optics_mm);

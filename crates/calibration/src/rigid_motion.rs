@@ -58,7 +58,12 @@ impl RigidMotion {
     #[must_use]
     pub fn nearest(from_mm: &[Vector], to_mm: &[Vector]) -> Self {
         let Some((correlation, from, to)) = correlation(from_mm, to_mm) else { return Self::none() };
-        let turn = orthogonal(&correlation, true);
+        let [u, v_t] = orthogonal(&correlation);
+        let mut turn = u * v_t;
+        if turn.determinant() < 0.0 {
+            // The direction that is known least is turned round; nalgebra sorts singular values downwards.
+            turn = u * Matrix3::from_diagonal(&Vector::new(1.0, 1.0, -1.0)) * v_t;
+        }
         Self { turn, shift_mm: to - turn * from }
     }
 
@@ -75,7 +80,8 @@ impl RigidMotion {
 #[must_use]
 pub fn mirrored_rms_mm(from_mm: &[Vector], to_mm: &[Vector]) -> Option<f64> {
     let (correlation, from, to) = correlation(from_mm, to_mm)?;
-    let turn = orthogonal(&correlation, false);
+    let [u, v_t] = orthogonal(&correlation);
+    let turn = u * v_t;
     (turn.determinant() < 0.0)
         .then(|| RigidMotion { turn, shift_mm: to - turn * from }.rms_mm(from_mm, to_mm))
 }
@@ -92,16 +98,11 @@ fn correlation(from_mm: &[Vector], to_mm: &[Vector]) -> Option<(Matrix3<f64>, Ve
     Some((sum, from, to))
 }
 
-/// The orthogonal matrix nearest to a correlation; a proper rotation where that is asked.
-fn orthogonal(correlation: &Matrix3<f64>, proper: bool) -> Matrix3<f64> {
+/// The orthogonal matrix `U Vᵀ` nearest to a correlation, in its two factors.
+fn orthogonal(correlation: &Matrix3<f64>) -> [Matrix3<f64>; 2] {
     let pull = Matrix3::identity() * (PULL * correlation.norm());
     let svd = (correlation + pull).svd(true, true);
-    let (Some(u), Some(v_t)) = (svd.u, svd.v_t) else { return Matrix3::identity() };
-    if proper && (u * v_t).determinant() < 0.0 {
-        // The direction that is known least is the one to be turned round; nalgebra sorts singular values downwards.
-        return u * Matrix3::from_diagonal(&Vector::new(1.0, 1.0, -1.0)) * v_t;
-    }
-    u * v_t
+    svd.u.zip(svd.v_t).map_or([Matrix3::identity(); 2], |(u, v_t)| [u, v_t])
 }
 
 #[cfg(test)]

@@ -258,13 +258,7 @@ fn uncertainty_mm(estimate: &Estimate, locations: &[Location], steps: &[f64], ba
     let table = description.chain.table();
     let ranges: Vec<Range> = base.volume().0.into_iter().chain(table.iter().map(turned)).collect();
     let command = |place: &Vec<f64>| {
-        let mut command = Command {
-            linear_mm: Vector::from_fn(|i, _| place[i]),
-            rotary_rad: Vector::zeros(),
-            tool_mm: Vector::zeros(),
-            direction: [0; 3],
-            ..Default::default()
-        };
+        let mut command = Command { linear_mm: Vector::from_fn(|i, _| place[i]), ..Default::default() };
         for (axis, angle) in table.iter().zip(&place[3..]) {
             command.rotary_rad[axis.direction()] = *angle;
         }

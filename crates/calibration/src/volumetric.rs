@@ -211,13 +211,7 @@ pub(crate) fn plays(base: &Base, found: &Found) -> [Option<(f64, f64)>; 3] {
         let parameter = found.layout.at(Group::Play(axis))?.start;
         let middle =
             found.layout.plan.nodes_mm.each_ref().map(|nodes| 0.5 * (nodes[0] + nodes[nodes.len() - 1]));
-        let command = Command {
-            linear_mm: Vector::from(middle),
-            rotary_rad: Vector::zeros(),
-            tool_mm: Vector::zeros(),
-            direction: [0; 3],
-            ..Default::default()
-        };
+        let command = Command { linear_mm: Vector::from(middle), ..Default::default() };
         let before = machine.as_ref().map_or(0.0, |machine| machine.reversal_mm(axis, &command));
         Some((before + found.values[parameter], found.estimate.half_width_95(parameter)))
     })
@@ -265,7 +259,6 @@ pub(crate) fn field_commands(points: &[Point], found: &Found) -> Vec<Vec<Command
                 for side in sides {
                     commands.extend(places.iter().map(|linear_mm| Command {
                         linear_mm: *linear_mm,
-                        rotary_rad: Vector::zeros(),
                         tool_mm: *tool_mm,
                         direction: [*side; 3],
                         ..Default::default()

@@ -55,13 +55,7 @@ fn model(description: &Description) -> WithEffects {
 }
 
 fn at(linear_mm: Vector) -> Command {
-    Command {
-        linear_mm,
-        rotary_rad: Vector::zeros(),
-        tool_mm: Vector::zeros(),
-        direction: [0; 3],
-        ..Default::default()
-    }
+    Command { linear_mm, ..Default::default() }
 }
 
 /// Counts how often each parameter's interval holds the truth.

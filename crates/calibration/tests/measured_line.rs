@@ -123,7 +123,6 @@ fn a_change_goes_onto_the_line_of_the_base_and_the_lines_keep_their_angles() {
     let at = |m: &WithEffects, q: &Vector| {
         let command = machine_model::Command {
             linear_mm: *q,
-            rotary_rad: Vector::zeros(),
             tool_mm: Vector::new(0.0, 0.0, -120.0),
             direction: [1, -1, 1],
             ..Default::default()

@@ -130,13 +130,7 @@ fn read(
         .iter()
         .map(|(b, c)| {
             let rotary_rad = Vector::new(0.0, b.to_radians(), c.to_radians());
-            let mut command = Command {
-                linear_mm: Vector::zeros(),
-                rotary_rad,
-                tool_mm,
-                direction: [0; 3],
-                ..Default::default()
-            };
+            let mut command = Command { rotary_rad, tool_mm, ..Default::default() };
             command.linear_mm = model.same_tip_mm(&(place_mm - tool_mm), &command, &Vector::zeros());
             assert!(model.volume().contains(&command.linear_mm), "{command:?}");
             let deviation = model.predict(&command).error_mm + offset_mm;

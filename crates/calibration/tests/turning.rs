@@ -33,13 +33,7 @@ fn reading(part: usize, feature: Feature, radius: f64, z: f64) -> TurnedReading 
         part,
         tool: Some(0),
         feature,
-        command: Command {
-            linear_mm: Vector::new(radius, 0.0, z),
-            rotary_rad: Vector::zeros(),
-            tool_mm: Vector::zeros(),
-            direction: [0; 3],
-            ..Default::default()
-        },
+        command: Command { linear_mm: Vector::new(radius, 0.0, z), ..Default::default() },
         deviation_mm: 0.0,
         by_effects_mm: 0.0,
         uncertainty_mm: None,

@@ -29,23 +29,19 @@ impl Ini {
             let value = entry.value;
             let is = |of: &str, name: &str| entry.is(of, name);
             if is("EMCIO", "DB_PROGRAM") {
-                return Err(refuse(
-                    file,
-                    value,
-                    BEYOND,
-                    both!(
-                        "the tools of this machine are kept by a program of their own",
-                        "данные об инструментах этого станка хранит отдельная программа"
-                    ),
-                    both!(
-                        "which lengths it holds this file does not say",
-                        "какие в ней длины, этот файл не говорит"
-                    ),
-                    both!(
-                        "write them as CSV (tool,length_mm) and give that: `--tool-table FILE`, and the zeros with `--work-offset`",
-                        "запишите их как CSV (tool,length_mm) и дайте его: `--tool-table FILE`, а нули — ключом `--work-offset`"
-                    ),
-                ));
+                let message = both!(
+                    "the tools of this machine are kept by a program of their own",
+                    "данные об инструментах этого станка хранит отдельная программа"
+                );
+                let label = both!(
+                    "which lengths it holds this file does not say",
+                    "какие в ней длины, этот файл не говорит"
+                );
+                let help = both!(
+                    "write them as CSV (tool,length_mm) and give that: `--tool-table FILE`, and the zeros with `--work-offset`",
+                    "запишите их как CSV (tool,length_mm) и дайте его: `--tool-table FILE`, а нули — ключом `--work-offset`"
+                );
+                return Err(refuse(file, value, BEYOND, message, label, help));
             }
             if is("TRAJ", "LINEAR_UNITS") {
                 unit.get_or_insert(value);
@@ -87,14 +83,9 @@ pub(crate) fn entries(file: File<'_>) -> Result<Vec<Entry<'_>>, Box<Refusal>> {
                 "give the whole one that LinuxCNC writes beside it when it starts, with `.expanded` behind its name",
                 "дайте полный, который LinuxCNC при запуске пишет рядом: с `.expanded` после имени"
             );
-            return Err(refuse(
-                file,
-                line,
-                UNREADABLE,
-                both!("this INI file takes in others", "этот INI-файл включает другие"),
-                both!("what they say would be missed", "сказанное в них пропало бы"),
-                help,
-            ));
+            let message = both!("this INI file takes in others", "этот INI-файл включает другие");
+            let label = both!("what they say would be missed", "сказанное в них пропало бы");
+            return Err(refuse(file, line, UNREADABLE, message, label, help));
         }
         if line.text.is_empty() || line.text.starts_with(['#', ';']) {
             continue;
@@ -113,15 +104,13 @@ pub(crate) fn entries(file: File<'_>) -> Result<Vec<Entry<'_>>, Box<Refusal>> {
 /// What `[TRAJ] LINEAR_UNITS` says, mm.
 pub(crate) fn unit_mm(file: File<'_>, unit: Option<Piece<'_>>) -> Result<f64, Box<Refusal>> {
     let Some(unit) = unit else {
-        return Err(refuse_whole(
-            file,
-            UNREADABLE,
-            both!(
-                "no LINEAR_UNITS under [TRAJ]: this is no INI file of a LinuxCNC machine",
-                "в [TRAJ] нет LINEAR_UNITS: это не INI-файл станка с LinuxCNC"
-            ),
-            both!("give the file that LinuxCNC is started with", "дайте файл, с которым запускают LinuxCNC"),
-        ));
+        let message = both!(
+            "no LINEAR_UNITS under [TRAJ]: this is no INI file of a LinuxCNC machine",
+            "в [TRAJ] нет LINEAR_UNITS: это не INI-файл станка с LinuxCNC"
+        );
+        let help =
+            both!("give the file that LinuxCNC is started with", "дайте файл, с которым запускают LinuxCNC");
+        return Err(refuse_whole(file, UNREADABLE, message, help));
     };
     match unit.text.to_ascii_lowercase().as_str() {
         "mm" | "metric" => Ok(1.0),

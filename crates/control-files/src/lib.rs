@@ -31,9 +31,7 @@ pub use ini::Ini;
 pub use machine::Machine;
 pub use measurement_files::Refusal;
 pub use parameters::work_offsets;
-
-/// The number of a tool length, H1 is 1, and what it adds to X, Y and Z, mm.
-pub type Length = (u32, [f64; 3]);
+pub use tool_list::Length;
 
 /// Tool lengths of a file, whoever wrote it, by ascending number.
 ///
@@ -53,4 +51,24 @@ pub fn tool_lengths(name: &str, bytes: &[u8], unit_mm: Option<f64>) -> Result<Ve
     };
     lengths.sort_by_key(|(number, _)| *number);
     Ok(lengths)
+}
+
+impl Machine {
+    /// Reads the INI file of a LinuxCNC machine, or what an MTConnect agent answers to `probe`.
+    ///
+    /// * `name` – the file's, in messages
+    /// * `device` – which device of an MTConnect agent, where it has several
+    ///
+    /// # Errors
+    /// It is neither; it is of a lathe or of a machine without X, Y, Z of its own; a limit is no number or two contradict
+    /// each other; a device is not there, or which one nobody says.
+    pub fn read(name: &str, bytes: &[u8], device: Option<&str>) -> Result<Self, Box<Refusal>> {
+        let text = measurement_files::decoded(bytes);
+        let file = (name, text.as_ref());
+        if text.trim_start().starts_with('<') {
+            mtconnect::machine(file, device)
+        } else {
+            machine::of_ini(file)
+        }
+    }
 }

@@ -1,10 +1,9 @@
 //! What a machine is, as far as its control says so.
 
 use diagnostic::both;
-use measurement_files::{Refusal, decoded};
+use measurement_files::Refusal;
 
 use crate::ini::{entries, unit_mm};
-use crate::mtconnect;
 use crate::refusals::{BEYOND, File, UNREADABLE, refuse, refuse_whole};
 
 /// What a machine is; what the file leaves open stays open.
@@ -20,40 +19,26 @@ pub struct Machine {
     pub rotary: Vec<char>,
 }
 
-impl Machine {
-    /// Reads the INI file of a LinuxCNC machine, or what an MTConnect agent answers to `probe`.
-    ///
-    /// * `name` – the file's, in messages
-    /// * `device` – which device of an MTConnect agent, where it has several
-    ///
-    /// # Errors
-    /// It is neither; it is of a lathe or of a machine without X, Y, Z of its own; a limit is no number or two contradict
-    /// each other; a device is not there, or which one nobody says.
-    pub fn read(name: &str, bytes: &[u8], device: Option<&str>) -> Result<Self, Box<Refusal>> {
-        let text = decoded(bytes);
-        let file = (name, text.as_ref());
-        if text.trim_start().starts_with('<') { mtconnect::machine(file, device) } else { of_ini(file) }
-    }
-}
-
 /// The machine of an INI file of LinuxCNC.
-fn of_ini(file: File<'_>) -> Result<Machine, Box<Refusal>> {
+pub(crate) fn of_ini(file: File<'_>) -> Result<Machine, Box<Refusal>> {
     let entries = entries(file)?;
     let first =
         |section: &str, key: &str| entries.iter().find(|entry| entry.is(section, key)).map(|e| e.value);
     let unit_mm = unit_mm(file, first("TRAJ", "LINEAR_UNITS"))?;
     let kinematics = first("KINS", "KINEMATICS");
     if let Some(lathe) = first("DISPLAY", "LATHE").filter(|value| value.text != "0") {
+        let label = both!("its profile has no Y, and a spindle", "в его профиле нет Y и есть шпиндель");
+        let help = both!(
+            "begin with a copy of machine-profiles/generic_lathe.toml",
+            "начните с копии machine-profiles/generic_lathe.toml"
+        );
         return Err(refuse(
             file,
             lathe,
             BEYOND,
             both!("this is a lathe", "это токарный станок"),
-            both!("its profile has no Y, and a spindle", "в его профиле нет Y и есть шпиндель"),
-            both!(
-                "begin with a copy of machine-profiles/generic_lathe.toml",
-                "начните с копии machine-profiles/generic_lathe.toml"
-            ),
+            label,
+            help,
         ));
     }
     let coordinates =
@@ -70,20 +55,16 @@ fn of_ini(file: File<'_>) -> Result<Machine, Box<Refusal>> {
         module.starts_with("trivkins") || module.ends_with("-trt-kins") || module == "5axiskins"
     };
     if let Some(value) = kinematics.filter(|value| !is_known(value.text)) {
-        return Err(refuse(
-            file,
-            value,
-            BEYOND,
-            both!(
-                "this machine has no axes X, Y and Z of its own",
-                "у этого станка нет собственных осей X, Y и Z"
-            ),
-            both!("its joints move other than straight", "его приводы движутся иначе"),
-            both!(
-                "vpost models machines with straight axes and turning ones in series",
-                "vpost описывает станки из последовательных линейных и поворотных осей"
-            ),
-        ));
+        let message = both!(
+            "this machine has no axes X, Y and Z of its own",
+            "у этого станка нет собственных осей X, Y и Z"
+        );
+        let label = both!("its joints move other than straight", "его приводы движутся иначе");
+        let help = both!(
+            "vpost models machines with straight axes and turning ones in series",
+            "vpost описывает станки из последовательных линейных и поворотных осей"
+        );
+        return Err(refuse(file, value, BEYOND, message, label, help));
     }
     for (number, (travel, letter)) in machine.travels_mm.iter_mut().zip(['X', 'Y', 'Z']).enumerate() {
         // Up to LinuxCNC 2.7 axes were numbered, 0 for X, also where one was left out.
@@ -104,15 +85,13 @@ fn of_ini(file: File<'_>) -> Result<Machine, Box<Refusal>> {
         *travel = low.zip(high).map(|(low, high)| [low, high]);
     }
     if machine.travels_mm.iter().all(Option::is_none) {
-        return Err(refuse_whole(
-            file,
-            UNREADABLE,
-            both!("no axis of this INI file has limits", "ни у одной оси этого INI-файла нет пределов"),
-            both!(
-                "[AXIS_X] MIN_LIMIT and MAX_LIMIT, or leave `--from` out and give `--travel`",
-                "[AXIS_X] MIN_LIMIT и MAX_LIMIT; или без `--from`, с `--travel`"
-            ),
-        ));
+        let message =
+            both!("no axis of this INI file has limits", "ни у одной оси этого INI-файла нет пределов");
+        let help = both!(
+            "[AXIS_X] MIN_LIMIT and MAX_LIMIT, or leave `--from` out and give `--travel`",
+            "[AXIS_X] MIN_LIMIT и MAX_LIMIT; или без `--from`, с `--travel`"
+        );
+        return Err(refuse_whole(file, UNREADABLE, message, help));
     }
     Ok(machine)
 }

@@ -18,17 +18,13 @@ pub(crate) fn machine(file: File<'_>, device: Option<&str>) -> Result<Machine, B
     let root = document.root_element();
     if root.tag_name().name() != "MTConnectDevices" {
         let name = root.tag_name().name();
-        return Err(refuse_at(
-            file,
-            name_of(&root),
-            UNREADABLE,
-            both!("`{name}` describes no machine", "`{name}` не описывает станок"),
-            both!("expected MTConnectDevices", "ожидалось MTConnectDevices"),
-            both!(
-                "ask the agent for `probe`, and save that: http://AGENT:5000/probe",
-                "запросите у агента `probe` и сохраните ответ: http://AGENT:5000/probe"
-            ),
-        ));
+        let message = both!("`{name}` describes no machine", "`{name}` не описывает станок");
+        let label = both!("expected MTConnectDevices", "ожидалось MTConnectDevices");
+        let help = both!(
+            "ask the agent for `probe`, and save that: http://AGENT:5000/probe",
+            "запросите у агента `probe` и сохраните ответ: http://AGENT:5000/probe"
+        );
+        return Err(refuse_at(file, name_of(&root), UNREADABLE, message, label, help));
     }
     let devices: Vec<Node<'_, '_>> =
         elements(root, "Device").filter(|d| elements(*d, "Linear").next().is_some()).collect();
@@ -63,17 +59,13 @@ pub(crate) fn machine(file: File<'_>, device: Option<&str>) -> Result<Machine, B
         let called = |node: &Node<'_, '_>| is_called(node, letter);
         let axes: Vec<Node<'_, '_>> = elements(device, "Linear").filter(called).collect();
         if let [_, second, ..] = axes[..] {
-            return Err(refuse_at(
-                file,
-                name_of(&second),
-                BEYOND,
-                both!("two axes are called {letter}", "две оси названы {letter}"),
-                both!("the second of them", "вторая из них"),
-                both!(
-                    "which one carries the tool is not said: leave `--from` out and give `--travel`",
-                    "какая из них несёт инструмент, не сказано: уберите `--from` и задайте `--travel`"
-                ),
-            ));
+            let message = both!("two axes are called {letter}", "две оси названы {letter}");
+            let label = both!("the second of them", "вторая из них");
+            let help = both!(
+                "which one carries the tool is not said: leave `--from` out and give `--travel`",
+                "какая из них несёт инструмент, не сказано: уберите `--from` и задайте `--travel`"
+            );
+            return Err(refuse_at(file, name_of(&second), BEYOND, message, label, help));
         }
         if let Some(axis) = axes.first() {
             *travel = limits_mm(file, axis, letter)?;

@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 use diagnostic::both;
 use measurement_files::{Piece, Refusal};
 
-use crate::Length;
 use crate::refusals::{BEYOND, File, UNREADABLE, refuse, refuse_whole};
+use crate::tool_list::Length;
 
 /// A program in which a block writes offsets, and nothing else.
 pub(crate) fn is_one(text: &str) -> bool {
@@ -62,49 +62,27 @@ pub(crate) fn lengths(name: &str, text: &str) -> Result<Vec<Length>, Box<Refusal
                 "write G21 (or G20) on a line of its own in front, whichever the control was in",
                 "напишите перед ним отдельной строкой G21 (или G20) — то, что действовало на стойке"
             );
-            return Err(refuse(
-                file,
-                line,
-                UNREADABLE,
-                message,
-                both!("the first length", "первая длина"),
-                help,
-            ));
+            let label = both!("the first length", "первая длина");
+            return Err(refuse(file, line, UNREADABLE, message, label, help));
         };
         if value != 0.0 && !digits.text.contains('.') {
             let message = both!("R{} has no decimal point", "у R{} нет десятичной точки", digits.text);
             let help = both!("write it with a decimal point", "напишите с десятичной точкой");
-            return Err(refuse(
-                file,
-                digits,
-                UNREADABLE,
-                message,
-                both!("increments or a length?", "дискреты или длина?"),
-                help,
-            ));
+            let label = both!("increments or a length?", "дискреты или длина?");
+            return Err(refuse(file, digits, UNREADABLE, message, label, help));
         }
         let part = parts.entry(number).or_insert(Parts { geometry_mm: None, wear_mm: None, at: line });
         let place = if geometry { &mut part.geometry_mm } else { &mut part.wear_mm };
         if place.replace(value * unit_mm).is_some() {
             let message = both!("the length H{number} stands twice", "длина H{number} стоит дважды");
-            return Err(refuse(
-                file,
-                line,
-                UNREADABLE,
-                message,
-                both!("again here", "здесь ещё раз"),
-                both!("keep the line that is true", "оставьте верную строку"),
-            ));
+            let help = both!("keep the line that is true", "оставьте верную строку");
+            return Err(refuse(file, line, UNREADABLE, message, both!("again here", "здесь ещё раз"), help));
         }
     }
     if parts.is_empty() {
         let help = both!("write them like `G10 L10 P1 R120.5`", "пишите их так: `G10 L10 P1 R120.5`");
-        return Err(refuse_whole(
-            file,
-            UNREADABLE,
-            both!("the list holds no tool length", "в списке нет ни одной длины инструмента"),
-            help,
-        ));
+        let message = both!("the list holds no tool length", "в списке нет ни одной длины инструмента");
+        return Err(refuse_whole(file, UNREADABLE, message, help));
     }
     let apart = parts.values().any(|part| part.geometry_mm.is_some());
     let length = |(number, part): (u32, Parts<'_>)| {
@@ -117,14 +95,8 @@ pub(crate) fn lengths(name: &str, text: &str) -> Result<Vec<Length>, Box<Refusal
                 "add `G10 L10 P{number} R…`, or take the line out",
                 "добавьте `G10 L10 P{number} R…` или уберите строку"
             );
-            return Err(refuse(
-                file,
-                part.at,
-                UNREADABLE,
-                message,
-                both!("how long is it?", "какова его длина?"),
-                help,
-            ));
+            let label = both!("how long is it?", "какова его длина?");
+            return Err(refuse(file, part.at, UNREADABLE, message, label, help));
         }
         Ok((number, [0.0, 0.0, part.geometry_mm.unwrap_or(0.0) + part.wear_mm.unwrap_or(0.0)]))
     };
@@ -152,26 +124,22 @@ fn written<'t>(
             ('L' | 'P' | 'R', Some(value)) => {
                 if written.insert(letter, (value, number)).is_some() {
                     let message = both!("{letter} stands twice", "{letter} стоит дважды");
-                    return unread(
-                        message,
-                        both!("in this block", "в этом кадре"),
-                        both!("write one block for each", "напишите на каждую отдельный кадр"),
-                    );
+                    let help = both!("write one block for each", "напишите на каждую отдельный кадр");
+                    return unread(message, both!("in this block", "в этом кадре"), help);
                 }
             }
             _ => {
-                return unread(
-                    both!(
-                        "`{letter}{}` in a list of offsets",
-                        "`{letter}{}` в списке коррекций",
-                        number.text
-                    ),
-                    both!("expected blocks of G10 alone", "ожидались только кадры G10"),
-                    both!(
-                        "give the offsets as the control writes them out, like `G10 L10 P1 R120.5`",
-                        "дайте коррекции так, как их выводит стойка: `G10 L10 P1 R120.5`"
-                    ),
+                let message = both!(
+                    "`{letter}{}` in a list of offsets",
+                    "`{letter}{}` в списке коррекций",
+                    number.text
                 );
+                let label = both!("expected blocks of G10 alone", "ожидались только кадры G10");
+                let help = both!(
+                    "give the offsets as the control writes them out, like `G10 L10 P1 R120.5`",
+                    "дайте коррекции так, как их выводит стойка: `G10 L10 P1 R120.5`"
+                );
+                return unread(message, label, help);
             }
         }
     }
@@ -221,14 +189,8 @@ fn offset<'t>(
                 "write it like `G10 L10 P1 R120.5`: L10 geometry, L11 wear, P the H number, R the length",
                 "пишите так: `G10 L10 P1 R120.5` — L10 геометрия, L11 износ, P номер H, R длина"
             );
-            Err(refuse(
-                file,
-                line,
-                UNREADABLE,
-                message,
-                both!("L, P and R were expected", "ожидались L, P и R"),
-                help,
-            ))
+            let label = both!("L, P and R were expected", "ожидались L, P и R");
+            Err(refuse(file, line, UNREADABLE, message, label, help))
         }
     }
 }

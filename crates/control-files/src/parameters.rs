@@ -46,14 +46,8 @@ pub fn work_offsets(
                 "дайте файл, который INI-файл называет PARAMETER_FILE, таким, каким его пишет LinuxCNC"
             );
             let message = both!("this line is no parameter of LinuxCNC", "эта строка — не параметр LinuxCNC");
-            return Err(refuse(
-                file,
-                line,
-                UNREADABLE,
-                message,
-                both!("expected a number and its value", "ожидались номер и его значение"),
-                help,
-            ));
+            let label = both!("expected a number and its value", "ожидались номер и его значение");
+            return Err(refuse(file, line, UNREADABLE, message, label, help));
         };
         kept.insert(number, (value, line));
     }
@@ -74,75 +68,67 @@ pub fn work_offsets(
         None => refuse_whole(file, BEYOND, message, help),
     };
     if value(G92_HOLDS) != 0.0 && (5211..=5219).any(|number| value(number) != 0.0) {
-        return Err(holds(
-            G92_HOLDS,
-            both!(
-                "a shift by G92 was in force when this file was written",
-                "когда записывался этот файл, действовал сдвиг G92"
-            ),
-            both!("it would shift the program too", "он сдвинул бы и программу"),
-            both!(
-                "end it on the control (G92.1), and give the file anew",
-                "отмените его на стойке (G92.1) и дайте файл заново"
-            ),
-        ));
+        let message = both!(
+            "a shift by G92 was in force when this file was written",
+            "когда записывался этот файл, действовал сдвиг G92"
+        );
+        let label = both!("it would shift the program too", "он сдвинул бы и программу");
+        let help = both!(
+            "end it on the control (G92.1), and give the file anew",
+            "отмените его на стойке (G92.1) и дайте файл заново"
+        );
+        return Err(holds(G92_HOLDS, message, label, help));
     }
     let selected = value(SELECTED);
     if selected != 1.0 {
         let code = SYSTEMS.get((selected - 1.0) as usize).filter(|_| selected >= 1.0);
-        return Err(holds(
-            SELECTED,
-            both!(
-                "{} was in force when this file was written",
-                "когда записывался этот файл, действовало: {:#}",
-                code.map_or(
-                    Text::pair("no work offset", "ни одного смещения нуля"),
-                    |code| Text::same(*code)
-                )
-            ),
-            both!(
-                "a program that names none would begin in it",
-                "программа, которая ничего не выбирает, началась бы с ним"
-            ),
-            both!(
-                "select G54 on the control, and give the file anew",
-                "выберите на стойке G54 и дайте файл заново"
-            ),
-        ));
+        let message = both!(
+            "{} was in force when this file was written",
+            "когда записывался этот файл, действовало: {:#}",
+            code.map_or(Text::pair("no work offset", "ни одного смещения нуля"), |code| {
+                Text::same(*code)
+            })
+        );
+        let label = both!(
+            "a program that names none would begin in it",
+            "программа, которая ничего не выбирает, началась бы с ним"
+        );
+        let help = both!(
+            "select G54 on the control, and give the file anew",
+            "выберите на стойке G54 и дайте файл заново"
+        );
+        return Err(holds(SELECTED, message, label, help));
     }
     let mut work_offsets = Vec::new();
     for (first, code) in (FIRST..).step_by(BETWEEN as usize).zip(SYSTEMS) {
         if value(first + 9) != 0.0 {
-            return Err(holds(
-                first + 9,
-                both!(
-                    "{code} is turned by {} degrees about Z",
-                    "{code} повёрнуто вокруг Z на {} градусов",
-                    value(first + 9)
-                ),
-                both!("a zero that is turned is no shift", "повёрнутый нуль — не сдвиг"),
-                both!(
-                    "end the turn on the control (G10 L2 P{} R0), and give the file anew",
-                    "отмените поворот на стойке (G10 L2 P{} R0) и дайте файл заново",
-                    (first - FIRST) / BETWEEN + 1
-                ),
-            ));
+            let message = both!(
+                "{code} is turned by {} degrees about Z",
+                "{code} повёрнуто вокруг Z на {} градусов",
+                value(first + 9)
+            );
+            let label = both!("a zero that is turned is no shift", "повёрнутый нуль — не сдвиг");
+            let help = both!(
+                "end the turn on the control (G10 L2 P{} R0), and give the file anew",
+                "отмените поворот на стойке (G10 L2 P{} R0) и дайте файл заново",
+                (first - FIRST) / BETWEEN + 1
+            );
+            return Err(holds(first + 9, message, label, help));
         }
         for (at, axis) in (3u32..).zip(["A", "B", "C"]) {
             if has_rotary[at as usize - 3] && value(first + at) != 0.0 {
-                return Err(holds(
-                    first + at,
-                    both!(
-                        "the zero of {axis} under {code} is {} degrees",
-                        "нуль {axis} при {code} — {} градусов",
-                        value(first + at)
-                    ),
-                    both!("rotary axes have no work offset here", "смещения нуля поворотных осей здесь нет"),
-                    both!(
-                        "set it to 0 on the control, and program the machine's own angles",
-                        "обнулите его на стойке и программируйте собственные углы станка"
-                    ),
-                ));
+                let message = both!(
+                    "the zero of {axis} under {code} is {} degrees",
+                    "нуль {axis} при {code} — {} градусов",
+                    value(first + at)
+                );
+                let label =
+                    both!("rotary axes have no work offset here", "смещения нуля поворотных осей здесь нет");
+                let help = both!(
+                    "set it to 0 on the control, and program the machine's own angles",
+                    "обнулите его на стойке и программируйте собственные углы станка"
+                );
+                return Err(holds(first + at, message, label, help));
             }
         }
         work_offsets.push((code.to_owned(), [0, 1, 2].map(|at| value(first + at) * unit_mm)));

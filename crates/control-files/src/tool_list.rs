@@ -3,8 +3,10 @@
 use diagnostic::{Text, both};
 use measurement_files::{Codes, Kind, Refusal, Sheet};
 
-use crate::Length;
 use crate::refusals::UNREADABLE;
+
+/// The number of a tool length, H1 is 1, and what it adds to X, Y and Z, mm.
+pub type Length = (u32, [f64; 3]);
 
 const KIND: Kind<'static> = Kind {
     columns: "tool length_mm x_mm y_mm z_mm diameter_mm note",
@@ -19,10 +21,8 @@ const KIND: Kind<'static> = Kind {
 
 pub(crate) fn lengths(name: &str, bytes: &[u8]) -> Result<Vec<Length>, Box<Refusal>> {
     let sheet = Sheet::read(name, bytes, &KIND, None)?;
-    sheet.need(
-        &["tool"],
-        both!("each length needs the number of its tool", "каждой длине нужен номер её инструмента"),
-    )?;
+    let help = both!("each length needs the number of its tool", "каждой длине нужен номер её инструмента");
+    sheet.need(&["tool"], help)?;
     let by_axis = ["x_mm", "y_mm", "z_mm"].map(|column| sheet.has(column)).contains(&true);
     if by_axis && sheet.has("length_mm") {
         let message = both!(
@@ -36,10 +36,8 @@ pub(crate) fn lengths(name: &str, bytes: &[u8]) -> Result<Vec<Length>, Box<Refus
         return Err(sheet.refuse_column(UNREADABLE, "length_mm", message, help));
     }
     if !by_axis {
-        sheet.need(
-            &["length_mm"],
-            both!("a list of tools needs their lengths", "в списке инструментов нужны длины"),
-        )?;
+        let help = both!("a list of tools needs their lengths", "в списке инструментов нужны длины");
+        sheet.need(&["length_mm"], help)?;
     }
     let mut lengths: Vec<Length> = Vec::new();
     for row in sheet.rows() {
@@ -48,21 +46,13 @@ pub(crate) fn lengths(name: &str, bytes: &[u8]) -> Result<Vec<Length>, Box<Refus
         let number = digits.parse::<u32>().ok().filter(|number| *number > 0);
         let Some(number) = number.filter(|_| written.len() - digits.len() <= 2) else {
             let message = both!("`{written}` is no number of a length", "`{written}` — не номер длины");
-            return Err(row.refuse(
-                UNREADABLE,
-                "tool",
-                message,
-                both!("write H1, T1 or 1", "напишите H1, T1 или 1"),
-            ));
+            let help = both!("write H1, T1 or 1", "напишите H1, T1 или 1");
+            return Err(row.refuse(UNREADABLE, "tool", message, help));
         };
         if lengths.iter().any(|(known, _)| *known == number) {
             let message = both!("tool {number} stands twice", "инструмент {number} стоит дважды");
-            return Err(row.refuse(
-                UNREADABLE,
-                "tool",
-                message,
-                both!("keep the line that is true", "оставьте верную строку"),
-            ));
+            let help = both!("keep the line that is true", "оставьте верную строку");
+            return Err(row.refuse(UNREADABLE, "tool", message, help));
         }
         let vector = if by_axis {
             let mut vector = [0.0; 3];

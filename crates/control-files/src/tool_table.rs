@@ -5,8 +5,8 @@
 use diagnostic::{Text, both};
 use measurement_files::{Piece, Refusal};
 
-use crate::Length;
 use crate::refusals::{UNREADABLE, refuse, refuse_whole};
+use crate::tool_list::Length;
 
 /// Of offsets, diameter, angles and place in the magazine.
 const NUMBERS: &str = "PXYZABCUVWDIJQ";
@@ -24,18 +24,15 @@ pub(crate) fn is_one(text: &str) -> bool {
 pub(crate) fn lengths(name: &str, text: &str, unit_mm: Option<f64>) -> Result<Vec<Length>, Box<Refusal>> {
     let file = (name, text);
     let Some(unit_mm) = unit_mm else {
-        return Err(refuse_whole(
-            file,
-            UNREADABLE,
-            both!(
-                "a tool table of LinuxCNC does not say in which unit its lengths are",
-                "таблица инструментов LinuxCNC не говорит, в какой единице длины"
-            ),
-            both!(
-                "give the machine's INI file, which says it (LINEAR_UNITS): `--linuxcnc-ini FILE`",
-                "дайте INI-файл станка, где это сказано (LINEAR_UNITS): `--linuxcnc-ini FILE`"
-            ),
-        ));
+        let message = both!(
+            "a tool table of LinuxCNC does not say in which unit its lengths are",
+            "таблица инструментов LinuxCNC не говорит, в какой единице длины"
+        );
+        let help = both!(
+            "give the machine's INI file, which says it (LINEAR_UNITS): `--linuxcnc-ini FILE`",
+            "дайте INI-файл станка, где это сказано (LINEAR_UNITS): `--linuxcnc-ini FILE`"
+        );
+        return Err(refuse_whole(file, UNREADABLE, message, help));
     };
     let mut lengths: Vec<Length> = Vec::new();
     for line in Piece::lines(text) {
@@ -70,10 +67,8 @@ pub(crate) fn lengths(name: &str, text: &str, unit_mm: Option<f64>) -> Result<Ve
                 continue;
             }
             if !NUMBERS.contains(letter) {
-                return Err(unread(
-                    word,
-                    both!("not a letter of a tool table", "такой буквы в таблице инструментов нет"),
-                ));
+                let label = both!("not a letter of a tool table", "такой буквы в таблице инструментов нет");
+                return Err(unread(word, label));
             }
             let value =
                 rest.number().ok_or_else(|| unread(word, both!("expected a number", "ожидалось число")))?;
@@ -82,10 +77,8 @@ pub(crate) fn lengths(name: &str, text: &str, unit_mm: Option<f64>) -> Result<Ve
             }
         }
         let Some((number, word)) = number else {
-            return Err(unread(
-                line,
-                both!("expected T and the tool's number", "ожидались T и номер инструмента"),
-            ));
+            let label = both!("expected T and the tool's number", "ожидались T и номер инструмента");
+            return Err(unread(line, label));
         };
         // T0 is no tool.
         if number == 0 {
@@ -96,14 +89,8 @@ pub(crate) fn lengths(name: &str, text: &str, unit_mm: Option<f64>) -> Result<Ve
                 "T{number} stands twice in the tool table",
                 "T{number} стоит в таблице инструментов дважды"
             );
-            return Err(refuse(
-                file,
-                word,
-                UNREADABLE,
-                message,
-                both!("again here", "здесь ещё раз"),
-                both!("keep the line that is true", "оставьте верную строку"),
-            ));
+            let help = both!("keep the line that is true", "оставьте верную строку");
+            return Err(refuse(file, word, UNREADABLE, message, both!("again here", "здесь ещё раз"), help));
         }
         lengths.push((number, vector));
     }

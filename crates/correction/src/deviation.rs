@@ -595,13 +595,7 @@ mod tests {
 
     /// The machine with a tool.
     fn with_tool(model: &dyn PathModel) -> Machine<'_> {
-        let state = Command {
-            linear_mm: Vector::zeros(),
-            rotary_rad: Vector::zeros(),
-            tool_mm: Vector::new(3.0, -5.0, -120.0),
-            direction: [0; 3],
-            ..Default::default()
-        };
+        let state = Command { tool_mm: Vector::new(3.0, -5.0, -120.0), ..Default::default() };
         Machine {
             model,
             state,

@@ -292,11 +292,5 @@ impl<'m> Corrector<'m> {
 
 /// Rotary axes that are commanded so, whatever else is.
 fn standing(rotary_rad: Vector) -> Command {
-    Command {
-        linear_mm: Vector::zeros(),
-        rotary_rad,
-        tool_mm: Vector::zeros(),
-        direction: [0; 3],
-        ..Default::default()
-    }
+    Command { rotary_rad, ..Default::default() }
 }

@@ -432,7 +432,6 @@ fn under_tip_control_directions_hold() {
             linear_mm: linear,
             rotary_rad: rotary.map(f64::to_radians),
             tool_mm: tool_mm.into(),
-            direction: [0; 3],
             ..Default::default()
         };
         let start = thousandth(tip.tip_command(&command(Vector::new(300.0, 310.0, 350.0), from)).linear_mm);

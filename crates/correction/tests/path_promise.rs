@@ -75,25 +75,13 @@ fn worst(model: &dyn PathModel, wanted: &Curve, commanded: &[Curve]) -> f64 {
     for curve in commanded {
         for k in 0..=40 {
             let q = curve.at(f64::from(k) / 40.0);
-            let command = Command {
-                linear_mm: q,
-                rotary_rad: Vector::zeros(),
-                tool_mm: Vector::zeros(),
-                direction: [0; 3],
-                ..Default::default()
-            };
+            let command = Command { linear_mm: q, ..Default::default() };
             worst = worst.max(distance(wanted, &(q + model.error_mm(&command))));
         }
     }
     let last = commanded.last().map(|curve| curve.at(1.0));
     if let Some(q) = last {
-        let command = Command {
-            linear_mm: q,
-            rotary_rad: Vector::zeros(),
-            tool_mm: Vector::zeros(),
-            direction: [0; 3],
-            ..Default::default()
-        };
+        let command = Command { linear_mm: q, ..Default::default() };
         worst = worst.max((q + model.error_mm(&command) - wanted.at(1.0)).norm());
     }
     worst
@@ -255,13 +243,7 @@ fn incremental_moves_do_not_drift() {
         at = next;
     }
     let q = control.at;
-    let command = Command {
-        linear_mm: q,
-        rotary_rad: Vector::zeros(),
-        tool_mm: Vector::zeros(),
-        direction: [0; 3],
-        ..Default::default()
-    };
+    let command = Command { linear_mm: q, ..Default::default() };
     assert!((q + model.error_mm(&command) - at).norm() < 8.7e-4, "{}", q + model.error_mm(&command) - at);
 }
 

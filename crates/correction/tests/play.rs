@@ -137,13 +137,7 @@ impl Hysteresis {
 
     fn tip(&self, judged: &Judged) -> Vector {
         let error = |direction: [i8; 3]| {
-            judged.model.error_mm(&Command {
-                linear_mm: self.at,
-                rotary_rad: Vector::zeros(),
-                tool_mm: Vector::zeros(),
-                direction,
-                ..Default::default()
-            })
+            judged.model.error_mm(&Command { linear_mm: self.at, direction, ..Default::default() })
         };
         let mean = error([0; 3]);
         let mut tip = self.at + mean;

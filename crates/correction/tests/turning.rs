@@ -116,13 +116,7 @@ impl Case<'_> {
 
     /// The largest distance of the real tip from the ideal one at the same time, mm, and of its programmed direction, rad.
     fn furthest(&self, pieces: &[(Piece, Position, Position)]) -> (f64, f64) {
-        let state = Command {
-            linear_mm: Vector::zeros(),
-            rotary_rad: Vector::zeros(),
-            tool_mm: self.block.tool_mm.into(),
-            direction: [0; 3],
-            ..Default::default()
-        };
+        let state = Command { tool_mm: self.block.tool_mm.into(), ..Default::default() };
         let (mut so_far, mut worst, mut aside) = (0.0, 0.0_f64, 0.0_f64);
         for (piece, from, to) in pieces {
             for k in 0..=60 {

@@ -42,13 +42,7 @@ fn line(function: usize, low: f64, high: f64) -> AxisTables {
 }
 
 fn at(x: f64, y: f64, z: f64, tool_mm: Vector) -> Command {
-    Command {
-        linear_mm: Vector::new(x, y, z),
-        rotary_rad: Vector::zeros(),
-        tool_mm,
-        direction: [0; 3],
-        ..Default::default()
-    }
+    Command { linear_mm: Vector::new(x, y, z), tool_mm, ..Default::default() }
 }
 
 fn evaluate(commands: &[Command]) -> impl Fn(&WithEffects) -> Vec<Vector> + Copy + '_ {

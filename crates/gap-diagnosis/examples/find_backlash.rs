@@ -38,13 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let tool_mm = Vector::new(0.0, 0.0, if corner % 2 == 0 { -80.0 } else { -200.0 });
             rows.push(Row {
                 run: usize::from(line),
-                command: Command {
-                    linear_mm,
-                    rotary_rad: Vector::zeros(),
-                    tool_mm,
-                    direction,
-                    ..Default::default()
-                },
+                command: Command { linear_mm, tool_mm, direction, ..Default::default() },
                 conditions: Conditions { feed_mm_min: Some(feed), ..Conditions::default() },
                 predicted_mm: Vector::zeros(),
                 u_um: [None; 3],

@@ -61,7 +61,6 @@ fn measured(plan: Plan, field_um: impl Fn(&Row) -> Vector) -> Measurements {
                     run: line,
                     command: Command {
                         linear_mm: at,
-                        rotary_rad: Vector::zeros(),
                         tool_mm: Vector::new(0.0, 0.0, plan.tools_mm[corner % plan.tools_mm.len()]),
                         direction,
                         ..Default::default()

@@ -28,13 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     })?;
 
     let tool_mm = Vector::new(0.0, 0.0, -120.0);
-    let told = Command {
-        linear_mm: Vector::new(250.0, 100.0, 50.0),
-        rotary_rad: Vector::zeros(),
-        tool_mm,
-        direction: [0; 3],
-        ..Default::default()
-    };
+    let told = Command { linear_mm: Vector::new(250.0, 100.0, 50.0), tool_mm, ..Default::default() };
     let goes = |linear_mm| machine.predict(&Command { linear_mm, ..told }).position_mm - tool_mm;
     let better = machine.solve(&told)?.linear_mm;
     let line = |name: &str, at: Vector| format!("{name:<9} X{:.4} Y{:.4} Z{:.4}\n", at.x, at.y, at.z);

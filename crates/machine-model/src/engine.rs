@@ -119,6 +119,21 @@ pub enum SolveError {
     Undefined(&'static str, &'static str),
 }
 
+/// [`SolveError::OutsideVolume`] for the first axis that leaves the volume (or is not a number).
+pub(crate) fn inside(q: &Vector, volume: &Volume) -> Result<(), SolveError> {
+    for (axis, (range, letter)) in volume.0.iter().zip(['X', 'Y', 'Z']).enumerate() {
+        if !range.contains(q[axis]) {
+            return Err(SolveError::OutsideVolume {
+                axis: letter,
+                value_mm: q[axis],
+                low_mm: range.low,
+                high_mm: range.high,
+            });
+        }
+    }
+    Ok(())
+}
+
 impl SolveError {
     /// True where a place was asked for that lies outside what is calibrated.
     #[must_use]
@@ -197,7 +212,7 @@ pub trait Engine: Send + Sync {
     /// # Errors
     /// What it does not know.
     fn knows(&self, command: &Command) -> Result<(), SolveError> {
-        crate::solve::inside(&command.linear_mm, &self.volume())
+        inside(&command.linear_mm, &self.volume())
     }
 
     /// What to command so that the tool tip comes to `target`.
@@ -284,9 +299,15 @@ pub trait PathModel: Engine {
     /// model jumps inside the stretch. Where rotary axes turn, `e` is [`PathModel::error_from_mm`].
     fn chord_bound_mm(&self, stretch: &Move) -> f64;
 
+    /// The machine within a model that only adds to it: it answers what the model leaves as it is. What the model changes, it says
+    /// itself: errors and bounds, planes, gradients and commands are never asked here.
+    fn within(&self) -> Option<&dyn PathModel> {
+        None
+    }
+
     /// True where the bounds hold while rotary axes turn.
     fn follows_turns(&self) -> bool {
-        false
+        self.within().is_some_and(|machine| machine.follows_turns())
     }
 
     /// Real tip for a command less the tip of an ideal machine whose linear axes stand there too, but its rotary axes
@@ -302,25 +323,25 @@ pub trait PathModel: Engine {
     ///
     /// * `state` – its rotary axes are those with which the tip shall be there
     /// * `programmed_rad` – A, B, C with which it is there
-    fn same_tip_mm(&self, linear_mm: &Vector, _state: &Command, _programmed_rad: &Vector) -> Vector {
-        *linear_mm
+    fn same_tip_mm(&self, linear_mm: &Vector, state: &Command, programmed_rad: &Vector) -> Vector {
+        self.within().map_or(*linear_mm, |machine| machine.same_tip_mm(linear_mm, state, programmed_rad))
     }
 
     /// A vector of the workpiece's frame in the directions of the linear axes, as an ideal table turns it.
-    fn along_axes(&self, workpiece_mm: &Vector, _state: &Command) -> Vector {
-        *workpiece_mm
+    fn along_axes(&self, workpiece_mm: &Vector, state: &Command) -> Vector {
+        self.within().map_or(*workpiece_mm, |machine| machine.along_axes(workpiece_mm, state))
     }
 
     /// Upper bound of how far the workpiece turns along a stretch, all axes of the table together, rad.
-    fn table_turns_rad(&self, _turn: &Turn) -> f64 {
-        0.0
+    fn table_turns_rad(&self, turn: &Turn) -> f64 {
+        self.within().map_or(0.0, |machine| machine.table_turns_rad(turn))
     }
 
     /// The tip of an ideal machine as the workpiece sees it, mm, but for a shift that is the same everywhere.
     ///
     /// With the error added to `linear_mm` it is that of the machine as it is.
-    fn tip_mm(&self, linear_mm: &Vector, _state: &Command) -> Vector {
-        *linear_mm
+    fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {
+        self.within().map_or(*linear_mm, |machine| machine.tip_mm(linear_mm, state))
     }
 
     /// The machine in the coordinates of a tilted working plane, where the control makes axis commands of them.
@@ -329,27 +350,27 @@ pub trait PathModel: Engine {
     }
 
     /// Angle between the tool's real and its ideal direction, seen from the workpiece, rad.
-    fn tilt_rad(&self, _command: &Command) -> f64 {
-        0.0
+    fn tilt_rad(&self, command: &Command) -> f64 {
+        self.within().map_or(0.0, |machine| machine.tilt_rad(command))
     }
 
     /// The tool's direction as the workpiece sees it, unit vectors: that of an ideal machine with the programmed angles, and the
     /// real one for the command. `None` where the model knows of none.
     ///
     /// * `programmed_rad` – A, B, C of the ideal machine
-    fn tool_directions(&self, _command: &Command, _programmed_rad: &Vector) -> Option<[Vector; 2]> {
-        None
+    fn tool_directions(&self, command: &Command, programmed_rad: &Vector) -> Option<[Vector; 2]> {
+        self.within()?.tool_directions(command, programmed_rad)
     }
 
     /// Upper bound, rad, of how far the difference of the two [`PathModel::tool_directions`] leaves the chord of its ends on a
     /// stretch, seen from the directions of the ideal machine's linear axes. Equation (120).
-    fn direction_bound_rad(&self, _stretch: &Move) -> f64 {
-        f64::INFINITY
+    fn direction_bound_rad(&self, stretch: &Move) -> f64 {
+        self.within().map_or(f64::INFINITY, |machine| machine.direction_bound_rad(stretch))
     }
 
     /// Which of A, B, C the machine has.
     fn rotary_axes(&self) -> [bool; 3] {
-        [false; 3]
+        self.within().map_or([false; 3], |machine| machine.rotary_axes())
     }
 
     /// That rotary axes stand inside their travel, whatever their tables cover: where none of them is to be corrected.
@@ -358,13 +379,13 @@ pub trait PathModel: Engine {
     ///
     /// # Errors
     /// [`SolveError::OutsideRotaryRange`] for the first that does not.
-    fn in_travel(&self, _command: &Command, _which: [bool; 3]) -> Result<(), SolveError> {
-        Ok(())
+    fn in_travel(&self, command: &Command, which: [bool; 3]) -> Result<(), SolveError> {
+        self.within().map_or(Ok(()), |machine| machine.in_travel(command, which))
     }
 
     /// True where every rotary axis stands inside its travel and its tables.
-    fn may_turn_to(&self, _command: &Command) -> bool {
-        true
+    fn may_turn_to(&self, command: &Command) -> bool {
+        self.within().is_none_or(|machine| machine.may_turn_to(command))
     }
 
     /// `∂e_c/∂q_a` of [`PathModel::error_mm`] in row c and column a, mm per mm, where the model is one of places and not of
@@ -404,24 +425,24 @@ pub trait PathModel: Engine {
 
     /// True where the error depends on the direction of motion.
     fn depends_on_direction(&self) -> bool {
-        false
+        self.within().is_some_and(|machine| machine.depends_on_direction())
     }
 
     /// Reversal value of an axis (0..=2: X, Y, Z) at a command, mm, along that axis: its error coming from above less its error
     /// coming from below, ISO 230-2. The width of its play: [`crate::Play`].
     ///
     /// The command's direction is not used. Zero for an axis that is the same from both sides; a negative one is no play.
-    fn reversal_mm(&self, _axis: usize, _command: &Command) -> f64 {
-        0.0
+    fn reversal_mm(&self, axis: usize, command: &Command) -> f64 {
+        self.within().map_or(0.0, |machine| machine.reversal_mm(axis, command))
     }
 
     /// True where the error depends on the side from which rotary axes came.
     fn has_rotary_play(&self) -> bool {
-        false
+        self.within().is_some_and(|machine| machine.has_rotary_play())
     }
 
     /// Reversal value of a rotary axis (0..=2: A, B, C) at a command, rad about its line, as [`PathModel::reversal_mm`].
-    fn rotary_reversal_rad(&self, _axis: usize, _command: &Command) -> f64 {
-        0.0
+    fn rotary_reversal_rad(&self, axis: usize, command: &Command) -> f64 {
+        self.within().map_or(0.0, |machine| machine.rotary_reversal_rad(axis, command))
     }
 }

@@ -100,6 +100,10 @@ impl Engine for FromDatum {
 }
 
 impl PathModel for FromDatum {
+    fn within(&self) -> Option<&dyn PathModel> {
+        Some(self.machine())
+    }
+
     fn error_mm(&self, command: &Command) -> Vector {
         counted_from_datum(self.machine(), self.machine().error_mm(command), command)
     }
@@ -113,53 +117,9 @@ impl PathModel for FromDatum {
         self.machine().chord_bound_mm(stretch) + (shift_mm.norm() * turned * turned + bent_mm) / 8.0
     }
 
-    fn follows_turns(&self) -> bool {
-        self.machine().follows_turns()
-    }
-
     fn error_from_mm(&self, command: &Command, programmed_rad: &Vector) -> Vector {
         let error = self.machine().error_from_mm(command, programmed_rad);
         counted_from_datum(self.machine(), error, &Command { rotary_rad: *programmed_rad, ..*command })
-    }
-
-    fn same_tip_mm(&self, linear_mm: &Vector, state: &Command, programmed_rad: &Vector) -> Vector {
-        self.machine().same_tip_mm(linear_mm, state, programmed_rad)
-    }
-
-    fn along_axes(&self, workpiece_mm: &Vector, state: &Command) -> Vector {
-        self.machine().along_axes(workpiece_mm, state)
-    }
-
-    fn table_turns_rad(&self, turn: &crate::Turn) -> f64 {
-        self.machine().table_turns_rad(turn)
-    }
-
-    fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {
-        self.machine().tip_mm(linear_mm, state)
-    }
-
-    fn tilt_rad(&self, command: &Command) -> f64 {
-        self.machine().tilt_rad(command)
-    }
-
-    fn tool_directions(&self, command: &Command, programmed_rad: &Vector) -> Option<[Vector; 2]> {
-        self.machine().tool_directions(command, programmed_rad)
-    }
-
-    fn direction_bound_rad(&self, stretch: &Move) -> f64 {
-        self.machine().direction_bound_rad(stretch)
-    }
-
-    fn rotary_axes(&self) -> [bool; 3] {
-        self.machine().rotary_axes()
-    }
-
-    fn in_travel(&self, command: &Command, which: [bool; 3]) -> Result<(), SolveError> {
-        self.machine().in_travel(command, which)
-    }
-
-    fn may_turn_to(&self, command: &Command) -> bool {
-        self.machine().may_turn_to(command)
     }
 
     fn jacobian(&self, command: &Command) -> Option<Matrix> {
@@ -187,21 +147,5 @@ impl PathModel for FromDatum {
         };
         let targets = targets_mm.map(|target| [0, 1, 2].map(|axis| target[axis] + datum[axis]));
         self.machine().commands_for(&targets, directions, state, everywhere)
-    }
-
-    fn depends_on_direction(&self) -> bool {
-        self.machine().depends_on_direction()
-    }
-
-    fn reversal_mm(&self, axis: usize, command: &Command) -> f64 {
-        self.machine().reversal_mm(axis, command)
-    }
-
-    fn has_rotary_play(&self) -> bool {
-        self.machine().has_rotary_play()
-    }
-
-    fn rotary_reversal_rad(&self, axis: usize, command: &Command) -> f64 {
-        self.machine().rotary_reversal_rad(axis, command)
     }
 }

@@ -225,13 +225,7 @@ mod tests {
                 squareness: Squareness { ec0y_rad: 8e-4, eb0z_rad: -3e-4, ea0z_rad: 5e-4 },
             })
             .unwrap();
-            let state = Command {
-                linear_mm: Vector::zeros(),
-                rotary_rad: Vector::zeros(),
-                tool_mm: Vector::new(3.0, -5.0, -120.0),
-                direction: [0; 3],
-                ..Default::default()
-            };
+            let state = Command { tool_mm: Vector::new(3.0, -5.0, -120.0), ..Default::default() };
             let everywhere = model.everywhere(&state).unwrap();
             for k in 0..400 {
                 let at = |lane: usize, axis: usize| {

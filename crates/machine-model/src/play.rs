@@ -369,13 +369,7 @@ mod tests {
     };
 
     fn command(x: f64, y: f64) -> Command {
-        Command {
-            linear_mm: Vector::new(x, y, 0.0),
-            rotary_rad: Vector::zeros(),
-            tool_mm: Vector::zeros(),
-            direction: [0; 3],
-            ..Default::default()
-        }
+        Command { linear_mm: Vector::new(x, y, 0.0), ..Default::default() }
     }
 
     /// X with tables for each direction, 6 to 14 µm apart along it and 3 µm across; Y with lost motion in Z only.

@@ -2,6 +2,7 @@
 
 use nalgebra::Matrix3;
 
+use crate::engine::inside;
 use crate::{Solution, SolveError, Vector, Volume};
 
 /// Distance to the target at which a command counts as found, mm.
@@ -41,21 +42,6 @@ pub fn solve(
         e = error(&volume.nearest(&q));
     }
     newton(target, volume, &error)
-}
-
-/// [`SolveError::OutsideVolume`] for the first axis that leaves the volume (or is not a number).
-pub(crate) fn inside(q: &Vector, volume: &Volume) -> Result<(), SolveError> {
-    for (axis, (range, letter)) in volume.0.iter().zip(['X', 'Y', 'Z']).enumerate() {
-        if !range.contains(q[axis]) {
-            return Err(SolveError::OutsideVolume {
-                axis: letter,
-                value_mm: q[axis],
-                low_mm: range.low,
-                high_mm: range.high,
-            });
-        }
-    }
-    Ok(())
 }
 
 fn newton(

@@ -6,9 +6,10 @@ use nalgebra::Matrix3;
 use toolpath::TiltedPlane;
 
 use crate::chord_bound::lies_inside;
+use crate::engine::inside;
 use crate::length::Length;
 use crate::rotary::ideally_turned;
-use crate::solve::{inside, solve};
+use crate::solve::solve;
 use crate::standing::Standing;
 use crate::turning_bound::error_in_turn;
 use crate::{

@@ -4,7 +4,7 @@ use crate::effects::{Conditions, EffectKind, EffectTerm, MissingCondition};
 use crate::solve::{FIXED_POINT_ROUNDS, TOLERANCE_MM, solve};
 use crate::{
     Command, Engine, EngineId, Everywhere, LANES, Move, PathModel, Prediction, RigidBody, Solution,
-    SolveError, Turn, Vector, Volume,
+    SolveError, Vector, Volume,
 };
 
 /// An effect cannot be evaluated: what it depends on is not known.
@@ -91,8 +91,6 @@ impl WithEffects {
         // Whether a condition is needed depends on the effect and its numbers, never on the place.
         let anywhere = Command {
             linear_mm: base.volume().nearest(&Vector::zeros()),
-            rotary_rad: Vector::zeros(),
-            tool_mm: Vector::zeros(),
             direction: [1; 3],
             ..Default::default()
         };
@@ -180,6 +178,10 @@ impl Engine for WithEffects {
 }
 
 impl PathModel for WithEffects {
+    fn within(&self) -> Option<&dyn PathModel> {
+        Some(&self.base)
+    }
+
     fn error_mm(&self, command: &Command) -> Vector {
         let command = self.inside(command);
         self.base.error_mm(&command) + self.undone(&command)
@@ -207,26 +209,6 @@ impl PathModel for WithEffects {
             + self.base.table_turn(&programmed).tr_mul(&self.displacement(&command))
     }
 
-    fn same_tip_mm(&self, linear_mm: &Vector, state: &Command, programmed_rad: &Vector) -> Vector {
-        self.base.same_tip_mm(linear_mm, state, programmed_rad)
-    }
-
-    fn along_axes(&self, workpiece_mm: &Vector, state: &Command) -> Vector {
-        self.base.along_axes(workpiece_mm, state)
-    }
-
-    fn table_turns_rad(&self, turn: &Turn) -> f64 {
-        self.base.table_turns_rad(turn)
-    }
-
-    fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {
-        self.base.tip_mm(linear_mm, state)
-    }
-
-    fn tilt_rad(&self, command: &Command) -> f64 {
-        self.base.tilt_rad(command)
-    }
-
     /// Nothing is said of what effects turn the tool by.
     fn tool_directions(&self, command: &Command, programmed_rad: &Vector) -> Option<[Vector; 2]> {
         if self.terms.is_empty() { self.base.tool_directions(command, programmed_rad) } else { None }
@@ -234,18 +216,6 @@ impl PathModel for WithEffects {
 
     fn direction_bound_rad(&self, stretch: &Move) -> f64 {
         if self.terms.is_empty() { self.base.direction_bound_rad(stretch) } else { f64::INFINITY }
-    }
-
-    fn rotary_axes(&self) -> [bool; 3] {
-        self.base.rotary_axes()
-    }
-
-    fn in_travel(&self, command: &Command, which: [bool; 3]) -> Result<(), SolveError> {
-        self.base.in_travel(command, which)
-    }
-
-    fn may_turn_to(&self, command: &Command) -> bool {
-        self.base.may_turn_to(command)
     }
 
     /// Those of the tables, and of every effect over the whole volume: equation (24) grows with the range. `None` on a machine
@@ -316,14 +286,6 @@ impl PathModel for WithEffects {
 
     fn depends_on_direction(&self) -> bool {
         self.depends_on_direction
-    }
-
-    fn has_rotary_play(&self) -> bool {
-        self.base.has_rotary_play()
-    }
-
-    fn rotary_reversal_rad(&self, axis: usize, command: &Command) -> f64 {
-        self.base.rotary_reversal_rad(axis, command)
     }
 
     /// That of the tables and of every lost motion along the axis. What a servo lags by changes with the direction too,

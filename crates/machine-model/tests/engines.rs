@@ -13,13 +13,7 @@ use machines::Random;
 use stan_s500::{inputs, tables, traverses};
 
 fn at(linear_mm: Vector) -> Command {
-    Command {
-        linear_mm,
-        rotary_rad: Vector::zeros(),
-        tool_mm: Vector::zeros(),
-        direction: [0; 3],
-        ..Default::default()
-    }
+    Command { linear_mm, ..Default::default() }
 }
 
 fn engine(id: EngineId, interpolation: Interpolation) -> Box<dyn Engine> {

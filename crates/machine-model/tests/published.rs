@@ -11,13 +11,7 @@ use machine_model::{Command, Engine, EngineId, Squareness, Vector};
 use stan_s500::{inputs, published, tables, traverses};
 
 fn at(x: f64, y: f64, z: f64) -> Command {
-    Command {
-        linear_mm: Vector::new(x, y, z),
-        rotary_rad: Vector::zeros(),
-        tool_mm: Vector::zeros(),
-        direction: [0; 3],
-        ..Default::default()
-    }
+    Command { linear_mm: Vector::new(x, y, z), ..Default::default() }
 }
 
 /// Equal to the last printed digit.

@@ -11,9 +11,6 @@ fn commands() -> Vec<Command> {
     (0..125)
         .map(|n| Command {
             linear_mm: Vector::new(at(n, 0, 400.0), at(n, 1, 280.0), at(n, 2, 200.0)),
-            rotary_rad: Vector::zeros(),
-            tool_mm: Vector::zeros(),
-            direction: [0; 3],
             ..Default::default()
         })
         .collect()

@@ -1,11 +1,11 @@
 //! `[control]`: the dialect, and what the control adds to the path.
 
-use diagnostic::{Diagnostic, both};
+use diagnostic::both;
 use toml::Spanned;
 
 use crate::error::VALUE;
 use crate::format::{self, Blending, BlendingMode};
-use crate::load::Loader;
+use crate::loader::Loader;
 use crate::number::Finite;
 
 /// Controls that round corners by more cut another part, mm.
@@ -47,12 +47,12 @@ impl Loader<'_> {
                 "tolerance_mm бывает только при mode = \"tolerance\""
             ),
         };
-        let diagnostic = Diagnostic::error(VALUE, both!("`blending` of the control is not understood", "`blending` стойки непонятно"))
-            .help(both!(
-                "write what the control's manual or its parameters say, like {{ mode = \"tolerance\", tolerance_mm = 0.005 }}",
-                "напишите то, что сказано в руководстве или параметрах стойки, например {{ mode = \"tolerance\", tolerance_mm = 0.005 }}"
-            ));
-        self.refuse(at, diagnostic, expected);
+        let message = both!("`blending` of the control is not understood", "`blending` стойки непонятно");
+        let help = both!(
+            "write what the control's manual or its parameters say, like {{ mode = \"tolerance\", tolerance_mm = 0.005 }}",
+            "напишите то, что сказано в руководстве или параметрах стойки, например {{ mode = \"tolerance\", tolerance_mm = 0.005 }}"
+        );
+        self.refuse(at, VALUE, message, expected, help);
         None
     }
 }

@@ -1,10 +1,12 @@
 //! What a profile that can be read may still not mean: warnings.
 
-use diagnostic::{Diagnostic, both};
+use diagnostic::{Diagnostic, Text, both};
+use machine_model::engines::Made;
 use machine_model::{Axis, AxisTables, EngineId, Squareness, Vector};
 use measurement_files::OddSizes;
+use units::Length;
 
-use crate::error::{NO_ERRORS, ODD_SIZES};
+use crate::error::{DOUBTFUL_FIELD, NO_ERRORS, ODD_SIZES};
 use crate::profile::{LatheParts, Profile};
 
 impl Profile {
@@ -57,6 +59,86 @@ impl Profile {
             (0..6).filter_map(odd).collect::<Vec<_>>()
         };
         self.tables().flat_map(of_table).collect()
+    }
+
+    /// What its error vectors leave in doubt.
+    fn doubts_of_field(&self) -> Vec<Diagnostic> {
+        let Some(measured) = &self.field else { return Vec::new() };
+        let mut doubts = Vec::new();
+        if let Some(doubt) = measured.field.doubt() {
+            let [stated, scatter] = [doubt.stated_mm, doubt.scatter_mm].map(|mm| Length::from_mm(mm).um());
+            let message = both!(
+                "{}: the vectors scatter by {scatter:.2} um about the field that fits them, and {stated:.2} um are stated",
+                "{}: векторы рассеяны около поля, проведённого по ним, на {scatter:.2} мкм, а задано {stated:.2} мкм",
+                measured.file
+            );
+            let help = if scatter > stated {
+                both!(
+                    "state the noise that repeated readings show: with too little the field follows it",
+                    "задайте шум, который показывают повторные отсчёты: при слишком малом поле повторяет его"
+                )
+            } else {
+                both!(
+                    "state the noise that repeated readings show: with too much the field is smoother than the machine",
+                    "задайте шум, который показывают повторные отсчёты: при слишком большом поле глаже станка"
+                )
+            };
+            doubts.push(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help));
+        }
+        if let Some(mm) = measured.field.blind_to_mm() {
+            let message = both!(
+                "{}: its runs have too few places in common: an offset between them of up to {:.0} um would pass for the machine",
+                "{}: у его серий слишком мало общих точек: сдвиг между ними до {:.0} мкм сошёл бы за станок",
+                measured.file,
+                Length::from_mm(mm).um()
+            );
+            let help = both!(
+                "where each run had a set-up of its own, measure some places in all of them; where all had one, give them one name",
+                "если у каждой серии была своя установка, измерьте часть точек во всех; если установка одна, назовите серии одинаково"
+            );
+            doubts.push(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help));
+        }
+        if let Made::Smooth { missing: missing @ 1.., .. } = measured.field.made() {
+            let message = both!(
+                "{}: the lattice of its places lacks {missing} node(s)",
+                "{}: в решётке его точек недостаёт узлов: {missing}",
+                measured.file
+            );
+            let help = both!(
+                "the vectors are smoothed as scattered ones; measure the missing nodes where that matters",
+                "векторы сглажены как разрозненные; измерьте недостающие узлы, если это важно"
+            );
+            doubts.push(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help));
+        }
+        doubts.extend(self.passed_over(&measured.file));
+        doubts
+    }
+
+    /// Errors of axes that stand beside the vectors: whoever wrote them may take them for corrected as well.
+    fn passed_over(&self, file: &str) -> Option<Diagnostic> {
+        let mut named: Vec<Text> = Vec::new();
+        for (axis, name) in self.description.linear.iter().zip(["X", "Y", "Z"]) {
+            if axis.errors.is_some() || axis.errors_negative.is_some() || axis.backlash_mm != 0.0 {
+                named.push(Text::same(format!("[axis.{name}]")));
+            }
+        }
+        let square = &self.description.squareness;
+        if [square.ec0y_rad, square.eb0z_rad, square.ea0z_rad].iter().any(|angle| *angle != 0.0) {
+            named.push(Text::same("[squareness]".to_owned()));
+        }
+        if named.is_empty() {
+            return None;
+        }
+        let named = Text::join(&named, ", ");
+        let message = both!(
+            "the errors in {named} are not used: the engine field knows the vectors of {file} alone",
+            "погрешности из {named:#} не используются: метод field знает только векторы из {file}"
+        );
+        let help = both!(
+            "the vectors hold what bends the machine already; take the errors of the axes out, or correct by them: --engine rigid-body",
+            "всё, что искривляет станок, уже в векторах; уберите погрешности осей или исправляйте по ним: --engine rigid-body"
+        );
+        Some(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help))
     }
 
     /// True where the rigid-body model errs anywhere; by a profile without errors nothing is corrected.

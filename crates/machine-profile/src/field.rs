@@ -1,15 +1,14 @@
 //! Error vectors measured in the volume, from their CSV file.
 
-use diagnostic::{Diagnostic, Speaks, Text, both};
-use machine_model::engines::{ErrorVector, Field, FieldError, Made};
+use diagnostic::{Speaks, Text, both};
+use machine_model::engines::{ErrorVector, Field, FieldError};
 use machine_model::{Range, Vector};
 use measurement_files::{Codes, Kind, Refusal, Row, Sheet, numbered};
 use units::Length;
 
-use crate::error::{CELL, COLUMN, CONFLICT, DOUBTFUL_FIELD, FIELD, FILE, ProfileError, ROWS, VALUE};
+use crate::error::{CELL, COLUMN, CONFLICT, FIELD, FILE, ProfileError, ROWS, VALUE};
 use crate::format;
-use crate::load::Loader;
-use crate::profile::Profile;
+use crate::loader::Loader;
 
 /// Vectors beyond this are a mistake in the unit, or positions, mm.
 const LARGEST_MM: f64 = 20.0;
@@ -85,27 +84,23 @@ impl Loader<'_> {
         if let Some(axes) = refuses {
             let message =
                 both!("[field] on a machine with {axes}", "[field] на станке, у которого есть {axes:#}");
-            let diagnostic = Diagnostic::error(CONFLICT, message).help(both!(
+            let label = both!("of three linear axes only", "только для трёх линейных осей");
+            let help = both!(
                 "error vectors say nothing of how they change while a rotary axis or a spindle turns: describe this machine by [axis] tables",
                 "векторы погрешности не говорят, как они меняются при повороте оси или шпинделя: опишите этот станок таблицами [axis]"
-            ));
-            self.refuse(
-                written,
-                diagnostic,
-                both!("of three linear axes only", "только для трёх линейных осей"),
             );
+            self.refuse(written, CONFLICT, message, label, help);
             return None;
         }
         if let Some(noise) = &section.noise_um {
             let um = noise.get_ref().0;
             if !(0.0..=MOST_NOISE_UM).contains(&um) {
-                let diagnostic =
-                    Diagnostic::error(VALUE, both!("noise_um is {um}", "noise_um равно {um}")).help(both!(
-                        "give the standard uncertainty of one component in micrometres; 0 meets the vectors of a lattice exactly",
-                        "задайте стандартную неопределённость одной составляющей в микрометрах; 0 — векторы решётки точны"
-                    ));
                 let label = both!("expected 0 to {MOST_NOISE_UM}", "ожидалось от 0 до {MOST_NOISE_UM}");
-                self.refuse(noise, diagnostic, label);
+                let help = both!(
+                    "give the standard uncertainty of one component in micrometres; 0 meets the vectors of a lattice exactly",
+                    "задайте стандартную неопределённость одной составляющей в микрометрах; 0 — векторы решётки точны"
+                );
+                self.refuse(noise, VALUE, both!("noise_um is {um}", "noise_um равно {um}"), label, help);
                 return None;
             }
             around.noise_um = Some(um);
@@ -351,15 +346,11 @@ fn refusal(sheet: &Sheet, runs: &[String], vectors: &[ErrorVector], error: &Fiel
             return of_row(*second, message, both!("the same place", "та же точка"), help);
         }
         FieldError::Exact { vector } => {
-            return of_row(
-                *vector,
-                error.text(),
-                both!("this one", "этот"),
-                both!(
-                    "state an uncertainty of every vector, or of none",
-                    "задайте неопределённость каждого вектора или ни одного"
-                ),
+            let help = both!(
+                "state an uncertainty of every vector, or of none",
+                "задайте неопределённость каждого вектора или ни одного"
             );
+            return of_row(*vector, error.text(), both!("this one", "этот"), help);
         }
         FieldError::Offset { vector, offset_mm } => {
             let um = offset_mm.map(|mm| Length::from_mm(mm).um());
@@ -421,165 +412,4 @@ fn frame(vectors: &[ErrorVector]) -> [Vector; 2] {
         moment += from.cross(&(vector.error_mm - mean));
     }
     [mean, inertia.try_inverse().map_or(Vector::zeros(), |inverse| inverse * moment)]
-}
-
-impl MeasuredField {
-    /// Lines of `profile show`.
-    pub(crate) fn write(&self, out: &mut String, language: diagnostic::Language) -> std::fmt::Result {
-        use std::fmt::Write as _;
-
-        use crate::show::tell;
-        let [low, high] = self.uncertainty_um;
-        let how = match self.field.made() {
-            Made::Lattice([x, y, z]) => {
-                both!(
-                    "a lattice of {x} x {y} x {z}, met exactly",
-                    "решётка {x} x {y} x {z}, воспроизводится точно"
-                )
-            }
-            Made::Smooth { residuals, .. } => {
-                let noise = if low == high {
-                    both!("{low} um", "{low} мкм")
-                } else {
-                    both!("{low} … {high} um", "{low} … {high} мкм")
-                };
-                both!(
-                    "smoothed, noise {noise}, residuals {:.2} of what it says",
-                    "сглажено, шум {noise:#}, остатки {:.2} от него",
-                    residuals.sqrt()
-                )
-            }
-        };
-        tell!(
-            out,
-            language,
-            "field        {}: {} vectors, {how}",
-            "поле         {}: векторов {}, {how:#}",
-            self.file,
-            self.vectors
-        )?;
-        let volume = machine_model::Engine::volume(&self.field);
-        let ranges = volume
-            .0
-            .iter()
-            .zip(["X", "Y", "Z"])
-            .map(|(r, name)| both!("{name} {} … {} mm", "{name} {} … {} мм", r.low, r.high));
-        let cut = if self.field.is_cut() {
-            Text::pair(", without corners that no vector is near", ", без углов, где рядом нет векторов")
-        } else {
-            Text::EMPTY
-        };
-        tell!(
-            out,
-            language,
-            "  volume     {}{cut}",
-            "  объём      {:#}{cut:#}",
-            Text::join(&ranges.collect::<Vec<_>>(), ", ")
-        )?;
-        let tool = self.field.tool_mm();
-        tell!(
-            out,
-            language,
-            "  tool       {} {} {} mm, and no other",
-            "  инструмент {} {} {} мм, и никакой другой",
-            tool.x,
-            tool.y,
-            tool.z
-        )?;
-        let (shift, turn) = (self.frame[0] * 1e3, self.frame[1] * 1e6);
-        tell!(
-            out,
-            language,
-            "  as a whole shifted by {:.2} {:.2} {:.2} um, turned by {:.1} {:.1} {:.1} urad: of the machine or of the set-up",
-            "  в целом сдвинуто на {:.2} {:.2} {:.2} мкм, повёрнуто на {:.1} {:.1} {:.1} мкрад: станок это или установка",
-            shift.x,
-            shift.y,
-            shift.z,
-            turn.x,
-            turn.y,
-            turn.z
-        )
-    }
-}
-
-impl Profile {
-    /// What its error vectors leave in doubt.
-    pub(crate) fn doubts_of_field(&self) -> Vec<Diagnostic> {
-        let Some(measured) = &self.field else { return Vec::new() };
-        let mut doubts = Vec::new();
-        if let Some(doubt) = measured.field.doubt() {
-            let [stated, scatter] = [doubt.stated_mm, doubt.scatter_mm].map(|mm| Length::from_mm(mm).um());
-            let message = both!(
-                "{}: the vectors scatter by {scatter:.2} um about the field that fits them, and {stated:.2} um are stated",
-                "{}: векторы рассеяны около поля, проведённого по ним, на {scatter:.2} мкм, а задано {stated:.2} мкм",
-                measured.file
-            );
-            let help = if scatter > stated {
-                both!(
-                    "state the noise that repeated readings show: with too little the field follows it",
-                    "задайте шум, который показывают повторные отсчёты: при слишком малом поле повторяет его"
-                )
-            } else {
-                both!(
-                    "state the noise that repeated readings show: with too much the field is smoother than the machine",
-                    "задайте шум, который показывают повторные отсчёты: при слишком большом поле глаже станка"
-                )
-            };
-            doubts.push(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help));
-        }
-        if let Some(mm) = measured.field.blind_to_mm() {
-            let message = both!(
-                "{}: its runs have too few places in common: an offset between them of up to {:.0} um would pass for the machine",
-                "{}: у его серий слишком мало общих точек: сдвиг между ними до {:.0} мкм сошёл бы за станок",
-                measured.file,
-                Length::from_mm(mm).um()
-            );
-            let help = both!(
-                "where each run had a set-up of its own, measure some places in all of them; where all had one, give them one name",
-                "если у каждой серии была своя установка, измерьте часть точек во всех; если установка одна, назовите серии одинаково"
-            );
-            doubts.push(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help));
-        }
-        if let Made::Smooth { missing: missing @ 1.., .. } = measured.field.made() {
-            let message = both!(
-                "{}: the lattice of its places lacks {missing} node(s)",
-                "{}: в решётке его точек недостаёт узлов: {missing}",
-                measured.file
-            );
-            let help = both!(
-                "the vectors are smoothed as scattered ones; measure the missing nodes where that matters",
-                "векторы сглажены как разрозненные; измерьте недостающие узлы, если это важно"
-            );
-            doubts.push(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help));
-        }
-        doubts.extend(self.passed_over(&measured.file));
-        doubts
-    }
-
-    /// Errors of axes that stand beside the vectors: whoever wrote them may take them for corrected as well.
-    fn passed_over(&self, file: &str) -> Option<Diagnostic> {
-        let mut named: Vec<Text> = Vec::new();
-        for (axis, name) in self.description.linear.iter().zip(["X", "Y", "Z"]) {
-            if axis.errors.is_some() || axis.errors_negative.is_some() || axis.backlash_mm != 0.0 {
-                named.push(Text::same(format!("[axis.{name}]")));
-            }
-        }
-        let square = &self.description.squareness;
-        if [square.ec0y_rad, square.eb0z_rad, square.ea0z_rad].iter().any(|angle| *angle != 0.0) {
-            named.push(Text::same("[squareness]".to_owned()));
-        }
-        if named.is_empty() {
-            return None;
-        }
-        let named = Text::join(&named, ", ");
-        let message = both!(
-            "the errors in {named} are not used: the engine field knows the vectors of {file} alone",
-            "погрешности из {named:#} не используются: метод field знает только векторы из {file}"
-        );
-        let help = both!(
-            "the vectors hold what bends the machine already; take the errors of the axes out, or correct by them: --engine rigid-body",
-            "всё, что искривляет станок, уже в векторах; уберите погрешности осей или исправляйте по ним: --engine rigid-body"
-        );
-        Some(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help))
-    }
 }

@@ -1,6 +1,6 @@
 //! What a profile says of a lathe: spindle, headstock, tailstock, workpiece, noses.
 
-use diagnostic::{Diagnostic, Speaks, both};
+use diagnostic::{Speaks, Text, both};
 use machine_model::Vector;
 use toml::Spanned;
 use turning::{
@@ -9,9 +9,9 @@ use turning::{
 };
 use units::{Angle, Length};
 
-use crate::error::{CHAIN, CONFLICT, KEY, ProfileError, VALUE};
+use crate::error::{CHAIN, CONFLICT, KEY, VALUE};
 use crate::format::{self, ClampingName, Document, Nose as WrittenNose};
-use crate::load::Loader;
+use crate::loader::Loader;
 use crate::number::Finite;
 use crate::profile::{LatheParts, Nose};
 
@@ -68,50 +68,37 @@ impl Loader<'_> {
         let others = links.iter().filter(|link| !["w", "b", "t", "X", "Z"].contains(link)).count();
         let sound = spindle == 1 && others == 0 && links.len() == 5 && links.last() == Some(&"t");
         if !sound {
-            let diagnostic = Diagnostic::error(
-                CHAIN,
-                both!("{text} is no lathe of two axes", "{text} — не двухосевой токарный станок"),
-            )
-            .help(both!(
+            let message = both!("{text} is no lathe of two axes", "{text} — не двухосевой токарный станок");
+            let help = both!(
                 "write the spindle S behind the workpiece, the bed b, and X and Z, like \"[w S b Z X t]\"",
                 "напишите после детали шпиндель S, станину b, X и Z, например \"[w S b Z X t]\""
-            ));
-            self.refuse(&document.chain, diagnostic, both!("this chain", "эта цепь"));
+            );
+            self.refuse(&document.chain, CHAIN, message, both!("this chain", "эта цепь"), help);
         }
         if let Some(y) = &document.axis.Y {
-            let diagnostic = Diagnostic::error(
-                CONFLICT,
-                both!("[axis.Y] on a lathe of two axes", "[axis.Y] на двухосевом токарном станке"),
-            )
-            .help(both!("remove it: the axes are X and Z", "уберите: оси — X и Z"));
-            self.refuse(y, diagnostic, both!("not in the chain", "её нет в цепи"));
+            let message = both!("[axis.Y] on a lathe of two axes", "[axis.Y] на двухосевом токарном станке");
+            let help = both!("remove it: the axes are X and Z", "уберите: оси — X и Z");
+            self.refuse(y, CONFLICT, message, both!("not in the chain", "её нет в цепи"), help);
         }
         if let Some(square) = &document.squareness.EC0Y_urad {
-            let diagnostic = Diagnostic::error(
-                CONFLICT,
-                both!(
-                    "EC0Y is the squareness of Y, which a lathe of two axes has not",
-                    "EC0Y — перпендикулярность Y, которой у двухосевого токарного станка нет"
-                ),
-            )
-            .help(both!(
+            let message = both!(
+                "EC0Y is the squareness of Y, which a lathe of two axes has not",
+                "EC0Y — перпендикулярность Y, которой у двухосевого токарного станка нет"
+            );
+            let help = both!(
                 "EB0Z is that of Z to X, EA0Z tilts Z out of the plane",
                 "EB0Z — перпендикулярность Z к X, EA0Z наклоняет Z из плоскости"
-            ));
-            self.refuse(square, diagnostic, both!("no such axis", "такой оси нет"));
+            );
+            self.refuse(square, CONFLICT, message, both!("no such axis", "такой оси нет"), help);
         }
         if let Some(tracker) = &document.tracker {
-            let diagnostic =
-                Diagnostic::error(CONFLICT, both!("[tracker] on a lathe", "[tracker] на токарном станке"))
-                    .help(both!(
-                        "give the errors of X and Z as tables: [axis.X] and [axis.Z] with errors",
-                        "задайте погрешности X и Z таблицами: [axis.X] и [axis.Z] с errors"
-                    ));
-            self.refuse(
-                &tracker.x,
-                diagnostic,
-                both!("a lathe has no three traverses", "трёх проходов у токарного станка нет"),
+            let message = both!("[tracker] on a lathe", "[tracker] на токарном станке");
+            let label = both!("a lathe has no three traverses", "трёх проходов у токарного станка нет");
+            let help = both!(
+                "give the errors of X and Z as tables: [axis.X] and [axis.Z] with errors",
+                "задайте погрешности X и Z таблицами: [axis.X] и [axis.Z] с errors"
             );
+            self.refuse(&tracker.x, CONFLICT, message, label, help);
         }
         links.insert(links.len().saturating_sub(1), "Y");
         Some(format!("[{}]", links.join(" ")))
@@ -129,19 +116,15 @@ impl Loader<'_> {
             ("turret_um", document.tool.turret_um.values().next().map(Spanned::span)),
         ];
         for (name, span) in spans.into_iter().filter_map(|(name, span)| Some((name, span?))) {
-            let diagnostic = Diagnostic::error(
-                CONFLICT,
-                both!(
-                    "{name} belongs to a lathe, and the chain has no spindle",
-                    "{name} бывает у токарного станка, а в цепи нет шпинделя"
-                ),
-            )
-            .at(crate::error::span(&span), both!("of a lathe", "токарное"))
-            .help(both!(
+            let message = both!(
+                "{name} belongs to a lathe, and the chain has no spindle",
+                "{name} бывает у токарного станка, а в цепи нет шпинделя"
+            );
+            let help = both!(
                 "write the chain of a lathe, like \"[w S b Z X t]\", or remove this",
                 "напишите цепь токарного станка, например \"[w S b Z X t]\", или уберите это"
-            ));
-            self.errors.push(ProfileError::profile(diagnostic));
+            );
+            self.refuse_at(&span, CONFLICT, message, both!("of a lathe", "токарное"), help);
         }
     }
 
@@ -167,15 +150,13 @@ impl Loader<'_> {
         if let Some(at) = document.tailstock.as_ref().map(|tailstock| &tailstock.get_ref().at_mm)
             && at.get_ref().0 <= 0.0
         {
-            let diagnostic = Diagnostic::error(
-                VALUE,
-                both!("the tailstock stands at {} mm", "задняя бабка стоит в {} мм", at.get_ref().0),
-            )
-            .help(both!(
+            let message =
+                both!("the tailstock stands at {} mm", "задняя бабка стоит в {} мм", at.get_ref().0);
+            let help = both!(
                 "at_mm counts from the chuck's face (face_mm of [spindle]) towards +Z",
                 "at_mm отсчитывается от торца патрона (face_mm в [spindle]) в сторону +Z"
-            ));
-            self.refuse(at, diagnostic, both!("expected above 0", "ожидалось больше 0"));
+            );
+            self.refuse(at, VALUE, message, both!("expected above 0", "ожидалось больше 0"), help);
         }
         let (bending, bears, bar) = self.workpiece(document, tailstock);
         let spindle = Spindle {
@@ -219,50 +200,46 @@ impl Loader<'_> {
         let written = spanned.get_ref();
         let force = match (&written.radial_force_n, written.specific_force_n_mm2) {
             (Some(force), None) => Force::Radial { newton: force.get_ref().0 },
-            (None, Some(Finite(specific_n_mm2))) => {
-                match (written.depth_mm, written.feed_mm) {
-                    (Some(Finite(depth_mm)), Some(Finite(feed_mm))) => {
-                        Force::Cut { specific_n_mm2, depth_mm, feed_mm }
-                    }
-                    _ => {
-                        let diagnostic =
-                        Diagnostic::error(KEY, both!("specific_force_n_mm2 without depth_mm and feed_mm", "specific_force_n_mm2 без depth_mm и feed_mm")).help(
-                            both!("add the depth of cut on the radius and the feed a turn, or give radial_force_n", "добавьте глубину резания по радиусу и подачу на оборот или задайте radial_force_n"),
-                        );
-                        self.refuse(spanned, diagnostic, both!("of this workpiece", "у этой детали"));
-                        NO_FORCE
-                    }
+            (None, Some(Finite(specific_n_mm2))) => match (written.depth_mm, written.feed_mm) {
+                (Some(Finite(depth_mm)), Some(Finite(feed_mm))) => {
+                    Force::Cut { specific_n_mm2, depth_mm, feed_mm }
                 }
-            }
+                _ => {
+                    let message = both!(
+                        "specific_force_n_mm2 without depth_mm and feed_mm",
+                        "specific_force_n_mm2 без depth_mm и feed_mm"
+                    );
+                    let help = both!(
+                        "add the depth of cut on the radius and the feed a turn, or give radial_force_n",
+                        "добавьте глубину резания по радиусу и подачу на оборот или задайте radial_force_n"
+                    );
+                    self.refuse(spanned, KEY, message, both!("of this workpiece", "у этой детали"), help);
+                    NO_FORCE
+                }
+            },
             (None, None) => NO_FORCE,
             (Some(force), Some(_)) => {
-                let diagnostic = Diagnostic::error(
-                    CONFLICT,
-                    both!(
-                        "both radial_force_n and specific_force_n_mm2",
-                        "и radial_force_n, и specific_force_n_mm2"
-                    ),
-                )
-                .help(both!("give one of the two", "задайте одно из двух"));
-                self.refuse(force, diagnostic, both!("counted twice", "учтено дважды"));
+                let message = both!(
+                    "both radial_force_n and specific_force_n_mm2",
+                    "и radial_force_n, и specific_force_n_mm2"
+                );
+                let help = both!("give one of the two", "задайте одно из двух");
+                self.refuse(force, CONFLICT, message, both!("counted twice", "учтено дважды"), help);
                 NO_FORCE
             }
         };
         let tail = |this: &mut Self| match tailstock {
             Some(Tailstock { at_mm, .. }) => Some(at_mm),
             None => {
-                let diagnostic = Diagnostic::error(
-                    KEY,
-                    both!(
-                        "a clamping with a tailstock, and no [tailstock]",
-                        "закрепление с задней бабкой, а раздела [tailstock] нет"
-                    ),
-                )
-                .help(both!(
+                let message = both!(
+                    "a clamping with a tailstock, and no [tailstock]",
+                    "закрепление с задней бабкой, а раздела [tailstock] нет"
+                );
+                let help = both!(
                     "add [tailstock] with at_mm, its centre from the chuck's face",
                     "добавьте [tailstock] с at_mm — местом центра от торца патрона"
-                ));
-                this.refuse(spanned, diagnostic, both!("of this workpiece", "у этой детали"));
+                );
+                this.refuse(spanned, KEY, message, both!("of this workpiece", "у этой детали"), help);
                 None
             }
         };
@@ -274,15 +251,12 @@ impl Loader<'_> {
             Some(ClampingName::Centres) => tail(self).map(|at_mm| Clamping::Centres { at_mm }),
             None if force.newton() == 0.0 => return (Bending::default(), tailstock.is_some(), None),
             None => {
-                let diagnostic = Diagnostic::error(
-                    KEY,
-                    both!("a cutting force without clamping", "сила резания без закрепления"),
-                )
-                .help(both!(
+                let message = both!("a cutting force without clamping", "сила резания без закрепления");
+                let help = both!(
                     "add clamping = \"chuck\", \"chuck-tailstock\" or \"centres\" under [workpiece]",
                     "добавьте clamping = \"chuck\", \"chuck-tailstock\" или \"centres\" в раздел [workpiece]"
-                ));
-                self.refuse(spanned, diagnostic, both!("how is it held?", "как она закреплена?"));
+                );
+                self.refuse(spanned, KEY, message, both!("how is it held?", "как она закреплена?"), help);
                 None
             }
         };
@@ -290,18 +264,15 @@ impl Loader<'_> {
         let bears = !matches!(clamping, Clamping::Chuck);
         let (Some(diameters), Some(modulus)) = (&written.diameters_mm, &written.e_gpa) else {
             if force.newton() != 0.0 {
-                let diagnostic = Diagnostic::error(
-                    KEY,
-                    both!(
-                        "a cutting force without diameters_mm and e_gpa",
-                        "сила резания без diameters_mm и e_gpa"
-                    ),
-                )
-                .help(both!(
+                let message = both!(
+                    "a cutting force without diameters_mm and e_gpa",
+                    "сила резания без diameters_mm и e_gpa"
+                );
+                let help = both!(
                     "add diameters_mm = [[0, 40], [300, 40]] and e_gpa = 210.0 under [workpiece]",
                     "добавьте diameters_mm = [[0, 40], [300, 40]] и e_gpa = 210.0 в раздел [workpiece]"
-                ));
-                self.refuse(spanned, diagnostic, both!("how stiff is it?", "какова её жёсткость?"));
+                );
+                self.refuse(spanned, KEY, message, both!("how stiff is it?", "какова её жёсткость?"), help);
             }
             return (Bending::default(), bears, None);
         };
@@ -330,8 +301,7 @@ impl Loader<'_> {
                         )
                     }
                 };
-                let diagnostic = Diagnostic::error(VALUE, error.text()).help(help);
-                self.refuse(spanned, diagnostic, both!("this workpiece", "эта деталь"));
+                self.refuse(spanned, VALUE, error.text(), both!("this workpiece", "эта деталь"), help);
                 (Bending::default(), bears, None)
             }
         }
@@ -346,18 +316,15 @@ impl Loader<'_> {
         for (name, shift) in &written.turret_um {
             let number = name.strip_prefix('H').and_then(|digits| digits.parse::<u32>().ok());
             let Some((own, length)) = tools.iter().find(|(known, _)| Some(*known) == number) else {
-                let diagnostic = Diagnostic::error(
-                    KEY,
-                    both!(
-                        "`{name}` under turret_um is no tool of lengths_mm",
-                        "`{name}` в turret_um — не инструмент из lengths_mm"
-                    ),
-                )
-                .help(both!(
+                let message = both!(
+                    "`{name}` under turret_um is no tool of lengths_mm",
+                    "`{name}` в turret_um — не инструмент из lengths_mm"
+                );
+                let help = both!(
                     "write the same H number in both, like H1",
                     "напишите в обоих один номер H, например H1"
-                ));
-                self.refuse(shift, diagnostic, both!("of this entry", "в этой записи"));
+                );
+                self.refuse(shift, KEY, message, both!("of this entry", "в этой записи"), help);
                 continue;
             };
             let station = Station { tool_mm: vector(length), shift_mm: pair(Some(*shift.get_ref())) };
@@ -372,18 +339,16 @@ impl Loader<'_> {
             let twin = tools.iter().find(told_apart).map(|(other, _)| format!("H{other}"));
             let twin = twin.or((Vector::from(default) == station.tool_mm).then(|| "default_mm".to_owned()));
             if let Some(twin) = twin {
-                let diagnostic = Diagnostic::error(
-                    CONFLICT,
-                    both!(
-                        "{name} under turret_um has the length of {twin}, whose station errs otherwise",
-                        "у {name} в turret_um та же длина, что у {twin}, а погрешность позиции другая"
-                    ),
-                )
-                .help(both!(
+                let message = both!(
+                    "{name} under turret_um has the length of {twin}, whose station errs otherwise",
+                    "у {name} в turret_um та же длина, что у {twin}, а погрешность позиции другая"
+                );
+                let label = both!("which of the two is it?", "какая из двух?");
+                let help = both!(
                     "a station is known by its tool: write the lengths that the tools have",
                     "позиция узнаётся по инструменту: впишите настоящие вылеты инструментов"
-                ));
-                self.refuse(shift, diagnostic, both!("which of the two is it?", "какая из двух?"));
+                );
+                self.refuse(shift, CONFLICT, message, label, help);
             }
             stations.push(station);
         }
@@ -401,31 +366,25 @@ impl Loader<'_> {
             let number = name.strip_prefix('H').and_then(|digits| digits.parse::<u32>().ok());
             let tool = tools.iter_mut().find(|(known, _)| Some(*known) == number);
             let (Some(number), Some((_, length))) = (number, tool) else {
-                let diagnostic = Diagnostic::error(
-                    KEY,
-                    both!(
-                        "`{name}` under noses is no tool of lengths_mm",
-                        "`{name}` в noses — не инструмент из lengths_mm"
-                    ),
-                )
-                .help(both!(
+                let message = both!(
+                    "`{name}` under noses is no tool of lengths_mm",
+                    "`{name}` в noses — не инструмент из lengths_mm"
+                );
+                let help = both!(
                     "write the same H number in both, like H1",
                     "напишите в обоих один номер H, например H1"
-                ));
-                self.refuse(nose, diagnostic, both!("of this entry", "в этой записи"));
+                );
+                self.refuse(nose, KEY, message, both!("of this entry", "в этой записи"), help);
                 continue;
             };
             let WrittenNose { radius_mm: Finite(radius_mm), direction, height_um, minor_edge_deg } =
                 *nose.get_ref();
             if radius_mm < 0.0 || direction.is_some_and(|direction| direction > 9) {
-                let diagnostic = Diagnostic::error(
-                    VALUE,
-                    both!(
-                        "a nose's radius is 0 or more, its direction 0 to 9",
-                        "радиус при вершине — 0 или больше, направление — от 0 до 9"
-                    ),
+                let message = both!(
+                    "a nose's radius is 0 or more, its direction 0 to 9",
+                    "радиус при вершине — 0 или больше, направление — от 0 до 9"
                 );
-                self.refuse(nose, diagnostic, both!("this nose", "эта вершина"));
+                self.refuse(nose, VALUE, message, both!("this nose", "эта вершина"), Text::EMPTY);
             }
             // The tool vector is minus the length.
             length[1] -= um(height_um);

@@ -3,6 +3,7 @@
 //! The format is the contract's `format = 1`. Files are read by a function the caller gives; errors know
 //! the file and the bytes they speak of. What a column or key means is said where it is read: [`load`].
 
+mod axes;
 mod control;
 mod doubts;
 mod effects;
@@ -11,11 +12,14 @@ mod field;
 mod format;
 mod lathe;
 mod load;
+mod loader;
 mod number;
 mod profile;
+mod program;
 mod show;
 mod tables;
 mod toml_error;
+mod tools;
 mod touched;
 mod write;
 mod zeros;
@@ -23,7 +27,8 @@ mod zeros;
 pub use effects::EngineError;
 pub use error::ProfileError;
 pub use field::MeasuredField;
-pub use load::{Read, load};
+pub use load::load;
+pub use loader::Read;
 pub use profile::{
     AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics, LatheParts,
     LeftAlone, MeasuringFrame, Nose, Outside, Profile, ProgramRules, TurningRules,

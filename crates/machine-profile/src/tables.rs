@@ -51,12 +51,8 @@ fn increasing(sheet: &Sheet, column: &str) -> Result<(), Box<Refusal>> {
             "a table needs at least 2 rows, this one has 1",
             "в таблице нужно не меньше 2 строк, а в этой 1"
         );
-        return Err(only.refuse_row(
-            ROWS,
-            message,
-            both!("the only row", "единственная строка"),
-            both!("measure the ends of the travel at least", "измерьте хотя бы концы хода"),
-        ));
+        let help = both!("measure the ends of the travel at least", "измерьте хотя бы концы хода");
+        return Err(only.refuse_row(ROWS, message, both!("the only row", "единственная строка"), help));
     }
     for pair in rows.windows(2) {
         let (before, at) = (pair[0].needed(column)?, pair[1].needed(column)?);
@@ -105,14 +101,11 @@ fn read_error_rows(file: &str, bytes: &[u8], axis: Axis) -> Result<ErrorRows, Bo
     sheet.need(&[position], expected.clone())?;
     let given = functions.each_ref().map(|key| sheet.has(key));
     if given == [false; 6] {
-        return Err(sheet.refuse_header(
-            COLUMN,
-            both!(
-                "the table holds no error function of axis {axis}",
-                "в таблице нет ни одной функции погрешности оси {axis}"
-            ),
-            expected,
-        ));
+        let message = both!(
+            "the table holds no error function of axis {axis}",
+            "в таблице нет ни одной функции погрешности оси {axis}"
+        );
+        return Err(sheet.refuse_header(COLUMN, message, expected));
     }
     let scale = if axis.is_linear() { 1.0 } else { Angle::from_deg(1.0).rad() };
     let (mut positions, mut rows) = (Vec::new(), Vec::new());
@@ -136,12 +129,9 @@ fn read_error_rows(file: &str, bytes: &[u8], axis: Axis) -> Result<ErrorRows, Bo
                 "погрешность {translation:.3} мм и {:.3} мрад больше, чем бывают геометрические: не та единица?",
                 angle * 1e3
             );
-            return Err(row.refuse_row(
-                ROWS,
-                message,
-                both!("up to 20 mm and 100 mrad are read", "читается до 20 мм и 100 мрад"),
-                both!("name each column by its unit", "назовите в каждом столбце его единицу"),
-            ));
+            let label = both!("up to 20 mm and 100 mrad are read", "читается до 20 мм и 100 мрад");
+            let help = both!("name each column by its unit", "назовите в каждом столбце его единицу");
+            return Err(row.refuse_row(ROWS, message, label, help));
         }
         rows.push(six);
     }
@@ -172,10 +162,8 @@ fn read_traverse(file: &str, bytes: &[u8], axis: Axis) -> Result<Traverse, Box<R
     sheet.need(&[COMMANDED, MEASURED].concat(), kind.expected)?;
     let has_cosines = COSINES.iter().any(|key| sheet.has(key));
     if has_cosines {
-        sheet.need(
-            &COSINES,
-            both!("give all three cosines, or none", "дайте все три косинуса или ни одного"),
-        )?;
+        let help = both!("give all three cosines, or none", "дайте все три косинуса или ни одного");
+        sheet.need(&COSINES, help)?;
     }
     let moving = axis.direction();
     increasing(&sheet, COMMANDED[moving])?;
@@ -191,12 +179,8 @@ fn read_traverse(file: &str, bytes: &[u8], axis: Axis) -> Result<Traverse, Box<R
                 commanded[0][other]
             );
             let help = both!("give each axis a file of its own", "дайте каждой оси отдельный файл");
-            return Err(row.refuse_row(
-                ROWS,
-                message,
-                both!("a traverse moves one axis alone", "в проходе движется одна ось"),
-                help,
-            ));
+            let label = both!("a traverse moves one axis alone", "в проходе движется одна ось");
+            return Err(row.refuse_row(ROWS, message, label, help));
         }
     }
     Ok(Traverse {

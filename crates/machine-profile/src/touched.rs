@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Text, both};
 use machine_model::Way;
 use toml::Spanned;
 use toolpath::AXIS_NAMES;
 
 use crate::error::{CONFLICT, KEY};
-use crate::load::Loader;
+use crate::loader::Loader;
 use crate::number::{Finite, Length};
 use crate::zeros::{
     AlignedTo, End, Found, FoundOffset, OnePlace, Places, ToolThatTouched, TouchPlace, TouchedAt, TouchedBy,
@@ -33,8 +33,7 @@ impl Loader<'_> {
                     "write the word that selects it, like G54 or \"G54.1 P2\"",
                     "напишите слово, которым его выбирают, например G54 или \"G54.1 P2\""
                 );
-                let diagnostic = Diagnostic::error(KEY, message).help(help);
-                self.refuse(offset, diagnostic, both!("of this entry", "в этой записи"));
+                self.refuse(offset, KEY, message, both!("of this entry", "в этой записи"), help);
             }
             let place = match offset.get_ref() {
                 WorkOffset::Place(place) => place,
@@ -65,8 +64,7 @@ impl Loader<'_> {
     }
 
     fn contradicts(&mut self, at: &Spanned<WorkOffset>, message: Text, help: Text) {
-        let diagnostic = Diagnostic::error(CONFLICT, message).help(help);
-        self.refuse(at, diagnostic, both!("of this entry", "в этой записи"));
+        self.refuse(at, CONFLICT, message, both!("of this entry", "в этой записи"), help);
     }
 
     fn aligned(
@@ -93,14 +91,11 @@ impl Loader<'_> {
             return None;
         }
         let Some(axis) = "XYZ".find(along.as_str()).filter(|_| along.len() == 1) else {
-            self.contradicts(
-                entry,
-                both!(
-                    "aligned along `{along}`, which is no linear axis",
-                    "выверено вдоль `{along}`, а это не линейная ось"
-                ),
-                WHICH,
+            let message = both!(
+                "aligned along `{along}`, which is no linear axis",
+                "выверено вдоль `{along}`, а это не линейная ось"
             );
+            self.contradicts(entry, message, WHICH);
             return None;
         };
         let faces = faces.as_deref().unwrap_or(["Y", "X", "XY"][axis]);
@@ -143,14 +138,12 @@ impl Loader<'_> {
             let letter = AXIS_NAMES[axis];
             let twice = own[axis].is_some_and(|own| own.at.is_some()) && all.at.is_some();
             if twice {
-                self.contradicts(
-                    entry,
-                    both!("{letter} was touched at two places", "{letter} касались в двух местах"),
-                    both!(
-                        "keep `at` for all axes, or X, Y and Z with places of their own",
-                        "оставьте `at` для всех осей или X, Y и Z со своими местами"
-                    ),
+                let message = both!("{letter} was touched at two places", "{letter} касались в двух местах");
+                let help = both!(
+                    "keep `at` for all axes, or X, Y and Z with places of their own",
+                    "оставьте `at` для всех осей или X, Y и Z со своими местами"
                 );
+                self.contradicts(entry, message, help);
             }
             self.touch_place(entry, own[axis].unwrap_or(&all), &all, has_rotary)
         })
@@ -180,14 +173,13 @@ impl Loader<'_> {
         }
         let direction = own.direction.or(all.direction).unwrap_or(0);
         if !(-1..=1).contains(&direction) {
-            self.contradicts(
-                entry,
-                both!("the direction of touching is {direction}", "направление касания — {direction}"),
-                both!(
-                    "write 1 where the axis came upwards, -1 where downwards",
-                    "напишите 1, если ось шла в плюс, -1 — если в минус"
-                ),
+            let message =
+                both!("the direction of touching is {direction}", "направление касания — {direction}");
+            let help = both!(
+                "write 1 where the axis came upwards, -1 where downwards",
+                "напишите 1, если ось шла в плюс, -1 — если в минус"
             );
+            self.contradicts(entry, message, help);
         }
         let tool =
             own.tool.as_ref().or(all.tool.as_ref()).and_then(|tool| self.tool_that_touched(entry, tool));

@@ -29,13 +29,7 @@ fn places(profile: &Profile, count: usize, rng: &mut ChaCha8Rng) -> Vec<Vector> 
 }
 
 fn at(profile: &Profile, place_mm: Vector) -> Command {
-    Command {
-        linear_mm: place_mm,
-        rotary_rad: Vector::zeros(),
-        tool_mm: profile.default_tool_mm.into(),
-        direction: [0; 3],
-        ..Default::default()
-    }
+    Command { linear_mm: place_mm, tool_mm: profile.default_tool_mm.into(), ..Default::default() }
 }
 
 /// Normal deviates by the sum of twelve even ones, of variance 1.

@@ -52,20 +52,16 @@ impl Sheet {
     /// The column; the run and how much of its circle it covers.
     pub fn need_bars(&self) -> Result<(), Box<Refusal>> {
         if !self.is_polar() {
-            self.need(
-                &["x_mm", "y_mm", "z_mm"],
-                both!(
-                    "a reading of a ball bar is a length between two balls",
-                    "показание телескопического измерителя — длина между двумя шарами"
-                ),
-            )?;
-            return self.need(
-                &[&CENTRE[..], &["length_mm"]].concat(),
-                both!(
-                    "a ball-bar length needs the centre of the fixed ball",
-                    "для длины измерителя нужен центр неподвижного шара"
-                ),
+            let help = both!(
+                "a reading of a ball bar is a length between two balls",
+                "показание телескопического измерителя — длина между двумя шарами"
             );
+            self.need(&["x_mm", "y_mm", "z_mm"], help)?;
+            let help = both!(
+                "a ball-bar length needs the centre of the fixed ball",
+                "для длины измерителя нужен центр неподвижного шара"
+            );
+            return self.need(&[&CENTRE[..], &["length_mm"]].concat(), help);
         }
         self.need(
             &[&["plane", "radius_mm", "deviation_um"], &CENTRE[..]].concat(),
@@ -79,12 +75,8 @@ impl Sheet {
                     "column `{column}` stands beside angle_deg: {place} says the same",
                     "столбец `{column}` стоит рядом с angle_deg: то же говорит {place:#}"
                 );
-                return Err(self.refuse_column(
-                    self.codes().column,
-                    column,
-                    message,
-                    both!("keep one of the two forms", "оставьте одну из двух форм"),
-                ));
+                let help = both!("keep one of the two forms", "оставьте одну из двух форм");
+                return Err(self.refuse_column(self.codes().column, column, message, help));
             }
         }
         let mut runs: BTreeMap<_, Vec<f64>> = BTreeMap::new();
@@ -145,12 +137,8 @@ impl Row<'_> {
                 "напишите XY, YZ или ZX: угол считается от первой оси ко второй"
             );
             let code: Code = self.sheet().codes().cell;
-            return Err(self.refuse(
-                code,
-                "plane",
-                both!("`{plane}` is no plane", "`{plane}` — не плоскость"),
-                help,
-            ));
+            let message = both!("`{plane}` is no plane", "`{plane}` — не плоскость");
+            return Err(self.refuse(code, "plane", message, help));
         };
         let radius_mm = self.needed("radius_mm")?;
         let angle_rad = self.needed("angle_deg")?.to_radians();

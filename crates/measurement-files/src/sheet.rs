@@ -119,13 +119,8 @@ impl Sheet {
                                 "дайте столбцу имя или очистите его"
                             ),
                         );
-                        return Err(error(
-                            codes.column,
-                            message,
-                            &cell.span,
-                            both!("this cell", "эта ячейка"),
-                            help,
-                        ));
+                        let label = both!("this cell", "эта ячейка");
+                        return Err(error(codes.column, message, &cell.span, label, help));
                     }
                 }
             }
@@ -138,13 +133,9 @@ impl Sheet {
                 if earlier != written {
                     message.push(&both!(": `{earlier}` is the same", ": `{earlier}` — тот же"));
                 }
-                return Err(error(
-                    codes.column,
-                    message,
-                    &cell.span,
-                    both!("this column", "этот столбец"),
-                    both!("remove one of them", "уберите один"),
-                ));
+                let label = both!("this column", "этот столбец");
+                let help = both!("remove one of them", "уберите один");
+                return Err(error(codes.column, message, &cell.span, label, help));
             }
             columns.push(Placed { column, at, factor });
         }
@@ -210,11 +201,8 @@ impl Sheet {
     #[must_use]
     pub fn lacks(&self, key: &str, help: Text) -> Box<Refusal> {
         let header = Column::of(key).map_or_else(|| key.to_owned(), |column| column.header());
-        self.refuse_header(
-            self.codes.column,
-            both!("column `{header}` is missing", "нет столбца `{header}`"),
-            help,
-        )
+        let message = both!("column `{header}` is missing", "нет столбца `{header}`");
+        self.refuse_header(self.codes.column, message, help)
     }
 
     /// A refusal that points at the header.
@@ -228,13 +216,8 @@ impl Sheet {
     #[must_use]
     pub fn refuse_column(&self, code: Code, key: &str, message: Text, help: Text) -> Box<Refusal> {
         let at = self.placed(key).map_or(0, |placed| placed.at);
-        self.refused(
-            code,
-            self.table.header.cells[at].span.clone(),
-            message,
-            both!("this column", "этот столбец"),
-            help,
-        )
+        let label = both!("this column", "этот столбец");
+        self.refused(code, self.table.header.cells[at].span.clone(), message, label, help)
     }
 
     /// The rows.
@@ -311,13 +294,8 @@ impl Header<'_> {
         let known = self.known;
         let header = value(self.text, cell);
         let refuse = |message: Text, help: Text| {
-            Err(error(
-                self.code,
-                both!("column `{header}`{message}", "столбец `{header}`{message:#}"),
-                &cell.span,
-                both!("this column", "этот столбец"),
-                help,
-            ))
+            let message = both!("column `{header}`{message}", "столбец `{header}`{message:#}");
+            Err(error(self.code, message, &cell.span, both!("this column", "этот столбец"), help))
         };
         let write = |place: usize| both!("write `{}`", "напишите `{}`", known[place].header());
         let below_cell = self.units.as_ref().map(|units| &units.cells[at]);
@@ -329,22 +307,21 @@ impl Header<'_> {
                 return refuse(both!(": {name} has no unit", ": у {name} нет единицы"), write(place));
             };
             let units: Vec<&str> = Unit::of(own).collect();
-            refuse(
-                both!(
-                    ": {name} is {}, {} is {}",
-                    ": {name} — {:#}, а {} — {:#}",
-                    own.name(),
-                    unit.name,
-                    unit.quantity.name()
-                ),
-                both!(
-                    "{}; units of {}: {}",
-                    "{:#}; единицы для величины «{:#}»: {}",
-                    write(place),
-                    own.name(),
-                    units.join(", ")
-                ),
-            )
+            let message = both!(
+                ": {name} is {}, {} is {}",
+                ": {name} — {:#}, а {} — {:#}",
+                own.name(),
+                unit.name,
+                unit.quantity.name()
+            );
+            let help = both!(
+                "{}; units of {}: {}",
+                "{:#}; единицы для величины «{:#}»: {}",
+                write(place),
+                own.name(),
+                units.join(", ")
+            );
+            refuse(message, help)
         };
         match said(&header, known) {
             Said::Column { place, factor, unit } => match (unit, below(place), below_cell) {
@@ -355,13 +332,9 @@ impl Header<'_> {
                         above.name,
                         below.name
                     );
-                    Err(error(
-                        self.code,
-                        message,
-                        &below_cell.span,
-                        both!("another unit", "другая единица"),
-                        both!("leave one of the two out", "уберите одну из двух"),
-                    ))
+                    let label = both!("another unit", "другая единица");
+                    let help = both!("leave one of the two out", "уберите одну из двух");
+                    Err(error(self.code, message, &below_cell.span, label, help))
                 }
                 _ => Ok((place, factor)),
             },
@@ -377,10 +350,8 @@ impl Header<'_> {
             ),
             Said::Several { places } => {
                 let [a, b] = places.map(|place| known[place].header());
-                refuse(
-                    both!(" may be {a} or {b}", " — это {a} или {b}?"),
-                    both!("write `{a}` or `{b}`", "напишите `{a}` или `{b}`"),
-                )
+                let message = both!(" may be {a} or {b}", " — это {a} или {b}?");
+                refuse(message, both!("write `{a}` or `{b}`", "напишите `{a}` или `{b}`"))
             }
             Said::Unknown => {
                 if let Some(axis) = Column::axis_of_error_function(&header) {
@@ -388,10 +359,8 @@ impl Header<'_> {
                         " is an error function of {axis}, and the file is of another axis",
                         " — функция погрешности оси {axis}, а файл другой оси"
                     );
-                    return refuse(
-                        message,
-                        both!("give each axis a file of its own", "дайте каждой оси отдельный файл"),
-                    );
+                    let help = both!("give each axis a file of its own", "дайте каждой оси отдельный файл");
+                    return refuse(message, help);
                 }
                 let names: Vec<String> = known.iter().map(Column::header).collect();
                 if ["axis", "ось"].contains(&header.to_lowercase().as_str())
@@ -473,12 +442,8 @@ impl<'s> Row<'s> {
                     both!("write a decimal number like -12.5", "напишите десятичное число, например -12.5")
                 }
             };
-            return Err(self.refuse(
-                codes.cell,
-                key,
-                both!("`{text}` is not a number", "`{text}` — не число"),
-                help,
-            ));
+            let message = both!("`{text}` is not a number", "`{text}` — не число");
+            return Err(self.refuse(codes.cell, key, message, help));
         };
         let value = written * placed.factor;
         match placed.column.beyond(value) {
@@ -498,12 +463,8 @@ impl<'s> Row<'s> {
     /// None, or as [`Self::number`].
     pub fn needed(&self, key: &str) -> Result<f64, Box<Refusal>> {
         self.number(key)?.ok_or_else(|| {
-            self.refuse(
-                self.sheet.codes.cell,
-                key,
-                both!("`{key}` is empty", "`{key}` пусто"),
-                both!("every row needs this number", "это число нужно в каждой строке"),
-            )
+            let help = both!("every row needs this number", "это число нужно в каждой строке");
+            self.refuse(self.sheet.codes.cell, key, both!("`{key}` is empty", "`{key}` пусто"), help)
         })
     }
 

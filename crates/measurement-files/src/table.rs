@@ -64,13 +64,9 @@ impl Table {
                 "save it as CSV: UTF-8, or as Excel's Unicode text",
                 "сохраните его как CSV в UTF-8 или как «Текст Юникод» из Excel"
             );
-            return Err(error(
-                codes.unreadable,
-                both!("the file is no text", "файл — не текст"),
-                &(at..at + 1),
-                both!("a NUL byte", "байт NUL"),
-                help,
-            ));
+            let message = both!("the file is no text", "файл — не текст");
+            let label = both!("a NUL byte", "байт NUL");
+            return Err(error(codes.unreadable, message, &(at..at + 1), label, help));
         }
         while header.cells.last().is_some_and(|cell| cell.span.is_empty()) {
             header.cells.pop();
@@ -353,13 +349,8 @@ impl Rows<'_> {
                             "закройте её или пишите ячейку без кавычек"
                         ),
                     );
-                    return Err(error(
-                        self.code,
-                        message,
-                        &(from - 1..from),
-                        both!("opened here", "открыта здесь"),
-                        help,
-                    ));
+                    let label = both!("opened here", "открыта здесь");
+                    return Err(error(self.code, message, &(from - 1..from), label, help));
                 }
             }
         }
@@ -370,9 +361,10 @@ impl Rows<'_> {
                 "put the whole cell into quotes, and write a quote within as two",
                 "возьмите в кавычки всю ячейку, а кавычку внутри удвойте"
             );
+            let message = both!("text behind a closing quote", "текст после закрывающей кавычки");
             return Err(error(
                 self.code,
-                both!("text behind a closing quote", "текст после закрывающей кавычки"),
+                message,
                 &(to + 1..self.at),
                 both!("this text", "этот текст"),
                 help,

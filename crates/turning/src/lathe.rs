@@ -108,13 +108,7 @@ impl Lathe {
             (0..LOOKS * LOOKS).map(|k| {
                 let linear_mm =
                     Vector::new(along(volume.0[0], k / LOOKS), 0.0, along(volume.0[2], k % LOOKS));
-                Command {
-                    linear_mm,
-                    tool_mm: *tool_mm,
-                    rotary_rad: Vector::zeros(),
-                    direction: [0; 3],
-                    ..Default::default()
-                }
+                Command { linear_mm, tool_mm: *tool_mm, ..Default::default() }
             })
         });
         let highest = heights.map(|command| lathe.height_mm(&command).abs()).fold(0.0, f64::max);

@@ -13,13 +13,7 @@ use turning::{
 const FILE: &str = include_str!("../../../tests/judges/turning/oracles.json");
 
 fn at(x: f64, z: f64) -> Command {
-    Command {
-        linear_mm: Vector::new(x, 0.0, z),
-        rotary_rad: Vector::zeros(),
-        tool_mm: Vector::zeros(),
-        direction: [0; 3],
-        ..Default::default()
-    }
+    Command { linear_mm: Vector::new(x, 0.0, z), ..Default::default() }
 }
 
 fn number(value: &Value, name: &str) -> f64 {

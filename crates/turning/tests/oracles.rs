@@ -39,13 +39,7 @@ fn spindle(synchronous: ErrorMotion) -> Spindle {
 }
 
 fn at(x: f64, z: f64) -> Command {
-    Command {
-        linear_mm: Vector::new(x, 0.0, z),
-        rotary_rad: Vector::zeros(),
-        tool_mm: Vector::zeros(),
-        direction: [0; 3],
-        ..Default::default()
-    }
+    Command { linear_mm: Vector::new(x, 0.0, z), ..Default::default() }
 }
 
 fn wave(order: u32, amplitude: f64, phase_rad: f64) -> Vec<Harmonic> {

@@ -208,13 +208,7 @@ fn points(feeds: &[toolpath::Feed], job: &Job<'_>, repetitions: usize) -> Vec<(&
 }
 
 fn command(linear_mm: [f64; 3]) -> Command {
-    Command {
-        linear_mm: linear_mm.into(),
-        rotary_rad: Vector::zeros(),
-        tool_mm: Vector::new(0.0, 0.0, -120.0),
-        direction: [0; 3],
-        ..Default::default()
-    }
+    Command { linear_mm: linear_mm.into(), tool_mm: Vector::new(0.0, 0.0, -120.0), ..Default::default() }
 }
 
 fn stretch(feed: &toolpath::Feed) -> Move {

@@ -1,6 +1,5 @@
 //! The document: what was run, how it was scored, what came out.
 
-use std::fmt::Write;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use gap_lab::{Kind, NoiseKind};
@@ -8,7 +7,7 @@ use gap_lab::{Kind, NoiseKind};
 use super::outcome::Outcome;
 use super::scores::{
     Rate, Shrinkage, component_right, covered, direction_right, identifiable, of_kind, poor, quantile,
-    shrinkage, shrinkage_by_lab,
+    shrinkage, shrinkage_by_lab, snr,
 };
 use super::table::{confusion, misses, numbers_off};
 
@@ -32,7 +31,7 @@ pub(crate) fn page(outcomes: &[Outcome], run: &Run) -> String {
     let mut text = String::from("# The diagnosis on machines with withheld effects\n\n");
     text.push_str("Made by `cargo run -p xtask --release -- gap-bench`; do not edit.\n\n");
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let words = format!(
+    text += &format!(
         "{} · {} cases of seed {} · {} · {} ({cores} cores), {} cases at a time, {:.0} s\n\n",
         date(),
         outcomes.len(),
@@ -42,7 +41,6 @@ pub(crate) fn page(outcomes: &[Outcome], run: &Run) -> String {
         run.jobs,
         run.elapsed.as_secs_f64()
     );
-    text.push_str(&words);
     text.push_str("## Figures\n\n");
     text.push_str(&figures(outcomes));
     speeds(&mut text, &run.speed);
@@ -68,196 +66,204 @@ pub(crate) fn summary(page: &str) -> String {
     page[from..to].to_owned()
 }
 
-/// A line of the table: goal in words, whether it is met.
-fn line(text: &mut String, name: &str, goal: &str, rate: Rate, met: impl Fn(f64) -> bool) {
-    if rate.total == 0 {
-        writeln!(text, "| {name} | {goal} | – | – | no case |").expect("writing to a string cannot fail");
+/// What a figure is to be.
+#[derive(Clone, Copy)]
+enum Goal {
+    None,
+    AtLeast(f64),
+    AtMost(f64),
+    Within(f64, f64),
+}
+
+impl Goal {
+    fn is_met(self, share: f64) -> bool {
+        match self {
+            Self::None => true,
+            Self::AtLeast(goal) => share >= goal,
+            Self::AtMost(goal) => share <= goal,
+            Self::Within(low, high) => (low..=high).contains(&share),
+        }
+    }
+}
+
+impl std::fmt::Display for Goal {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::None => Ok(()),
+            Self::AtLeast(goal) => write!(f, "≥ {:.0} %", 100.0 * goal),
+            Self::AtMost(goal) => write!(f, "≤ {:.0} %", 100.0 * goal),
+            Self::Within(low, high) => write!(f, "{:.0}–{:.0} %", 100.0 * low, 100.0 * high),
+        }
+    }
+}
+
+/// What stands behind a figure.
+const fn miss(is_met: bool) -> &'static str {
+    if is_met { "" } else { ", **not met**" }
+}
+
+/// A line of the table.
+fn line(text: &mut String, name: &str, goal: Goal, rate: Rate) {
+    let Rate { hits, total } = rate;
+    if total == 0 {
+        *text += &format!("| {name} | {goal} | – | – | no case |\n");
         return;
     }
-    let (low, high) = rate.wilson();
-    writeln!(
-        text,
-        "| {name} | {goal} | {:.1} % | {:.1} – {:.1} % | {} of {}{} |",
-        100.0 * rate.share(),
-        100.0 * low,
-        100.0 * high,
-        rate.hits,
-        rate.total,
-        if met(rate.share()) { "" } else { ", **not met**" }
-    )
-    .expect("writing to a string cannot fail");
+    let met = miss(goal.is_met(rate.share()));
+    *text += &format!("| {name} | {goal} | {} | {hits} of {total}{met} |\n", rate.cells());
 }
+
+/// What counts.
+type Hit = fn(&Outcome) -> bool;
 
 fn figures(all: &[Outcome]) -> String {
     let mut text = String::from("| figure | goal | found | 95 % interval | cases |\n|---|---|---|---|---|\n");
     let t = &mut text;
-    let ladder = [("SNR ≥ 3", 2.0, 99.0, 0.95), ("SNR 1", 0.9, 1.1, 0.92), ("SNR 0.3", 0.2, 0.4, 0.80)];
-    for (word, low, high, goal) in ladder {
-        let list = identifiable(all, low, high);
-        let rate = |l: &[&Outcome]| Rate::of(l.iter().copied(), Outcome::right_first);
-        let goal_word = format!("≥ {:.0} %", 100.0 * goal);
-        line(
-            t,
-            &format!("right effect and axis first, {word}, identifiable"),
-            &goal_word,
-            rate(&list),
-            |s| s >= goal,
-        );
-        line(t, &format!("— of these, poor designs, {word}"), "", rate(&poor(&list)), |_| true);
-        let shown = list.iter().copied().filter(|o| o.case.truth.expected_sigma >= ORACLE_SIGMA);
-        let shown: Vec<&Outcome> = shown.collect();
-        line(
-            t,
-            &format!("— of these, an oracle sees it in half the cases, {word}"),
-            "",
-            rate(&shown),
-            |_| true,
-        );
-        let strong: Vec<&Outcome> = list.into_iter().filter(|o| o.case.truth.expected_sigma >= 6.0).collect();
-        line(t, &format!("— of these, gap ≥ 6 σ in all, {word}"), "", rate(&strong), |_| true);
-    }
+    ladder(t, all);
     let singles: Vec<&Outcome> = of_kind(all, Kind::Single).collect();
-    let seen: Vec<&Outcome> = singles.iter().copied().filter(|o| super::scores::snr(o) > 0.9).collect();
-    line(
-        t,
-        "truth inside the reported set, SNR ≥ 1, silence counts as a miss",
-        "≥ 97 %",
-        Rate::of(seen.iter().copied(), Outcome::inside),
-        |s| s >= 0.97,
-    );
+    let of = |list: &[&Outcome], hit: Hit| Rate::of(list.iter().copied(), hit);
+    let seen: Vec<&Outcome> = singles.iter().copied().filter(|o| snr(o) > 0.9).collect();
+    let name = "truth inside the reported set, SNR ≥ 1, silence counts as a miss";
+    line(t, name, Goal::AtLeast(0.97), of(&seen, Outcome::inside));
     let named: Vec<&Outcome> =
         singles.iter().copied().filter(|o| o.said().is_some_and(|a| !a.causes.is_empty())).collect();
-    line(
-        t,
-        "— where a cause was named, every SNR",
-        "",
-        Rate::of(named.iter().copied(), Outcome::inside),
-        |_| true,
-    );
+    line(t, "— where a cause was named, every SNR", Goal::None, of(&named, Outcome::inside));
     let sizes: Vec<f64> = named.iter().filter_map(|o| o.said()).map(|a| a.set().len() as f64).collect();
-    writeln!(
-        t,
-        "| — median size of the set | ≤ 2 | {:.0} | | {} |",
-        quantile(sizes.clone(), 0.5),
-        sizes.len()
-    )
-    .expect("writing to a string cannot fail");
-    line(
-        t,
-        "aliased design → AMBIGUOUS with the truth inside",
-        "≥ 95 %",
-        Rate::of(of_kind(all, Kind::Aliased), Outcome::honest),
-        |s| s >= 0.95,
-    );
-    line(
-        t,
-        "false alarms on nulls of every kind",
-        "≤ 5 %",
-        Rate::of(of_kind(all, Kind::Null), Outcome::false_alarm),
-        |s| s <= 0.05,
-    );
-    line(
-        t,
-        "effect outside the library → PARTIAL or UNKNOWN",
-        "≥ 85 %",
-        Rate::of(of_kind(all, Kind::Outside), Outcome::admits_unknown),
-        |s| s >= 0.85,
-    );
-    line(
-        t,
-        "true effect removed from the library → PARTIAL or UNKNOWN",
-        "≥ 85 %",
-        Rate::of(of_kind(all, Kind::Removed), Outcome::admits_unknown),
-        |s| s >= 0.85,
-    );
-    line(t, "confident wrong name, all cases", "≤ 2 %", Rate::of(all, Outcome::confidently_wrong), |s| {
-        s <= 0.02
-    });
-    for (word, low, high, goal) in [("two or three effects", 2, 3, 0.9), ("four effects", 4, 4, 0.0)] {
+    let (size, count) = (quantile(sizes.clone(), 0.5), sizes.len());
+    *t += &format!("| — median size of the set | ≤ 2 | {size:.0} | | {count} |\n");
+    let kinds: [(&str, Goal, Kind, Hit); 4] = [
+        (
+            "aliased design → AMBIGUOUS with the truth inside",
+            Goal::AtLeast(0.95),
+            Kind::Aliased,
+            Outcome::honest,
+        ),
+        ("false alarms on nulls of every kind", Goal::AtMost(0.05), Kind::Null, Outcome::false_alarm),
+        (
+            "effect outside the library → PARTIAL or UNKNOWN",
+            Goal::AtLeast(0.85),
+            Kind::Outside,
+            Outcome::admits_unknown,
+        ),
+        (
+            "true effect removed from the library → PARTIAL or UNKNOWN",
+            Goal::AtLeast(0.85),
+            Kind::Removed,
+            Outcome::admits_unknown,
+        ),
+    ];
+    for (name, goal, kind, hit) in kinds {
+        line(t, name, goal, Rate::of(of_kind(all, kind), hit));
+    }
+    line(t, "confident wrong name, all cases", Goal::AtMost(0.02), Rate::of(all, Outcome::confidently_wrong));
+    several(t, all);
+    shrinkages(t, all);
+    let mut coverage = Rate::default();
+    all.iter().filter_map(covered).for_each(|hit| coverage.add(hit));
+    line(t, "parameter inside its 95 % interval", Goal::Within(0.9, 0.98), coverage);
+    places(t, all);
+    for (name, kind) in
+        [("ball bar", Kind::BallBar), ("magnitude only", Kind::Magnitude), ("rotary table", Kind::Rotary)]
+    {
+        line(t, &format!("{name}: right"), Goal::None, Rate::of(of_kind(all, kind), Outcome::right));
+    }
+    times(t, all);
+    let checked: Vec<f64> = all.iter().filter_map(|o| o.transport).map(|c| c.kinematics_um).collect();
+    if !checked.is_empty() {
+        let (worst, count) = (checked.iter().copied().fold(0.0, f64::max), checked.len());
+        *t += &format!(
+            "| largest difference of the lab's kinematics and the model's | | {worst:.3} µm | | {count} profiles |\n"
+        );
+    }
+    text
+}
+
+/// Single effects, rung by rung.
+fn ladder(t: &mut String, all: &[Outcome]) {
+    let rungs = [("SNR ≥ 3", 2.0, 99.0, 0.95), ("SNR 1", 0.9, 1.1, 0.92), ("SNR 0.3", 0.2, 0.4, 0.80)];
+    for (word, low, high, goal) in rungs {
+        let list = identifiable(all, low, high);
+        let rate = |l: &[&Outcome]| Rate::of(l.iter().copied(), Outcome::right_first);
+        let above = |sigma: f64| {
+            let shown = list.iter().copied().filter(|o| o.case.truth.expected_sigma >= sigma);
+            rate(&shown.collect::<Vec<_>>())
+        };
+        let name = format!("right effect and axis first, {word}, identifiable");
+        line(t, &name, Goal::AtLeast(goal), rate(&list));
+        line(t, &format!("— of these, poor designs, {word}"), Goal::None, rate(&poor(&list)));
+        let name = format!("— of these, an oracle sees it in half the cases, {word}");
+        line(t, &name, Goal::None, above(ORACLE_SIGMA));
+        line(t, &format!("— of these, gap ≥ 6 σ in all, {word}"), Goal::None, above(6.0));
+    }
+}
+
+/// Several effects at once.
+fn several(t: &mut String, all: &[Outcome]) {
+    let rows = [("two or three effects", 2..=3, Goal::AtLeast(0.9)), ("four effects", 4..=4, Goal::None)];
+    for (word, counts, goal) in rows {
         let (mut recall, mut precision) = (Rate::default(), Rate::default());
-        for o in of_kind(all, Kind::Multiple).filter(|o| (low..=high).contains(&o.case.truth.effects.len())) {
+        for o in of_kind(all, Kind::Multiple).filter(|o| counts.contains(&o.case.truth.effects.len())) {
             let missed = o.missed().len();
             (0..o.case.truth.effects.len()).for_each(|k| recall.add(k >= missed));
             let causes = o.said().map(|a| a.causes.as_slice()).unwrap_or_default();
             causes.iter().for_each(|c| precision.add(o.case.truth.effects.iter().any(|e| e.id == c.effect)));
         }
-        let goal_word = if goal > 0.0 { "≥ 90 %" } else { "" };
-        line(t, &format!("{word}: recall"), goal_word, recall, |s| s >= goal);
-        line(t, &format!("{word}: precision"), goal_word, precision, |s| s >= goal);
+        line(t, &format!("{word}: recall"), goal, recall);
+        line(t, &format!("{word}: precision"), goal, precision);
     }
+}
+
+/// How far the gap shrinks, against what was predicted.
+fn shrinkages(t: &mut String, all: &[Outcome]) {
     let named = |o: &&Outcome| o.said().is_some_and(|a| a.verdict != "PARTIAL");
     let magnitude = |o: &&Outcome| o.case.kind == Kind::Magnitude;
     let claims = || all.iter().filter(|o| named(o) && !magnitude(o));
     let partly = all.iter().filter(|o| !named(o) && !magnitude(o));
+    let goal = Goal::AtLeast(0.9);
     let list: Vec<Shrinkage> = claims().filter_map(shrinkage).collect();
-    shrink_lines(t, "NAMED or AMBIGUOUS: hold-out block of the answer", Some(0.9), &list);
+    shrink_lines(t, "NAMED or AMBIGUOUS: hold-out block of the answer", goal, &list);
     let list: Vec<Shrinkage> = claims().filter_map(shrinkage_by_lab).collect();
-    shrink_lines(t, "NAMED or AMBIGUOUS: the lab's own account of the written profile", Some(0.9), &list);
-    shrink_lines(t, "PARTIAL: hold-out block", None, &partly.filter_map(shrinkage).collect::<Vec<_>>());
+    shrink_lines(t, "NAMED or AMBIGUOUS: the lab's own account of the written profile", goal, &list);
+    shrink_lines(t, "PARTIAL: hold-out block", Goal::None, &partly.filter_map(shrinkage).collect::<Vec<_>>());
     let list: Vec<Shrinkage> = all.iter().filter(magnitude).filter_map(shrinkage).collect();
-    shrink_lines(t, "magnitude only: hold-out block", None, &list);
-    let mut coverage = Rate::default();
-    all.iter().filter_map(covered).for_each(|hit| coverage.add(hit));
-    line(t, "parameter inside its 95 % interval", "90–98 %", coverage, |s| (0.9..=0.98).contains(&s));
+    shrink_lines(t, "magnitude only: hold-out block", Goal::None, &list);
+}
+
+/// Where the gap lies.
+fn places(t: &mut String, all: &[Outcome]) {
+    let strong = || of_kind(all, Kind::Single).filter(|o| snr(o) > 2.0);
     let mut component = Rate::default();
-    of_kind(all, Kind::Single)
-        .filter(|o| super::scores::snr(o) > 2.0)
-        .filter_map(component_right)
-        .for_each(|hit| component.add(hit));
-    line(t, "where: component right, SNR ≥ 3", "≥ 95 %", component, |s| s >= 0.95);
+    strong().filter_map(component_right).for_each(|hit| component.add(hit));
+    line(t, "where: component right, SNR ≥ 3", Goal::AtLeast(0.95), component);
     let mut direction = Rate::default();
     identifiable(all, 2.0, 99.0).into_iter().filter_map(direction_right).for_each(|hit| direction.add(hit));
     let name = "where: axis and direction right (backlash, lost motion, servo lag and mismatch), SNR ≥ 3";
-    line(t, name, "≥ 95 %", direction, |s| s >= 0.95);
-    let overlaps: Vec<f64> = of_kind(all, Kind::Single)
-        .filter(|o| super::scores::snr(o) > 2.0)
-        .filter_map(super::voxels::overlap)
-        .collect();
+    line(t, name, Goal::AtLeast(0.95), direction);
+    let overlaps: Vec<f64> = strong().filter_map(super::voxels::overlap).collect();
     if !overlaps.is_empty() {
         let mean = overlaps.iter().sum::<f64>() / overlaps.len() as f64;
-        let met = if mean >= 0.6 { "" } else { ", **not met**" };
-        writeln!(
-            t,
-            "| where: overlap of the worst 20 % of cells, SNR ≥ 3, mean | ≥ 0.6 | {mean:.2} | | {}{met} |",
-            overlaps.len()
-        )
-        .expect("writing to a string cannot fail");
+        let (count, met) = (overlaps.len(), miss(mean >= 0.6));
+        *t += &format!(
+            "| where: overlap of the worst 20 % of cells, SNR ≥ 3, mean | ≥ 0.6 | {mean:.2} | | {count}{met} |\n"
+        );
     }
-    line(t, "ball bar: right", "", Rate::of(of_kind(all, Kind::BallBar), Outcome::right), |_| true);
-    line(t, "magnitude only: right", "", Rate::of(of_kind(all, Kind::Magnitude), Outcome::right), |_| true);
-    line(t, "rotary table: right", "", Rate::of(of_kind(all, Kind::Rotary), Outcome::right), |_| true);
-    times(t, all);
-    let checked: Vec<f64> = all.iter().filter_map(|o| o.transport).map(|c| c.kinematics_um).collect();
-    if !checked.is_empty() {
-        let worst = checked.iter().copied().fold(0.0, f64::max);
-        writeln!(
-            t,
-            "| largest difference of the lab's kinematics and the model's | | {:.3} µm | | {} profiles |",
-            worst,
-            checked.len()
-        )
-        .expect("writing to a string cannot fail");
-    }
-    text
 }
 
 /// Shrinkage within five points, and the bias; with a goal or, where nothing was promised, without.
-fn shrink_lines(t: &mut String, source: &str, goal: Option<f64>, list: &[Shrinkage]) {
+fn shrink_lines(t: &mut String, source: &str, goal: Goal, list: &[Shrinkage]) {
     let mut near = Rate::default();
     list.iter().for_each(|s| near.add((s.predicted - s.achieved).abs() <= 5.0));
-    let word = if goal.is_some() { "≥ 90 %" } else { "" };
     let name = format!("predicted shrinkage within ±5 points of achieved ({source})");
-    line(t, &name, word, near, |s| goal.is_none_or(|g| s >= g));
+    line(t, &name, goal, near);
     if !list.is_empty() {
         let off = || list.iter().map(|s| s.predicted - s.achieved);
         let (mean, middle) = (off().sum::<f64>() / list.len() as f64, quantile(off().collect(), 0.5));
         let (word, met) = match goal {
-            Some(_) if mean.abs() > 1.0 => ("≤ 1", "**not met**"),
-            Some(_) => ("≤ 1", ""),
-            None => ("", ""),
+            Goal::None => ("", ""),
+            _ if mean.abs() > 1.0 => ("≤ 1", "**not met**"),
+            _ => ("≤ 1", ""),
         };
-        writeln!(t, "| — bias, points: mean (median) | {word} | {mean:+.2} ({middle:+.2}) | | {met} |")
-            .expect("writing to a string cannot fail");
+        *t += &format!("| — bias, points: mean (median) | {word} | {mean:+.2} ({middle:+.2}) | | {met} |\n");
     }
 }
 
@@ -273,83 +279,55 @@ fn times(t: &mut String, all: &[Outcome]) {
         if list.is_empty() {
             continue;
         }
-        writeln!(
-            t,
-            "| time of one diagnosis, {word}: median, 95 %, longest | 3000 rows ≤ 2 s | {:.2} s, {:.2} s, {:.2} s | | {} |",
-            quantile(list.clone(), 0.5),
-            quantile(list.clone(), 0.95),
-            quantile(list.clone(), 1.0),
-            list.len()
-        )
-        .expect("writing to a string cannot fail");
+        let [middle, most, longest] = [0.5, 0.95, 1.0].map(|share| quantile(list.clone(), share));
+        let count = list.len();
+        *t += &format!(
+            "| time of one diagnosis, {word}: median, 95 %, longest | 3000 rows ≤ 2 s | {middle:.2} s, {most:.2} s, {longest:.2} s | | {count} |\n"
+        );
     }
 }
 
 /// Files of a stated size.
 fn speeds(t: &mut String, list: &[super::speed::Speed]) {
-    for s in list {
-        let peak = s.peak_mib.map_or("memory unknown".to_owned(), |m| format!("{m:.0} MiB"));
-        let met = s.cpu_seconds <= s.goal.0 && s.peak_mib.is_none_or(|m| m <= s.goal.1);
-        writeln!(
-            t,
-            "| {} | ≤ {:.0} s, {:.0} MiB | {:.2} s of the processor, {:.2} s on the clock, {peak} ({}) | | {} rows{} |",
-            s.what,
-            s.goal.0,
-            s.goal.1,
-            s.cpu_seconds,
-            s.seconds,
-            s.verdict,
-            s.rows,
-            if met { "" } else { ", **not met**" }
-        )
-        .expect("writing to a string cannot fail");
+    for super::speed::Speed { what, rows, seconds, cpu_seconds, peak_mib, verdict, goal } in list {
+        let peak = peak_mib.map_or("memory unknown".to_owned(), |m| format!("{m:.0} MiB"));
+        let (most_s, most_mib) = goal;
+        let met = miss(cpu_seconds <= most_s && peak_mib.is_none_or(|m| m <= *most_mib));
+        *t += &format!(
+            "| {what} | ≤ {most_s:.0} s, {most_mib:.0} MiB | {cpu_seconds:.2} s of the processor, {seconds:.2} s on the clock, {peak} ({verdict}) | | {rows} rows{met} |\n"
+        );
     }
 }
 
 /// Shares of right answers in groups, and the verdicts given.
 fn breakdown(all: &[Outcome]) -> String {
     let mut text = String::from("| group | right | 95 % interval | cases |\n|---|---|---|---|\n");
-    let mut row = |name: String, list: Vec<&Outcome>| {
+    let mut row = |name: String, list: &mut dyn Iterator<Item = &Outcome>| {
         let rate = Rate::of(list, Outcome::right);
         if rate.total > 0 {
-            let (low, high) = rate.wilson();
-            let (share, low, high) = (100.0 * rate.share(), 100.0 * low, 100.0 * high);
-            writeln!(
-                text,
-                "| {name} | {share:.1} % | {low:.1} – {high:.1} % | {} of {} |",
-                rate.hits, rate.total
-            )
-            .expect("writing to a string cannot fail");
+            text += &format!("| {name} | {} | {} of {} |\n", rate.cells(), rate.hits, rate.total);
         }
     };
+    let of = |kind| of_kind(all, kind);
     for noise in NoiseKind::ALL {
-        row(
-            format!("null, {}", noise.word()),
-            of_kind(all, Kind::Null).filter(|o| o.case.noise == noise).collect(),
-        );
+        row(format!("null, {}", noise.word()), &mut of(Kind::Null).filter(|o| o.case.noise == noise));
     }
-    let mut plans: Vec<&str> = of_kind(all, Kind::Single).map(|o| o.case.plan.word()).collect();
+    let mut plans: Vec<&str> = of(Kind::Single).map(|o| o.case.plan.word()).collect();
     plans.sort_unstable();
     plans.dedup();
     for plan in plans {
-        row(
-            format!("single, {plan}"),
-            of_kind(all, Kind::Single).filter(|o| o.case.plan.word() == plan).collect(),
-        );
+        row(format!("single, {plan}"), &mut of(Kind::Single).filter(|o| o.case.plan.word() == plan));
     }
     for kind in [Kind::Single, Kind::Removed, Kind::Outside, Kind::BallBar, Kind::Aliased] {
         let family = |o: &Outcome| {
             let id = o.truth().unwrap_or_default();
             if kind == Kind::Outside { id.to_owned() } else { id.split('.').next().unwrap_or(id).to_owned() }
         };
-        let mut families: Vec<String> = of_kind(all, kind).map(family).collect();
+        let mut families: Vec<String> = of(kind).map(family).collect();
         families.sort_unstable();
         families.dedup();
         for name in families {
-            row(
-                format!("{}, {name}", kind.word()),
-                of_kind(all, kind).filter(|o| family(o) == name).collect(),
-            );
+            row(format!("{}, {name}", kind.word()), &mut of(kind).filter(|o| family(o) == name));
         }
     }
     text

@@ -36,8 +36,14 @@ impl Rate {
         self.hits as f64 / self.total as f64
     }
 
+    /// Two cells of a table: the share and its interval.
+    pub(crate) fn cells(self) -> String {
+        let (low, high) = self.wilson();
+        format!("{:.1} % | {:.1} – {:.1} %", 100.0 * self.share(), 100.0 * low, 100.0 * high)
+    }
+
     /// Wilson's score interval at 95 %.
-    pub(crate) fn wilson(self) -> (f64, f64) {
+    fn wilson(self) -> (f64, f64) {
         let z = 1.959_963_984_540_054;
         let (n, p) = (self.total as f64, self.share());
         let centre = p + z * z / (2.0 * n);

@@ -132,14 +132,12 @@ pub(super) fn no_outlier(estimate: &Estimate, measured: &Measured<'_>) -> Result
         })
     };
     if let Some(one) = estimate.outlier(OUTLIER_CHANCE).filter(|one| one.residual.abs() > RESOLVED_MM) {
-        return refuse(
-            one.reading,
-            both!(
-                ": {:.0} times its standard deviation",
-                ": это {:.0} его стандартных отклонений",
-                one.standardised.abs()
-            ),
+        let help = both!(
+            ": {:.0} times its standard deviation",
+            ": это {:.0} его стандартных отклонений",
+            one.standardised.abs()
         );
+        return refuse(one.reading, help);
     }
     let sizes: Vec<f64> = estimate
         .residuals

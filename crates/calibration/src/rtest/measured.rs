@@ -10,8 +10,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::basis::Basis;
 use super::columns::{Columns, model};
+use super::found::{BallReading, TurnedAxis};
 use super::terms::Term;
-use super::{BallReading, TurnedAxis};
 use crate::error::CalibrationError;
 use crate::field;
 
@@ -221,13 +221,7 @@ pub(super) fn everywhere(
             for (own, angle) in axes.iter().zip(&angles) {
                 rotary_rad[own.axis.direction()] = *angle;
             }
-            let mut command = Command {
-                linear_mm: Vector::zeros(),
-                rotary_rad,
-                tool_mm,
-                direction: [0; 3],
-                ..Default::default()
-            };
+            let mut command = Command { rotary_rad, tool_mm, ..Default::default() };
             command.linear_mm = machine.same_tip_mm(&(place_mm - tool_mm), &command, &Vector::zeros());
             rows.push(BallReading {
                 run: ball,

@@ -5,8 +5,8 @@ use nalgebra::DMatrix;
 
 use super::basis::Basis;
 use super::columns::{Columns, model};
+use super::found::{BallReading, FoundTerm, TurnedAxis};
 use super::terms::{Term, change_at, tables};
-use super::{BallReading, FoundTerm, TurnedAxis};
 use crate::error::CalibrationError;
 use crate::field;
 use crate::machine_change::Base;

@@ -20,7 +20,6 @@ pub(crate) const FREE_OFFSETS: f64 = 1e6;
 /// The gap less a displacement, set-up and the runs' offsets (of variance `ratio` times the noise's) fitted to what is
 /// left. Few rows carry no frame; where they carry the zero of their runs, that alone is taken out: it is the set-up's and
 /// neither gap nor gain.
-#[must_use]
 pub(crate) fn aligned(
     data: &Measurements,
     scalars: &[Scalar],
@@ -58,7 +57,6 @@ fn less(data: &Measurements, scalars: &[Scalar], taken_off: &[(Term, f64)]) -> V
 }
 
 /// Length of the gap of every row that has any equation, µm.
-#[must_use]
 pub(crate) fn row_lengths(scalars: &[Scalar], values: &[f64]) -> Vec<f64> {
     let mut lengths: Vec<f64> = Vec::new();
     let mut last = None;
@@ -78,13 +76,11 @@ pub(crate) fn row_lengths(scalars: &[Scalar], values: &[f64]) -> Vec<f64> {
 }
 
 /// Root mean square.
-#[must_use]
 pub(crate) fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
 /// What some terms displace every row, µm.
-#[must_use]
 pub(crate) fn displacements(data: &Measurements, terms: &[(Term, f64)]) -> Vec<Vector> {
     let one = |row| {
         terms
@@ -96,7 +92,6 @@ pub(crate) fn displacements(data: &Measurements, terms: &[(Term, f64)]) -> Vec<V
 }
 
 /// Rows that hold only the length of their displacement: measured minus modelled length, µm.
-#[must_use]
 pub(crate) fn magnitude_errors(data: &Measurements, taken_off: &[(Term, f64)]) -> Vec<f64> {
     data.rows
         .iter()

@@ -40,13 +40,11 @@ pub(crate) struct Source<'a> {
 
 impl<'a> Source<'a> {
     /// Some equations of a file, its rows not sorted.
-    #[must_use]
     pub(crate) fn new(data: &'a Measurements, scalars: &'a [Scalar]) -> Self {
         Self { rows: &data.rows, scalars, runs: data.runs.len(), geometry: &data.geometry, places: None }
     }
 
     /// Values of a column at some equations, times the roots of their weights.
-    #[must_use]
     pub(crate) fn weighted(&self, term: &Term, equations: &[usize]) -> Vec<f64> {
         let column = Column::new(term, self);
         equations.iter().map(|i| self.scalars[*i].weight.sqrt() * column.value(*i)).collect()
@@ -63,7 +61,6 @@ pub(crate) struct Kept<'a> {
 
 impl<'a> Kept<'a> {
     /// Columns that are ready, the first ones there are.
-    #[must_use]
     pub(crate) fn of(columns: Vec<Column<'a>>) -> Self {
         Self { columns, ..Self::default() }
     }
@@ -90,7 +87,6 @@ impl<'a> Kept<'a> {
     }
 
     /// Values of a column from the `start`-th equation of the class on.
-    #[must_use]
     pub(crate) fn values(&self, class: usize, column: usize, start: usize, length: usize) -> Option<&[f64]> {
         self.classes[class].get(column)?.get(start..start + length)
     }
@@ -114,7 +110,6 @@ struct AxisPlaces {
 
 impl Places {
     /// Sorts the rows of a file.
-    #[must_use]
     pub(crate) fn new(rows: &[Row]) -> Self {
         Self { axes: [0, 1, 2].map(|axis| AxisPlaces::new(rows, axis)), tables: RefCell::default() }
     }
@@ -189,7 +184,6 @@ impl Table<'_> {
 }
 
 impl<'a> Column<'a> {
-    #[must_use]
     pub(crate) fn new(term: &Term, source: &Source<'a>) -> Self {
         let axis = source.places.zip(term.axis()).map(|(places, axis)| &places.axes[axis]);
         let table = axis.filter(|axis| !axis.examples.is_empty()).map(|axis| {
@@ -201,7 +195,6 @@ impl<'a> Column<'a> {
 
     /// The same with a table by row where the places make none: for the few columns of a model, which every component of a
     /// row and several samples of the equations ask for. Not where only few rows are looked at.
-    #[must_use]
     pub(crate) fn tabulated(term: &Term, source: &Source<'a>) -> Self {
         let mut column = Self::new(term, source);
         let few = 2 * source.scalars.len() < source.rows.len();
@@ -215,7 +208,6 @@ impl<'a> Column<'a> {
     }
 
     /// The same column at other equations of the same rows.
-    #[must_use]
     pub(crate) fn among<'b>(&self, source: Source<'b>) -> Column<'b>
     where
         'a: 'b,
@@ -224,7 +216,6 @@ impl<'a> Column<'a> {
     }
 
     /// What the column is.
-    #[must_use]
     pub(crate) fn term(&self) -> Term {
         self.term
     }
@@ -241,7 +232,6 @@ impl<'a> Column<'a> {
     }
 
     /// What an equation sees of the column.
-    #[must_use]
     pub(crate) fn value(&self, equation: usize) -> f64 {
         let scalar = &self.source.scalars[equation];
         match &self.table {

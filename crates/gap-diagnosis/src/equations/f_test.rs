@@ -3,7 +3,6 @@
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 /// Probability that an F variate exceeds `ratio`.
-#[must_use]
 pub(crate) fn f_tail(ratio: f64, numerator: f64, denominator: f64) -> f64 {
     if ratio <= 0.0 || ratio.is_nan() {
         return 1.0;

@@ -30,13 +30,11 @@ pub(crate) struct Solution {
 
 impl Gram {
     /// The products of some columns only.
-    #[must_use]
     pub(crate) fn select(&self, columns: &[usize]) -> Self {
         self.towards(columns, self.terms.len())
     }
 
     /// The products of some columns with another one in the place of the gap.
-    #[must_use]
     pub(crate) fn towards(&self, columns: &[usize], target: usize) -> Self {
         let mut all = columns.to_vec();
         all.push(target);
@@ -54,25 +52,21 @@ impl Gram {
     }
 
     /// Offsets that free run offsets amount to: directions that each run sees.
-    #[must_use]
     pub(crate) fn offsets_fitted(&self) -> f64 {
         self.run_information.iter().map(|u| (0..3).filter(|c| u[(*c, *c)] > 1e-9).count() as f64).sum()
     }
 
     /// Squares of the columns, nothing taken out.
-    #[must_use]
     pub(crate) fn squares(&self) -> Vec<f64> {
         (0..self.products.nrows()).map(|i| self.products[(i, i)]).collect()
     }
 
     /// Coefficients of all columns under a run-offset ratio.
-    #[must_use]
     pub(crate) fn coefficients(&self, rho: f64) -> Vec<f64> {
         self.normal(&self.whitened(rho).0).1
     }
 
     /// The same with their covariance divided by σ².
-    #[must_use]
     pub(crate) fn estimate(&self, rho: f64) -> (Vec<f64>, DMatrix<f64>) {
         let (factor, coefficients) = self.normal(&self.whitened(rho).0);
         (coefficients, factor.inverse(self.terms.len()))
@@ -89,7 +83,6 @@ impl Gram {
     }
 
     /// Solves for all columns under a run-offset ratio.
-    #[must_use]
     pub(crate) fn solve(&self, rho: f64, source: &Source<'_>) -> Solution {
         let (whitened, _) = self.whitened(rho);
         let count = self.terms.len();
@@ -114,7 +107,6 @@ impl Gram {
     }
 
     /// Best linear unbiased prediction of the run offsets, µm.
-    #[must_use]
     pub(crate) fn offsets(&self, rho: f64, coefficients: &[f64]) -> Vec<Vector> {
         let count = self.terms.len();
         self.run_products
@@ -136,7 +128,6 @@ impl Gram {
     }
 
     /// Run-offset ratio of greatest restricted likelihood, by golden section around a first guess.
-    #[must_use]
     pub(crate) fn best_rho(&self, guess: f64) -> f64 {
         let count = self.terms.len();
         let columns: Vec<usize> = (0..count).collect();
@@ -171,7 +162,6 @@ impl Gram {
 }
 
 /// Gap minus columns, µm, without run offsets.
-#[must_use]
 pub(crate) fn residuals(terms: &[Term], coefficients: &[f64], source: &Source<'_>) -> Vec<f64> {
     let mut fitted = vec![0.0; source.scalars.len()];
     // One column after the other: the table of a column is large, and gone before the next one is made.

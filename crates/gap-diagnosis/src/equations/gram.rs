@@ -29,7 +29,6 @@ pub(crate) struct Gram {
 
 impl Gram {
     /// All products of `terms`.
-    #[must_use]
     pub(crate) fn new(terms: Vec<Term>, source: &Source<'_>) -> Self {
         let mut gram = Self::without_columns(source);
         gram.extend(terms, source);
@@ -37,7 +36,6 @@ impl Gram {
     }
 
     /// All products of columns that are ready.
-    #[must_use]
     pub(crate) fn of(columns: Vec<Column<'_>>, source: &Source<'_>) -> Self {
         let mut gram = Self::without_columns(source);
         gram.extend_keeping(columns.iter().map(Column::term).collect(), source, &mut Kept::of(columns));
@@ -232,7 +230,6 @@ impl Gram {
     }
 
     /// The same without some of the equations.
-    #[must_use]
     pub(crate) fn without(mut self, lost: &Self) -> Self {
         if lost.equations == 0 {
             return self;
@@ -262,7 +259,6 @@ impl Gram {
     }
 
     /// The Cholesky factors of `I/ρ + UᵀDU` of every run, and the logarithm of the determinant of V/σ².
-    #[must_use]
     pub(crate) fn run_factors(&self, rho: f64) -> (Vec<Matrix3<f64>>, f64) {
         let mut log_determinant = 0.0;
         let factors = self.run_information.iter().map(|information| {
@@ -277,7 +273,6 @@ impl Gram {
     }
 
     /// Products under run offsets of variance `rho` σ², and the logarithm of the determinant of V/σ².
-    #[must_use]
     pub(crate) fn whitened(&self, rho: f64) -> (DMatrix<f64>, f64) {
         let mut result = self.products.clone();
         if rho <= 0.0 {
@@ -327,7 +322,6 @@ fn add_to_runs(
 }
 
 /// `L⁻¹ b`.
-#[must_use]
 pub(crate) fn forward(l: &Matrix3<f64>, b: [f64; 3]) -> Vector {
     let x = b[0] / l[(0, 0)];
     let y = (b[1] - l[(1, 0)] * x) / l[(1, 1)];
@@ -336,7 +330,6 @@ pub(crate) fn forward(l: &Matrix3<f64>, b: [f64; 3]) -> Vector {
 }
 
 /// Inner product in eight partial sums: the order of the additions is fixed, and they do not wait for one another.
-#[must_use]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     let (whole, rest) = a.as_chunks::<8>();
@@ -355,7 +348,6 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 ///
 /// `reference` holds the squares of the columns before whitening: a set-up column of which next to nothing is
 /// left (a ball bar does not see itself turned) must not be fitted to that nothing.
-#[must_use]
 pub(crate) fn eliminate(products: &DMatrix<f64>, count: usize, reference: &[f64]) -> (DMatrix<f64>, usize) {
     let size = products.nrows();
     let mut work = products.clone();

@@ -40,7 +40,6 @@ const fn row(i: usize) -> usize {
 impl Factor {
     /// Factors `products[columns, columns]`; `reference` is the square of each column before anything was
     /// taken out of it.
-    #[must_use]
     pub(crate) fn new(products: &impl Products, columns: &[usize], reference: &[f64]) -> Self {
         let count = columns.len();
         let mut kept: Vec<usize> = Vec::with_capacity(count);
@@ -76,19 +75,16 @@ impl Factor {
     }
 
     /// Number of independent columns.
-    #[must_use]
     pub(crate) fn rank(&self) -> usize {
         self.kept.len()
     }
 
     /// Logarithm of the determinant of the products of the kept columns.
-    #[must_use]
     pub(crate) fn log_determinant(&self) -> f64 {
         (0..self.rank()).map(|i| 2.0 * units::math::ln(self.lower[row(i) + i])).sum()
     }
 
     /// `L⁻¹ b`, b over the kept columns.
-    #[must_use]
     pub(crate) fn forward(&self, b: &[f64]) -> Vec<f64> {
         let mut x = b.to_vec();
         self.forward_in_place(&mut x);
@@ -106,7 +102,6 @@ impl Factor {
     }
 
     /// Solution of the normal equations; zero for columns that are not kept.
-    #[must_use]
     pub(crate) fn solve(&self, b: &[f64], count: usize) -> DVector<f64> {
         let picked: Vec<f64> = self.kept.iter().map(|k| b[*k]).collect();
         let mut x = self.forward(&picked);
@@ -122,7 +117,6 @@ impl Factor {
     }
 
     /// Inverse of the products over the kept columns, zeros elsewhere: covariance / σ².
-    #[must_use]
     pub(crate) fn inverse(&self, count: usize) -> DMatrix<f64> {
         let mut result = DMatrix::zeros(count, count);
         for j in 0..count {
@@ -137,7 +131,6 @@ impl Factor {
 }
 
 /// How much the columns take off the square of the last column (the gap), and their rank.
-#[must_use]
 pub(crate) fn explained(products: &impl Products, columns: &[usize], reference: &[f64]) -> (f64, usize) {
     let factor = Factor::new(products, columns, reference);
     let last = products.count() - 1;

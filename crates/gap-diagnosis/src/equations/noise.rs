@@ -35,7 +35,6 @@ pub(crate) struct Noise {
 
 impl Noise {
     /// True where one command read again differs by more than neighbouring readings scatter.
-    #[must_use]
     pub(crate) fn is_slow(&self) -> bool {
         self.slow > SLOW
     }
@@ -59,7 +58,6 @@ const SLOW: f64 = 2.0;
 ///
 /// `serial`: how the readings of a run hang together. Neighbours then differ by less than independent readings: `σ²` times
 /// `1 - 4ρ₁/3 + ρ₂/3` in second differences.
-#[must_use]
 pub(crate) fn estimate(
     rows: &[Row],
     scalars: &[Scalar],
@@ -97,7 +95,6 @@ pub(crate) fn estimate(
 }
 
 /// What no noise exceeds: the scatter of the same commands from run to run, where there are enough of them.
-#[must_use]
 pub(crate) fn bound(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
     let floor = quantum_um(scalars).powi(2) / 12.0;
     let found = from_returns(rows, scalars, residuals_um).filter(|found| found.degrees >= ENOUGH)?;
@@ -105,7 +102,6 @@ pub(crate) fn bound(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> O
 }
 
 /// True where rows measured one after the other lie so far apart that a gap of any shape differs between them as noise does.
-#[must_use]
 pub(crate) fn neighbours_are_far(rows: &[Row]) -> bool {
     /// Of the diagonal of what was measured: a line has four steps and more.
     const FAR: f64 = 0.25;
@@ -119,7 +115,6 @@ pub(crate) fn neighbours_are_far(rows: &[Row]) -> bool {
 }
 
 /// Step of the readings, µm, 0 where they have none: a display that shows whole micrometres gives few different values.
-#[must_use]
 pub(crate) fn quantum_um(scalars: &[Scalar]) -> f64 {
     /// Distinct values may be at most this share of the readings.
     const FEW: f64 = 0.3;
@@ -300,7 +295,6 @@ const BLUNDER: f64 = 10.0;
 const AGREE: f64 = 0.25;
 
 /// Rows that stand alone far from what the model and their neighbours say, ascending.
-#[must_use]
 pub(crate) fn outliers(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Vec<usize> {
     let weighted: Vec<f64> = scalars.iter().zip(residuals_um).map(|(s, r)| r * s.weight.sqrt()).collect();
     let Some(sigma) = robust_sigma(scalars, weighted.iter().copied()) else { return Vec::new() };
@@ -312,7 +306,6 @@ pub(crate) fn outliers(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -
 /// other, while no other reading of that place says the same.
 ///
 /// A search that has them among its rows finds causes for them: a step at a moment, damage at a place.
-#[must_use]
 pub(crate) fn blunders(rows: &[Row], scalars: &[Scalar]) -> Vec<usize> {
     let mut off = vec![0.0; scalars.len()];
     let mut stands_out = vec![false; scalars.len()];
@@ -454,7 +447,6 @@ impl<'a> Surroundings<'a> {
 }
 
 /// True where the variance of residuals is no measure of their scatter: most are alike, others far off.
-#[must_use]
 pub(crate) fn is_lumpy(scalars: &[Scalar], residuals_um: &[f64]) -> bool {
     /// Standard deviation over that by the median: 1 for normal noise, 1.5 for tails as heavy as Student's with three degrees.
     const LUMPY: f64 = 2.5;
@@ -470,7 +462,6 @@ pub(crate) fn is_lumpy(scalars: &[Scalar], residuals_um: &[f64]) -> bool {
 /// Rows beyond the outlier limit were left out. Where they are the far end of a heavy tail they will come
 /// again; where they are single blunders they will not. A tail shows itself inside the limit: between 3 and 4.5
 /// robust standard deviations normal noise has one reading in four hundred.
-#[must_use]
 pub(crate) fn tail_factor(scalars: &[Scalar], kept: &[f64], dropped: &[f64]) -> f64 {
     const TAIL: f64 = 0.008;
     let weighted: Vec<f64> = scalars.iter().zip(kept).map(|(s, r)| r * s.weight.sqrt()).collect();

@@ -165,7 +165,6 @@ impl Measurements {
     }
 
     /// About so many of the rows, spread evenly however the plan repeats itself: the golden ratio's multiples have no period.
-    #[must_use]
     pub(crate) fn sample(&self, count: usize) -> Self {
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let share = count as f64 / self.rows.len().max(1) as f64;

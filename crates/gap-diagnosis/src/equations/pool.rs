@@ -21,19 +21,16 @@ pub(crate) struct Pool<'a> {
 
 impl<'a> Pool<'a> {
     /// No columns yet.
-    #[must_use]
     pub(crate) fn new(source: &Source<'a>) -> Self {
         Self { source: *source, gram: Gram::new(Vec::new(), source), core: Vec::new(), kept: Kept::default() }
     }
 
     /// Where the equations come from: all of them.
-    #[must_use]
     pub(crate) fn source(&self) -> &Source<'a> {
         &self.source
     }
 
     /// Positions of some columns; those that are not known yet are taken in.
-    #[must_use]
     pub(crate) fn positions(&mut self, terms: &[Term]) -> Vec<usize> {
         let known = self.gram.terms.len();
         let mut new: Vec<Term> = Vec::new();
@@ -73,7 +70,6 @@ impl<'a> Pool<'a> {
     }
 
     /// Products of the columns at some positions.
-    #[must_use]
     pub(crate) fn select(&self, positions: &[usize]) -> Gram {
         self.gram.select(positions)
     }

@@ -39,20 +39,17 @@ const PAIRS: f64 = 30.0;
 
 impl Serial {
     /// Correlation from one reading to the `k`-th next one.
-    #[must_use]
     pub(crate) fn lag(self, k: i32) -> f64 {
         self.share * units::math::powf(self.phi, f64::from(k))
     }
 
     /// True where readings are independent.
-    #[must_use]
     pub(crate) fn is_none(self) -> bool {
         self.share == 0.0
     }
 
     /// So many readings of a run are as good as an independent one: n of them scatter about their truth as n/this would,
     /// `1 + 2 Σ_{k<n} share φ^k (1 - k/n)`.
-    #[must_use]
     pub(crate) fn as_one(self) -> f64 {
         1.0 + self.share * of_mean(self.phi, self.length)
     }
@@ -63,7 +60,6 @@ impl Serial {
     }
 
     /// The one of two in which more readings are as good as one.
-    #[must_use]
     pub(crate) fn max(self, other: Self) -> Self {
         if other.as_one() > self.as_one() { other } else { self }
     }
@@ -72,7 +68,6 @@ impl Serial {
     ///
     /// Readings taken one after the other at one place show it free of all structure. Elsewhere what is left of the model
     /// shows it, structure without a name included: either way it is no independent evidence for a name.
-    #[must_use]
     pub(crate) fn of_noise(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Self {
         let Series { standing, moving } = series(rows, scalars, residuals_um);
         if let Some(found) = estimated(&standing) {
@@ -85,7 +80,6 @@ impl Serial {
 
     /// The same for runs of any length: what tests and intervals must count with, for noise that hangs together over a run
     /// is as smooth as an effect and no evidence for one.
-    #[must_use]
     pub(crate) fn at_most(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Self {
         let Series { standing, moving } = series(rows, scalars, residuals_um);
         estimated(&standing).or_else(|| estimated(&moving)).unwrap_or_default()
@@ -97,7 +91,6 @@ impl Serial {
     ///
     /// The variance that the second is of was estimated about the means of the runs, and these take a part of the first with
     /// them: about the mean of n readings `σ²(1 - Σ ρ_|s-t| / n²)·n/(n-1)` is left.
-    #[must_use]
     pub(crate) fn inflation(self, rows: &[Row], scalars: &[Scalar], column: &[f64]) -> f64 {
         if self.is_none() {
             return 1.0;

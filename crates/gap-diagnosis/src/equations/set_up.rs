@@ -18,7 +18,6 @@ pub(crate) enum Clamping {
 
 /// Columns of the measuring frame: shift and rotation, and where runs are turned against each other, those of every run
 /// about its middle.
-#[must_use]
 pub(crate) fn frame(data: &Measurements, clamping: Clamping) -> Vec<Term> {
     let mut terms: Vec<Term> = (0..3).map(Term::SetupShift).chain((0..3).map(Term::SetupRotation)).collect();
     let turned = match clamping {
@@ -33,7 +32,6 @@ pub(crate) fn frame(data: &Measurements, clamping: Clamping) -> Vec<Term> {
 }
 
 /// Middle of the tips of every run, mm.
-#[must_use]
 pub(crate) fn middles_mm(data: &Measurements) -> Vec<Vector> {
     let mut sums = vec![(0.0, Vector::zeros()); data.runs.len()];
     for row in &data.rows {
@@ -45,7 +43,6 @@ pub(crate) fn middles_mm(data: &Measurements) -> Vec<Vector> {
 }
 
 /// Columns of the zero of every instrument, and of the frame of every station, but the first.
-#[must_use]
 pub(crate) fn instruments(data: &Measurements) -> Vec<Term> {
     let count = data.rows.iter().filter_map(|r| r.instrument).max().map_or(0, |m| m + 1);
     let zeros =

@@ -60,7 +60,6 @@ pub(crate) enum Term {
 
 impl Term {
     /// Displacement in µm per unit. Conditions that are missing in single rows displace nothing.
-    #[must_use]
     pub(crate) fn displacement_um(&self, row: &Row, geometry: &EffectGeometry) -> Vector {
         match self {
             Self::SetupShift(axis) => unit(*axis),
@@ -100,7 +99,6 @@ impl Term {
     }
 
     /// What the equation sees of the column.
-    #[must_use]
     pub(crate) fn value(&self, scalar: &Scalar, row: &Row, geometry: &EffectGeometry) -> f64 {
         if let Self::BarLength = self {
             return if matches!(row.reading, Reading::Length { .. }) { 1.0 } else { 0.0 };
@@ -112,7 +110,6 @@ impl Term {
     }
 
     /// The effect that it is a column of.
-    #[must_use]
     pub(crate) fn kind(&self) -> Option<EffectKind> {
         match self {
             Self::Effect { kind, .. } => Some(*kind),
@@ -123,7 +120,6 @@ impl Term {
 
     /// The axis on whose position and direction of approach, and the rotary axes, alone the displacement depends; `None`
     /// where it depends on more.
-    #[must_use]
     pub(crate) fn axis(&self) -> Option<usize> {
         let Self::Effect { kind, index, .. } = *self else { return None };
         match kind {
@@ -142,7 +138,6 @@ impl Term {
     }
 
     /// False where the component is zero for every row, known without looking.
-    #[must_use]
     pub(crate) fn touches(&self, component: usize, geometry: &EffectGeometry) -> bool {
         match *self {
             // Turned with the table it is seen in any.

@@ -29,7 +29,6 @@ pub(crate) struct Tiles {
 
 impl Tiles {
     /// `count` columns, no products wanted yet.
-    #[must_use]
     pub(crate) fn new(count: usize) -> Self {
         Self { values: vec![0.0; count * CHUNK], ..Self::default() }
     }

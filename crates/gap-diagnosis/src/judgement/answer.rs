@@ -4,8 +4,6 @@ use diagnostic::{Text, both};
 use machine_model::effects::{EffectKind, EffectTerm};
 use machine_model::{Vector, Volume};
 
-use crate::judgement::verdict::WorseRun;
-
 /// The verdicts of the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
@@ -261,6 +259,17 @@ pub struct Step {
     pub added: Text,
     /// RMS with it and all before it, µm.
     pub rms_um: f64,
+}
+
+/// A run that no fit has seen, without the causes and with them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct WorseRun {
+    /// Index of the run in the file that was read.
+    pub run: usize,
+    /// RMS without the causes, µm.
+    pub before_um: f64,
+    /// RMS with them, µm.
+    pub after_um: f64,
 }
 
 /// Points the fit has not seen.

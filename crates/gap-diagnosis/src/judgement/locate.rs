@@ -28,7 +28,6 @@ struct Family {
 
 /// Cells that hold more of the gap than their number of equations explains, by family, the worst first;
 /// always at least the worst cell of each family.
-#[must_use]
 pub(crate) fn places(
     data: &Measurements,
     scalars: &[Scalar],

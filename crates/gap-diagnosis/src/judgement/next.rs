@@ -31,7 +31,6 @@ const RIVALS: usize = 4;
 const CERTAIN: f64 = 12.0;
 
 /// The cheapest line that tells a part of the model from its rivals, the worst first; `noise_um` is the noise of a reading.
-#[must_use]
 pub(crate) fn next_measurement(
     data: &Measurements,
     model: &Explanation,
@@ -104,7 +103,6 @@ pub(crate) fn next_measurement(
 }
 
 /// Where no effect explains a gap: the line on which all axes move, so that what has no name comes back there or does not.
-#[must_use]
 pub(crate) fn once_more(data: &Measurements) -> Option<NextMeasurement> {
     let line = lines(data).into_iter().find(|line| line.text.english().starts_with("the body diagonal"))?;
     let line =
@@ -141,7 +139,6 @@ fn separation(
 }
 
 /// Cheap lines inside the measured box, the simplest first.
-#[must_use]
 pub(crate) fn lines(data: &Measurements) -> Vec<Line> {
     let Some(typical) = data.rows.get(data.rows.len() / 2).copied() else { return Vec::new() };
     let time = data

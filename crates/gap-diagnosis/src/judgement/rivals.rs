@@ -34,7 +34,6 @@ impl Rival {
 }
 
 /// Other effects in place of the part at `place`, the nearest in score first.
-#[must_use]
 pub(crate) fn rivals(model: &Explanation, place: usize) -> Vec<Rival> {
     let rest = without(&model.parts, place);
     let own = model.parts[place];

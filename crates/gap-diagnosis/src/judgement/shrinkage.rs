@@ -40,7 +40,6 @@ pub(crate) struct Alternative {
 /// it grows as it does nobody knows. Then `S = 1 - sqrt(m' / (m' + square'))`. Where rivals explain the data as well, each predicts its own
 /// `S_r = 1 - sqrt((m' + difference) / (m' + square_r))`: `mid` is the mean weighted by their likelihoods, and the
 /// interval holds them all. It goes below zero where the correction of a wrong cause would do harm.
-#[must_use]
 pub(crate) fn transported(
     m: f64,
     m_error: f64,

@@ -11,7 +11,6 @@ use crate::equations::observation::{Measurements, Row, Scalar};
 
 /// Probability that noise alone leaves this residual: the smaller of a variance ratio against repeats (where
 /// there are any) and of the correlation of neighbours along the runs, corrected for asking twice.
-#[must_use]
 pub(crate) fn lack_of_fit(
     rows: &[Row],
     scalars: &[Scalar],
@@ -65,7 +64,6 @@ pub(crate) struct Jerks {
 /// Axes whose readings, taken one after the other in motion, differ by far more while the axis is slow: stick-slip has no
 /// shape that comes back, so its roughness is all that shows it. Second differences along the runs, by their medians: a
 /// spike or a step at a turning point is few of them.
-#[must_use]
 pub(crate) fn jerks(data: &Measurements, scalars: &[Scalar], residuals_um: &[f64]) -> Vec<Jerks> {
     /// Shares of the readings that are called slow.
     const SLOW: [f64; 4] = [0.1, 0.2, 0.35, 0.5];
@@ -105,7 +103,6 @@ pub(crate) fn jerks(data: &Measurements, scalars: &[Scalar], residuals_um: &[f64
 }
 
 /// Columns along which the leftover is uneven: squares of group means against the scatter.
-#[must_use]
 pub(crate) fn correlates(data: &Measurements, scalars: &[Scalar], residuals_um: &[f64]) -> Vec<Text> {
     type Value = fn(&Row) -> Option<f64>;
     let columns: [(&str, Value); 12] = [

@@ -10,9 +10,9 @@ use crate::equations::align::{aligned, magnitude_errors, rms, row_lengths};
 use crate::equations::noise::tail_factor;
 use crate::equations::observation::{Measurements, Reading, Row, Scalar};
 use crate::equations::term::Term;
-use crate::judgement::answer::{Holdout, Residual, Shrinkage, Step, Verdict};
+use crate::judgement::answer::{Holdout, Residual, Shrinkage, Step, Verdict, WorseRun};
 use crate::judgement::assembly::Assembly;
-use crate::judgement::verdict::{Unseen, WorseRun};
+use crate::judgement::verdict::Unseen;
 use crate::options::Options;
 use crate::search::explain::explain;
 use crate::search::lengths::explained;
@@ -146,7 +146,6 @@ impl Assembly<'_> {
 
 /// Every fourth run kept back, of few runs two stretches of each, and the whole search made on the others: what becomes of its
 /// forecast. `None` where these rows lie outside what the others cover, are few, or the others name nothing.
-#[must_use]
 pub(crate) fn kept_back(data: &Measurements, without: &[EffectKind]) -> Option<Unseen> {
     /// Fewer runs leave no three quarters that cover the machine.
     const RUNS: usize = 8;
@@ -195,7 +194,6 @@ pub(crate) fn kept_back(data: &Measurements, without: &[EffectKind]) -> Option<U
 
 /// Rows that no fit has seen show a gap of their own: searched alone they have a cause that is the machine's, or structure
 /// without a name. A gap as large as the noise is lost in their RMS and not in their pattern.
-#[must_use]
 pub(crate) fn gap_of_its_own(holdout: &Measurements, options: &Options) -> bool {
     let (model, _) = explained(holdout, &options.without);
     let verdict = Assembly::new(holdout, &model).on_its_rows(options);
@@ -256,7 +254,6 @@ fn finished(
 }
 
 /// Two states of the same equations.
-#[must_use]
 pub(crate) fn residuals(scalars: &[Scalar], before: &[f64], after: &[f64]) -> Vec<Residual> {
     scalars
         .iter()
@@ -282,13 +279,7 @@ mod tests {
     fn grown(runs: usize, growth: f64) -> Option<WorseRun> {
         let row = |run: usize| Row {
             run,
-            command: Command {
-                linear_mm: Vector::zeros(),
-                rotary_rad: Vector::zeros(),
-                tool_mm: Vector::zeros(),
-                direction: [0; 3],
-                ..Default::default()
-            },
+            command: Command::default(),
             conditions: Conditions::default(),
             predicted_mm: Vector::zeros(),
             u_um: [None; 3],

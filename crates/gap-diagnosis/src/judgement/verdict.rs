@@ -1,6 +1,6 @@
 //! From figures to one word.
 
-use crate::judgement::answer::Verdict;
+use crate::judgement::answer::{Verdict, WorseRun};
 
 /// More than this share of the reducible gap left: the causes named do not explain it.
 pub(crate) const PHI_PARTIAL: f64 = 0.05;
@@ -67,17 +67,6 @@ pub(crate) struct Unseen {
     pub alone: bool,
     /// The run that the causes make worse by most, where one is made worse by more than chance.
     pub worse: Option<WorseRun>,
-}
-
-/// A run that no fit has seen, without the causes and with them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct WorseRun {
-    /// Index of the run in the file that was read.
-    pub run: usize,
-    /// RMS without the causes, µm.
-    pub before_um: f64,
-    /// RMS with them, µm.
-    pub after_um: f64,
 }
 
 impl Evidence {
@@ -156,7 +145,6 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 /// What rows that no fit has seen say comes last and weighs most: a forecast they refute is PARTIAL, UNKNOWN where they
 /// contradict it, and NO GAP is UNKNOWN where their gap is above [`UNSEEN_GAP`] times the noise, above what noise and
 /// chance make of so many rows, or where a search among these rows alone finds one.
-#[must_use]
 pub(crate) fn verdict(e: &Evidence) -> Verdict {
     let seen = on_the_rows(e);
     let Some(unseen) = e.unseen else { return seen };

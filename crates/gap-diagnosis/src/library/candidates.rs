@@ -19,6 +19,21 @@ pub(crate) struct Variant {
     pub only_rival: bool,
 }
 
+impl Variant {
+    /// A form that may be named: textbook.
+    pub(crate) fn textbook(columns: Vec<usize>) -> Self {
+        Self { columns, enriched: false, only_rival: false }
+    }
+
+    /// Each column a form, and all of them together one that only bends these.
+    pub(crate) fn each_and_all(columns: Vec<usize>) -> Vec<Self> {
+        let alone = columns.iter().map(|column| Self::textbook(vec![*column]));
+        let mut variants: Vec<Self> = alone.collect();
+        variants.push(Self { enriched: true, ..Self::textbook(columns) });
+        variants
+    }
+}
+
 /// One effect with all its forms.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Candidate {
@@ -32,7 +47,6 @@ pub(crate) struct Candidate {
 
 impl Candidate {
     /// Number of forms the data were asked about.
-    #[must_use]
     pub(crate) fn asked(&self) -> usize {
         self.variants.len() + self.rejected
     }
@@ -104,13 +118,11 @@ impl Library {
     }
 
     /// The effect of a part.
-    #[must_use]
     pub(crate) fn kind(&self, part: Part) -> EffectKind {
         self.candidates[part.candidate].kind
     }
 
     /// The form of a part.
-    #[must_use]
     pub(crate) fn form(&self, part: Part) -> &Variant {
         &self.candidates[part.candidate].variants[part.variant]
     }
@@ -155,14 +167,12 @@ impl Library {
     }
 
     /// Columns of a model: the set-up's, then those of its parts.
-    #[must_use]
     pub(crate) fn model_columns(&self, parts: &[Part]) -> Vec<usize> {
         let own = parts.iter().flat_map(|part| &self.form(*part).columns);
         (0..self.nuisances).chain(own.copied()).collect()
     }
 
     /// Positions of a part's columns among those of its model.
-    #[must_use]
     pub(crate) fn positions(&self, parts: &[Part], place: usize) -> Range<usize> {
         let length = |part: &Part| self.form(*part).columns.len();
         let start = self.nuisances + parts.iter().take(place).map(length).sum::<usize>();
@@ -171,7 +181,6 @@ impl Library {
 
     /// By how much the p value of one form of a candidate must be multiplied (weighted Bonferroni): every
     /// effect has the same share of the level, and its forms divide it.
-    #[must_use]
     pub(crate) fn questions(&self, candidate: usize) -> f64 {
         (self.candidates.len() * self.candidates[candidate].asked()) as f64
     }

@@ -26,7 +26,6 @@ pub(crate) const LOCAL_WIDEST: f64 = 0.3;
 
 impl Library {
     /// Every effect whose columns the rows hold, except those in `without`; `clamping`: what the set-ups of the runs hold.
-    #[must_use]
     pub(crate) fn new(data: &Measurements, without: &[EffectKind], clamping: Clamping) -> Self {
         let seen = Seen::new(data);
         let mut terms = frame(data, clamping);
@@ -139,8 +138,7 @@ impl Library {
         for anew in [false, true].into_iter().filter(passed_again) {
             for component in (0..3).filter(is_read) {
                 self.terms.push(Term::Order { component, anew });
-                let columns = vec![self.terms.len() - 1];
-                forms.push(Variant { columns, enriched: false, only_rival: false });
+                forms.push(Variant::textbook(vec![self.terms.len() - 1]));
             }
         }
         forms
@@ -226,11 +224,9 @@ impl Library {
                 self.add_columns(kind, Shape { tau_s: *tau, tau2_s: *tau, ..Shape::default() }, &[0])
             })
             .collect();
-        let single =
-            columns.iter().map(|c| Variant { columns: vec![*c], enriched: false, only_rival: false });
+        let single = columns.iter().map(|c| Variant::textbook(vec![*c]));
         let double = columns.iter().zip(columns.iter().skip(2));
-        let double =
-            double.map(|(a, b)| Variant { columns: vec![*a, *b], enriched: true, only_rival: false });
+        let double = double.map(|(a, b)| Variant { enriched: true, ..Variant::textbook(vec![*a, *b]) });
         single.chain(double).collect()
     }
 
@@ -239,8 +235,7 @@ impl Library {
         (1..=STEP_TIMES)
             .map(|k| {
                 let time_s = start + (end - start) * k as f64 / (STEP_TIMES + 1) as f64;
-                let columns = self.add_columns(kind, Shape { time_s, ..Shape::default() }, &[0]);
-                Variant { columns, enriched: false, only_rival: false }
+                Variant::textbook(self.add_columns(kind, Shape { time_s, ..Shape::default() }, &[0]))
             })
             .collect()
     }
@@ -264,22 +259,13 @@ impl Library {
         let EffectKind::Joint(axis) = kind else { return Vec::new() };
         let sideways: Vec<usize> = (0..3).filter(|d| *d != axis).collect();
         let shape = Shape { centre_mm, width_mm, ..Shape::default() };
-        let columns = self.add_columns(kind, shape, &sideways);
-        let one = |c: &usize| Variant { columns: vec![*c], enriched: false, only_rival: false };
-        let mut variants: Vec<Variant> = columns.iter().map(one).collect();
-        variants.push(Variant { columns, enriched: true, only_rival: false });
-        variants
+        Variant::each_and_all(self.add_columns(kind, shape, &sideways))
     }
 
     /// Damage at one place: along one direction or all three.
     pub(crate) fn place(&mut self, kind: EffectKind, centre_mm: f64, width_mm: f64) -> Vec<Variant> {
-        let columns = self.add_columns(kind, Shape { centre_mm, width_mm, ..Shape::default() }, &[0, 1, 2]);
-        let mut variants: Vec<Variant> = columns
-            .iter()
-            .map(|c| Variant { columns: vec![*c], enriched: false, only_rival: false })
-            .collect();
-        variants.push(Variant { columns, enriched: true, only_rival: false });
-        variants
+        let shape = Shape { centre_mm, width_mm, ..Shape::default() };
+        Variant::each_and_all(self.add_columns(kind, shape, &[0, 1, 2]))
     }
 
     /// Forms of a pitch error with this period: textbook, with harmonics, with a slope of the amplitude. A harmonic that the

@@ -30,7 +30,6 @@ pub(crate) struct Sampling {
 
 impl Sampling {
     /// Of a linear axis (0 X, 1 Y, 2 Z).
-    #[must_use]
     pub(crate) fn new(data: &Measurements, axis: usize) -> Self {
         let range_mm = data.range_mm(axis);
         let places = data.places_mm(axis);
@@ -46,7 +45,6 @@ impl Sampling {
     }
 
     /// True where an error within a turn of a usual screw, 5 mm and more, passes for a slow curve, or for nothing.
-    #[must_use]
     pub(crate) fn hides_turns(&self) -> bool {
         /// Places of a line, not of some lines beside each other.
         const LINE: usize = 6;
@@ -57,7 +55,6 @@ impl Sampling {
     /// True where a wave of this period is sampled at less than two places per period, so that it could be any curve.
     ///
     /// Many places at uneven distances show a wave even where they lie further apart; even ones never do.
-    #[must_use]
     pub(crate) fn is_coarse(&self, period_mm: f64) -> bool {
         2.0 * self.spacing_mm > period_mm && (self.places <= ENOUGH_PLACES || !self.uneven)
     }

@@ -141,7 +141,6 @@ fn one_lever(data: &Measurements, about: usize, axis: usize) -> bool {
 }
 
 /// The axis along which an effect is a curve.
-#[must_use]
 pub(crate) const fn curve_axis(kind: EffectKind) -> Option<usize> {
     match kind {
         EffectKind::Positioning(axis)

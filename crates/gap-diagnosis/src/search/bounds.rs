@@ -41,7 +41,6 @@ pub(crate) struct Bounds {
 
 impl Bounds {
     /// Rows and points between them, evenly thinned.
-    #[must_use]
     pub(crate) fn new(data: &Measurements, scalars: &[Scalar]) -> Self {
         let mut probes: Vec<Row> =
             data.rows.iter().step_by(data.rows.len().div_ceil(ROWS).max(1)).copied().collect();
@@ -122,7 +121,6 @@ impl Bounds {
     }
 
     /// What is wrong with a cause of these numbers; `None` where nothing is.
-    #[must_use]
     pub(crate) fn broken_by(
         &self,
         kind: EffectKind,
@@ -157,7 +155,6 @@ pub(crate) const fn is_straight(kind: EffectKind) -> bool {
 /// Logarithm of how plausible a coefficient is before anything is measured, as far as it parts effects that look alike: what
 /// assembly leaves between axes, and what an instrument's temperature does to a scale, is hundreds of µrad and µm/m; an angle of
 /// a carriage changes by tens of µrad on its way (20 arc seconds are a bad one), and a screw errs by some µm within a turn.
-#[must_use]
 pub(crate) fn log_prior(term: &Term, value: f64) -> f64 {
     let Term::Effect { kind, .. } = term else { return 0.0 };
     let usual = match kind {

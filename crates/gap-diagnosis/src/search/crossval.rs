@@ -33,7 +33,6 @@ const ENOUGH: f64 = 0.02;
 
 impl Folds {
     /// Products of `nuisances` (first) and effects, fold by fold, at a run-offset ratio.
-    #[must_use]
     pub(crate) fn new(
         terms: &[Term],
         nuisances: usize,
@@ -85,7 +84,6 @@ impl Folds {
     }
 
     /// Squared error of every fold, predicted from the others with `columns` (positions behind the set-up).
-    #[must_use]
     pub(crate) fn losses(&self, columns: &[usize]) -> Vec<f64> {
         let last = self.total.nrows() - 1;
         self.each
@@ -108,7 +106,6 @@ impl Folds {
     }
 
     /// Gain of `with` over `base` on left-out folds and its standard error, µm².
-    #[must_use]
     pub(crate) fn gain(&self, base: &[usize], with: &[usize]) -> (f64, f64) {
         let gains: Vec<f64> =
             self.losses(base).iter().zip(self.losses(with)).map(|(before, after)| before - after).collect();
@@ -120,7 +117,6 @@ impl Folds {
     }
 
     /// Largest share of a column's information that a single fold holds.
-    #[must_use]
     pub(crate) fn concentration(&self, columns: &[usize]) -> f64 {
         let share = |c: usize| {
             let all = self.total[(c, c)];
@@ -131,7 +127,6 @@ impl Folds {
     }
 
     /// Equations per fold.
-    #[must_use]
     pub(crate) fn counts(&self) -> &[usize] {
         &self.counts
     }

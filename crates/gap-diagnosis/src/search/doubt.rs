@@ -36,19 +36,16 @@ const HEAVY: f64 = 3.0;
 
 impl Setting {
     /// Readings that are independent, tails that end, runs that may be shifted or turned.
-    #[must_use]
     pub(crate) fn plain(clamping: Clamping) -> Self {
         Self { serial: Serial::default(), caution: Serial::default(), tails: 1.0, lumpy: false, clamping }
     }
 
     /// How readings of a run hang together, by the more careful of both accounts.
-    #[must_use]
     pub(crate) fn counted(&self) -> Serial {
         self.caution.max(self.serial)
     }
 
     /// True where the noise is far from what a fit takes for granted: independent readings of one scatter.
-    #[must_use]
     pub(crate) fn is_doubtful(&self) -> bool {
         !self.counted().is_none() || self.tails > HEAVY || self.lumpy
     }
@@ -59,7 +56,6 @@ const UNEVEN_LEVEL: f64 = 1e-3;
 /// … and the variances differ by this factor: below it the weights change nothing that a test sees.
 const UNEVEN: f64 = 1.3;
 /// The equations with weights by component, where the components are not equally uncertain.
-#[must_use]
 pub(crate) fn weighed(data: &Measurements, first: &Explanation, scalars: &[Scalar]) -> Option<Vec<Scalar>> {
     let residuals = &first.solution.residuals_um;
     let of_class = |class: usize| {
@@ -87,7 +83,6 @@ pub(crate) fn weighed(data: &Measurements, first: &Explanation, scalars: &[Scala
 }
 
 /// [`Serial::inflation`] of some columns, each beside others and the runs' offsets.
-#[must_use]
 pub(crate) fn inflations(
     beside: &[Term],
     columns: &[Term],
@@ -121,7 +116,6 @@ pub(crate) fn inflations(
 
 /// Square that turns of the runs about their middles take off what a model leaves, beside shifts of the runs, weighted, µm²;
 /// the causes of the model stay as they are.
-#[must_use]
 pub(crate) fn taken_by_turns(data: &Measurements, model: &Explanation) -> f64 {
     let middles_mm = middles_mm(data);
     // By run, of what a shift, a turn (µm and µrad) and the rest show.
@@ -142,7 +136,6 @@ pub(crate) fn taken_by_turns(data: &Measurements, model: &Explanation) -> f64 {
 }
 
 /// True where most runs see an area or a volume, so that a turned run shows and is not taken for a slope of one line.
-#[must_use]
 pub(crate) fn could_be_turned(data: &Measurements) -> bool {
     /// The second extent of a run that is no line, as a share of the first.
     const AREA: f64 = 0.1;

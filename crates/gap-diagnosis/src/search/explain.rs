@@ -23,7 +23,6 @@ const TAILS: f64 = 1.2;
 const PASSES: usize = 3;
 
 /// Runs the search once, outliers and all.
-#[must_use]
 pub(crate) fn explain_roughly(
     data: &Measurements,
     scalars: &[Scalar],
@@ -35,7 +34,6 @@ pub(crate) fn explain_roughly(
 }
 
 /// Runs the search, and again where what it took for granted of noise and set-up does not hold on what it left.
-#[must_use]
 pub(crate) fn explain(data: &Measurements, scalars: &[Scalar], without: &[EffectKind]) -> Explanation {
     let places = Places::new(&data.rows);
     let shifted = weighed_and_settled(data, scalars, without, &places, Clamping::Shifted);

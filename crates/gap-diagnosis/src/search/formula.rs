@@ -86,7 +86,6 @@ fn columns(data: &Measurements) -> Vec<Column> {
 }
 
 /// Formulas for what is left of a gap, the best first; none where the file holds too little for one.
-#[must_use]
 pub(crate) fn formulas(data: &Measurements, scalars: &[Scalar]) -> Vec<Formula> {
     if data.has_magnitudes() || data.runs.len() < 2 * FOLDS {
         return Vec::new();

@@ -37,7 +37,6 @@ const STEPS: usize = 12;
 const CLOSE: f64 = 10.0;
 
 /// Equations of a file and its explanation; the notes say what the lengths leave open.
-#[must_use]
 pub(crate) fn explained(data: &Measurements, without: &[EffectKind]) -> (Explanation, Vec<Text>) {
     if !data.has_magnitudes() {
         return (explain(data, &data.scalars(None), without), Vec::new());
@@ -320,7 +319,6 @@ fn amplitude(measured: &[f64], predicted: &[Vector], unit: &[Vector], sign: f64)
 }
 
 /// Equations of the first linearisation: enough to see whether there is anything to explain.
-#[must_use]
 pub(crate) fn first_equations(data: &Measurements) -> Vec<Scalar> {
     if !data.has_magnitudes() {
         return data.scalars(None);

@@ -23,7 +23,6 @@ pub(crate) enum Move {
 ///
 /// `may` says whether a rival, beside the other parts, passes the tests of a new cause: a cause that passed them must not
 /// give way to one that does not.
-#[must_use]
 pub(crate) fn next_move(
     space: &Space,
     library: &Library,
@@ -79,7 +78,6 @@ fn best(found: &[(Part, Fit)]) -> Option<(Part, Fit)> {
 }
 
 /// The model without one of its parts.
-#[must_use]
 pub(crate) fn without(parts: &[Part], place: usize) -> Vec<Part> {
     parts.iter().enumerate().filter(|(i, _)| *i != place).map(|(_, p)| *p).collect()
 }

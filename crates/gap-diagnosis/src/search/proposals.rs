@@ -27,7 +27,6 @@ pub(crate) const LOCAL_PLACES: usize = 3;
 pub(crate) const SCAN_EQUATIONS: usize = 12_000;
 
 /// Every n-th equation, so that at most [`SCAN_EQUATIONS`] remain.
-#[must_use]
 pub(crate) fn thinned(scalars: &[Scalar]) -> Vec<usize> {
     let step = scalars.len().div_ceil(SCAN_EQUATIONS).max(1);
     (0..scalars.len()).step_by(step).collect()
@@ -47,7 +46,6 @@ pub(crate) struct Pitches {
 
 impl Pitches {
     /// What the rows of a file can show of one axis.
-    #[must_use]
     pub(crate) fn new(source: &Source<'_>, axis: usize) -> Self {
         let places = || {
             let seen = thinned(source.scalars).into_iter().map(|i| &source.scalars[i]);
@@ -105,7 +103,6 @@ impl Pitches {
     }
 
     /// Those that explain most of the residual, the best first, how many were looked at, and the best one that even steps hide.
-    #[must_use]
     pub(crate) fn best(
         &self,
         source: &Source<'_>,
@@ -173,7 +170,6 @@ fn power(places: &[Place], pitch_mm: f64) -> f64 {
 }
 
 /// The time at which the residual of one axis jumps most, and how many were looked at.
-#[must_use]
 pub(crate) fn knock(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> Option<(f64, usize)> {
     let mut points: Vec<(f64, f64)> = source
         .scalars
@@ -228,7 +224,6 @@ impl Jumps {
 }
 
 /// The place of an axis at which the residual of one other component jumps most, and how many were looked at.
-#[must_use]
 pub(crate) fn joint(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> Option<(f64, usize)> {
     /// Places closer than this are one, mm.
     const APART_MM: f64 = 1e-3;
@@ -249,7 +244,6 @@ pub(crate) fn joint(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> O
 
 /// Place and width where a bump along one axis explains most of the residual, all components together; how many
 /// were looked at.
-#[must_use]
 pub(crate) fn damage(
     source: &Source<'_>,
     residuals_um: &[f64],

@@ -56,7 +56,6 @@ struct Rest {
 
 impl<'a> Stage<'a> {
     /// Evaluates the columns of a model: their places in the library, and what they are.
-    #[must_use]
     pub(crate) fn new(source: &Source<'a>, columns: Vec<(usize, Term)>, rho: f64) -> Self {
         let scalars: Vec<Scalar> = thinned(source.scalars).into_iter().map(|i| source.scalars[i]).collect();
         let all: Vec<usize> = (0..scalars.len()).collect();
@@ -197,7 +196,6 @@ impl<'a> Stage<'a> {
     /// Shape of one effect that, beside the other columns, explains most; `None` where it has no free number.
     ///
     /// `own`: its columns in the model; `indices`: their coefficients.
-    #[must_use]
     pub(crate) fn refined(
         &self,
         own: &[usize],

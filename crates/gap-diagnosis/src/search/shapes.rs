@@ -40,11 +40,7 @@ impl State<'_, '_> {
                     let shape = Shape { time_s, ..Shape::default() };
                     let columns = self.library.add_columns(kind, shape, &[0]);
                     // The grid of the library asked already; a finer one asks at most that often again.
-                    self.library.add_variants(
-                        kind,
-                        vec![Variant { columns, enriched: false, only_rival: false }],
-                        asked.min(48),
-                    );
+                    self.library.add_variants(kind, vec![Variant::textbook(columns)], asked.min(48));
                 }
             }
         }
@@ -53,12 +49,10 @@ impl State<'_, '_> {
             if self.without.contains(&kind) || self.uses(kind) {
                 continue;
             }
-            if let Some((centre, width, asked)) = proposals::damage(
-                self.source,
-                &solution.residuals_um,
-                axis,
-                self.library.sampling[axis].narrowest_mm,
-            ) {
+            let narrowest = self.library.sampling[axis].narrowest_mm;
+            if let Some((centre, width, asked)) =
+                proposals::damage(self.source, &solution.residuals_um, axis, narrowest)
+            {
                 let variants = self.library.place(kind, centre, width);
                 self.library.add_variants(kind, variants, asked);
             }
@@ -113,7 +107,7 @@ impl State<'_, '_> {
                 EffectKind::Joint(_) => self.library.join(kind, better.centre_mm, better.width_mm),
                 _ => {
                     let columns = self.library.add_columns(kind, better, &indices);
-                    vec![Variant { columns, enriched: false, only_rival: false }]
+                    vec![Variant::textbook(columns)]
                 }
             };
             self.library.add_variants(kind, variants, 0);
@@ -162,7 +156,7 @@ impl State<'_, '_> {
                     proposals::knock(self.source, &displaced, axis).filter(|_| allowed(kind))
                 {
                     let columns = self.library.add_columns(kind, Shape { time_s, ..Shape::default() }, &[0]);
-                    let form = Variant { columns, enriched: false, only_rival: true };
+                    let form = Variant { only_rival: true, ..Variant::textbook(columns) };
                     self.library.add_variants(kind, vec![form], 0);
                 }
                 let kind = EffectKind::Local(axis);

@@ -166,7 +166,6 @@ pub(crate) enum Asked {
 
 impl Space {
     /// Whitens and eliminates the set-up for every ratio.
-    #[must_use]
     pub(crate) fn new(gram: Gram, nuisances: usize) -> Self {
         let mut space = Self {
             gram: Gram::default(),
@@ -190,38 +189,32 @@ impl Space {
     }
 
     /// The ratio of a level.
-    #[must_use]
     pub(crate) fn rho(&self, level: usize) -> f64 {
         self.levels[level].rho
     }
 
     /// Products at a level, set-up eliminated; positions are library columns minus the set-up's.
-    #[must_use]
     pub(crate) fn products(&self, level: usize) -> Whitened<'_> {
         Whitened { space: self, level: &self.levels[level] }
     }
 
     /// Square of each column before anything was taken out, same positions.
-    #[must_use]
     pub(crate) fn reference(&self) -> &[f64] {
         &self.reference
     }
 
     /// Positions in [`Self::products`] of the columns of a model.
-    #[must_use]
     pub(crate) fn columns(&self, library: &Library, parts: &[Part]) -> Vec<usize> {
         parts.iter().flat_map(|p| &library.form(*p).columns).map(|c| c - self.nuisances).collect()
     }
 
     /// Square of the gap after the set-up, at a level.
-    #[must_use]
     pub(crate) fn total(&self, level: usize) -> f64 {
         let last = self.reference.len() - 1;
         self.products(level).product(last, last).max(0.0)
     }
 
     /// Square of the gap that a model leaves after the set-up, at a level, and the model's rank.
-    #[must_use]
     pub(crate) fn left(&self, library: &Library, parts: &[Part], level: usize) -> (f64, usize) {
         let columns = self.columns(library, parts);
         let (explained, rank) = explained(&self.products(level), &columns, &self.reference);
@@ -238,13 +231,11 @@ impl Space {
 
     /// The price of one column. By so much the score may worsen for a new effect that passes its tests: the score ranks
     /// effects and their forms, whether there is one at all is for the F test to say, whose level is known.
-    #[must_use]
     pub(crate) fn allowance(&self) -> f64 {
         math::ln(self.degrees)
     }
 
     /// Judges a model.
-    #[must_use]
     pub(crate) fn fit(&self, library: &Library, parts: &[Part]) -> Fit {
         let mut best: Option<Fit> = None;
         for index in 0..self.levels.len() {
@@ -261,7 +252,6 @@ impl Space {
     }
 
     /// BIC of a model with its set-up columns counted.
-    #[must_use]
     pub(crate) fn evidence(&self, fit: &Fit) -> f64 {
         let level = &self.levels[fit.level];
         let equations = self.gram.equations as f64;
@@ -279,7 +269,6 @@ impl Space {
     }
 
     /// Judges `base` plus every form that is asked about, each in turn, of effects that are not in it.
-    #[must_use]
     pub(crate) fn scan(&self, library: &Library, base: &[Part], asked: Asked) -> Vec<(Part, Fit)> {
         let columns = self.columns(library, base);
         let base_price: f64 = base.iter().map(|p| self.price(library, *p)).sum();
@@ -367,7 +356,6 @@ pub(crate) struct Sweep<'a> {
 
 impl<'a> Sweep<'a> {
     /// Eliminates `base`; only products of the columns that are `needed` may be asked for.
-    #[must_use]
     pub(crate) fn new(products: Whitened<'a>, base: &[usize], reference: &[f64], needed: &[bool]) -> Self {
         let factor = Factor::new(&products, base, reference);
         let rank = factor.rank();

@@ -2,12 +2,10 @@
 
 use diagnostic::{Text, both};
 use machine_model::Vector;
-use machine_model::effects::EffectKind;
+use machine_model::effects::{EffectKind, Shape};
 
 use crate::equations::term::Term;
 use crate::judgement::assembly::Assembly;
-
-const AXES: [&str; 3] = ["X", "Y", "Z"];
 
 /// What a tracker reads wrong, in Russian, in the order of [`machine_model::effects::TRACKER`].
 const TRACKER: [&str; machine_model::effects::TRACKER.len()] = [
@@ -55,76 +53,60 @@ impl Assembly<'_> {
             _ => None,
         });
         let shape = shape.unwrap_or_default();
-        let axis = |a: usize| AXES[a];
+        let Shape { tau_s, pitch_mm, time_s, centre_mm, width_mm, .. } = shape;
         let size = first.abs();
+        let (per_100_mm, twice, tau_min, way_mm) = (0.1 * size, 2.0 * size, tau_s / 60.0, 2.3 * width_mm);
+        // `X` of one axis, `XY` of two, `EYX` of what shows along Y as X moves.
+        let id = kind.to_string();
+        let of = id.split_once('.').map_or("", |(_, of)| of.trim_start_matches('E'));
+        let (a, b) = of.split_at_checked(1).unwrap_or_default();
         match kind {
-            EffectKind::Scale(a) => {
+            EffectKind::Scale(_) => {
                 let way = if first > 0.0 {
                     Text::pair("far", "больше")
                 } else {
                     Text::pair("short", "меньше")
                 };
                 both!(
-                    "{} travels {size:.1} µm per metre too {way}",
-                    "{} проходит на {size:.1} мкм на метр {way:#} заданного",
-                    axis(a)
+                    "{a} travels {size:.1} µm per metre too {way}",
+                    "{a} проходит на {size:.1} мкм на метр {way:#} заданного"
                 )
             }
-            EffectKind::Squareness(a, b) => both!(
-                "{} leans {:.0} µrad against {}: {:.1} µm per 100 mm",
-                "{} наклонена на {:.0} мкрад относительно {}: {:.1} мкм на 100 мм",
-                axis(b),
-                size,
-                axis(a),
-                0.1 * size
+            EffectKind::Squareness(..) => both!(
+                "{b} leans {size:.0} µrad against {a}: {per_100_mm:.1} µm per 100 mm",
+                "{b} наклонена на {size:.0} мкрад относительно {a}: {per_100_mm:.1} мкм на 100 мм"
             ),
-            EffectKind::Backlash(a) if first < 0.0 => both!(
-                "{} reverses with {:.1} µm too much, not too little: over-compensated, or the sensor sits on the motor's side",
-                "{} при реверсе проходит на {:.1} мкм больше, а не меньше: люфт перекомпенсирован или датчик стоит со стороны двигателя",
-                axis(a),
-                2.0 * size
+            EffectKind::Backlash(_) if first < 0.0 => both!(
+                "{a} reverses with {twice:.1} µm too much, not too little: over-compensated, or the sensor sits on the motor's side",
+                "{a} при реверсе проходит на {twice:.1} мкм больше, а не меньше: люфт перекомпенсирован или датчик стоит со стороны двигателя"
             ),
-            EffectKind::Backlash(a) => both!(
-                "{} loses {:.1} µm of travel when it reverses",
-                "{} теряет при реверсе {:.1} мкм хода",
-                axis(a),
-                2.0 * first
+            EffectKind::Backlash(_) => both!(
+                "{a} loses {twice:.1} µm of travel when it reverses",
+                "{a} теряет при реверсе {twice:.1} мкм хода"
             ),
-            EffectKind::LostMotion { direction, axis: a } => both!(
-                "{} steps {:.1} µm along {} when it reverses",
-                "{} при реверсе смещается на {:.1} мкм вдоль {}",
-                axis(a),
-                2.0 * size,
-                axis(direction)
+            EffectKind::LostMotion { .. } => both!(
+                "{b} steps {twice:.1} µm along {a} when it reverses",
+                "{b} при реверсе смещается на {twice:.1} мкм вдоль {a}"
             ),
-            EffectKind::Thermal(a) => both!(
-                "{} grows with its temperature: {swing:.1} µm over what was measured",
-                "{} удлиняется от нагрева: {swing:.1} мкм на измеренном участке",
-                axis(a)
+            EffectKind::Thermal(_) => both!(
+                "{a} grows with its temperature: {swing:.1} µm over what was measured",
+                "{a} удлиняется от нагрева: {swing:.1} мкм на измеренном участке"
             ),
-            EffectKind::Warmup(a) => both!(
-                "{} creeps by {:.1} µm with a time constant of {:.0} min",
-                "{} при прогреве уходит на {:.1} мкм с постоянной времени {:.0} мин",
-                axis(a),
-                size,
-                shape.tau_s / 60.0
+            EffectKind::Warmup(_) => both!(
+                "{a} creeps by {size:.1} µm with a time constant of {tau_min:.0} min",
+                "{a} при прогреве уходит на {size:.1} мкм с постоянной времени {tau_min:.0} мин"
             ),
-            EffectKind::Positioning(a) => both!(
-                "the positions of {} err along a curve of {swing:.1} µm",
-                "отклонение позиционирования {} идёт по кривой размахом {swing:.1} мкм",
-                axis(a)
+            EffectKind::Positioning(_) => both!(
+                "the positions of {a} err along a curve of {swing:.1} µm",
+                "отклонение позиционирования {a} идёт по кривой размахом {swing:.1} мкм"
             ),
-            EffectKind::Straightness { direction, axis: a } => both!(
-                "{} runs {swing:.1} µm out of straight along {}",
-                "отклонение от прямолинейности {} вдоль {}: {swing:.1} мкм",
-                axis(a),
-                axis(direction)
+            EffectKind::Straightness { .. } => both!(
+                "{b} runs {swing:.1} µm out of straight along {a}",
+                "отклонение от прямолинейности {b} вдоль {a}: {swing:.1} мкм"
             ),
-            EffectKind::Pitch(a) => both!(
-                "{} errs by {swing:.1} µm once every {:.2} mm: one turn of its screw",
-                "{} даёт погрешность {swing:.1} мкм с периодом {:.2} мм: это один оборот винта",
-                axis(a),
-                shape.pitch_mm
+            EffectKind::Pitch(_) => both!(
+                "{a} errs by {swing:.1} µm once every {pitch_mm:.2} mm: one turn of its screw",
+                "{a} даёт погрешность {swing:.1} мкм с периодом {pitch_mm:.2} мм: это один оборот винта"
             ),
             EffectKind::Angular { about, axis: a } => {
                 let turns = if about == a {
@@ -135,41 +117,34 @@ impl Assembly<'_> {
                     Text::pair("pitches", "отклоняется по тангажу")
                 };
                 both!(
-                    "{} {turns} as it travels: {swing:.1} µm at the tool",
-                    "{} на ходу {turns:#}: {swing:.1} мкм на инструменте",
-                    axis(a)
+                    "{b} {turns} as it travels: {swing:.1} µm at the tool",
+                    "{b} на ходу {turns:#}: {swing:.1} мкм на инструменте"
                 )
             }
-            EffectKind::Sag(a) => both!(
-                "{} droops by {swing:.1} µm as it reaches out",
-                "{} провисает на {swing:.1} мкм с вылетом",
-                axis(a)
+            EffectKind::Sag(_) => both!(
+                "{a} droops by {swing:.1} µm as it reaches out",
+                "{a} провисает на {swing:.1} мкм с вылетом"
             ),
-            EffectKind::Load(a) => both!(
-                "the load bends the machine along {} by {swing:.1} µm",
-                "нагрузка прогибает станок вдоль {} на {swing:.1} мкм",
-                axis(a)
+            EffectKind::Load(_) => both!(
+                "the load bends the machine along {a} by {swing:.1} µm",
+                "нагрузка прогибает станок вдоль {a} на {swing:.1} мкм"
             ),
-            EffectKind::ServoLag(a) => both!(
-                "{} runs {size:.2} ms behind its command",
-                "{} отстаёт от задания на {size:.2} мс",
-                axis(a)
-            ),
-            EffectKind::ServoMismatch(a, b) => both!(
-                "{} and {} run {size:.2} ms apart",
-                "{} и {} расходятся на {size:.2} мс",
-                axis(a),
-                axis(b)
-            ),
-            EffectKind::Rotary { axis: a, .. } => both!(
-                "the rotary axis {} does not stand where the model has it: {swing:.1} µm",
-                "поворотная ось {} стоит не там, где в модели: {swing:.1} мкм",
-                ["A", "B", "C"][a]
-            ),
-            EffectKind::Eccentricity(a) => both!(
-                "{} errs once per turn by {swing:.1} µm",
-                "{} даёт погрешность раз за оборот: {swing:.1} мкм",
-                ["A", "B", "C"][a]
+            EffectKind::ServoLag(_) => {
+                both!("{a} runs {size:.2} ms behind its command", "{a} отстаёт от задания на {size:.2} мс")
+            }
+            EffectKind::ServoMismatch(..) => {
+                both!("{a} and {b} run {size:.2} ms apart", "{a} и {b} расходятся на {size:.2} мс")
+            }
+            EffectKind::Rotary { axis, .. } => {
+                let rotary = ["A", "B", "C"][axis];
+                both!(
+                    "the rotary axis {rotary} does not stand where the model has it: {swing:.1} µm",
+                    "поворотная ось {rotary} стоит не там, где в модели: {swing:.1} мкм"
+                )
+            }
+            EffectKind::Eccentricity(_) => both!(
+                "{a} errs once per turn by {swing:.1} µm",
+                "{a} даёт погрешность раз за оборот: {swing:.1} мкм"
             ),
             EffectKind::ProbeLobing => both!(
                 "the probe triggers {swing:.1} µm apart from direction to direction",
@@ -179,36 +154,25 @@ impl Assembly<'_> {
                 "the instrument drifts: {swing:.1} µm while it measured",
                 "прибор дрейфует: {swing:.1} мкм за время измерения"
             ),
-            EffectKind::Step(a) => both!(
-                "something moved by {:.1} µm along {} at {:.0} s",
-                "что-то сдвинулось на {:.1} мкм вдоль {} в момент {:.0} с",
-                size,
-                axis(a),
-                shape.time_s
+            EffectKind::Step(_) => both!(
+                "something moved by {size:.1} µm along {a} at {time_s:.0} s",
+                "что-то сдвинулось на {size:.1} мкм вдоль {a} в момент {time_s:.0} с"
             ),
-            EffectKind::Joint(a) => both!(
-                "the rails of {} do not meet at {:.0} mm: a step of {swing:.1} µm",
-                "направляющие {} не сходятся на {:.0} мм: ступенька {swing:.1} мкм",
-                axis(a),
-                shape.centre_mm
+            EffectKind::Joint(_) => both!(
+                "the rails of {a} do not meet at {centre_mm:.0} mm: a step of {swing:.1} µm",
+                "направляющие {a} не сходятся на {centre_mm:.0} мм: ступенька {swing:.1} мкм"
             ),
-            EffectKind::Spike(a) => both!(
-                "{} sticks where it turns: {:.1} µm, gone after {:.1} mm of way",
-                "{} залипает в точке реверса: {:.1} мкм, проходит через {:.1} мм пути",
-                axis(a),
-                size,
-                2.3 * shape.width_mm
+            EffectKind::Spike(_) => both!(
+                "{a} sticks where it turns: {size:.1} µm, gone after {way_mm:.1} mm of way",
+                "{a} залипает в точке реверса: {size:.1} мкм, проходит через {way_mm:.1} мм пути"
             ),
             EffectKind::Contraction => both!(
                 "circles shrink with the square of the feed: {swing:.1} µm over what was measured",
                 "окружности сжимаются с квадратом подачи: {swing:.1} мкм в измеренных пределах"
             ),
-            EffectKind::SpindleTilt(a) => both!(
-                "the spindle leans {:.0} µrad towards {}: {:.1} µm per 100 mm of tool",
-                "шпиндель наклонён на {:.0} мкрад в сторону {}: {:.1} мкм на 100 мм инструмента",
-                size,
-                axis(a),
-                0.1 * size
+            EffectKind::SpindleTilt(_) => both!(
+                "the spindle leans {size:.0} µrad towards {a}: {per_100_mm:.1} µm per 100 mm of tool",
+                "шпиндель наклонён на {size:.0} мкрад в сторону {a}: {per_100_mm:.1} мкм на 100 мм инструмента"
             ),
             EffectKind::Tracker(fault) => {
                 let name = machine_model::effects::TRACKER[fault];
@@ -218,12 +182,9 @@ impl Assembly<'_> {
                     format!("трекер неверно отсчитывает {russian}: {swing:.1} мкм"),
                 )
             }
-            EffectKind::Local(a) => both!(
-                "{} errs by {swing:.1} µm near {:.0} mm, over {:.0} mm",
-                "{} даёт погрешность {swing:.1} мкм около {:.0} мм, на участке {:.0} мм",
-                axis(a),
-                shape.centre_mm,
-                shape.width_mm
+            EffectKind::Local(_) => both!(
+                "{a} errs by {swing:.1} µm near {centre_mm:.0} mm, over {width_mm:.0} mm",
+                "{a} даёт погрешность {swing:.1} мкм около {centre_mm:.0} мм, на участке {width_mm:.0} мм"
             ),
         }
     }

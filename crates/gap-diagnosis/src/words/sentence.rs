@@ -6,7 +6,6 @@ use crate::judgement::answer::{Cause, Gap, Leftover, Verdict};
 use crate::judgement::verdict::{PHI_PARTIAL, Unseen};
 
 /// One sentence for the shop floor.
-#[must_use]
 pub(crate) fn sentence(verdict: Verdict, gap: &Gap, causes: &[Cause], leftover: &Leftover) -> Text {
     let names: Vec<&str> = causes.iter().map(|c| c.effect.as_str()).collect();
     let list = names.join(", ");

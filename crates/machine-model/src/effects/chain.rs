@@ -253,7 +253,6 @@ mod tests {
             linear_mm: Vector::new(100.0, -40.0, 30.0),
             rotary_rad,
             tool_mm: Vector::new(0.0, 0.0, -50.0),
-            direction: [0; 3],
             ..Default::default()
         }
     }

@@ -281,7 +281,6 @@ mod tests {
     fn at(x: f64, y: f64, z: f64, direction: [i8; 3]) -> Command {
         Command {
             linear_mm: Vector::new(x, y, z),
-            rotary_rad: Vector::zeros(),
             tool_mm: Vector::new(0.0, 0.0, -100.0),
             direction,
             ..Default::default()

@@ -9,7 +9,7 @@ use nalgebra::Matrix3;
 
 use super::build_error::BuildError;
 use super::traverses::Traverses;
-use crate::solve::inside;
+use crate::engine::inside;
 use crate::{Command, Engine, EngineId, Move, PathModel, Solution, SolveError, Traverse, Vector, Volume};
 
 /// The interval method with signed cosines.

@@ -29,13 +29,7 @@ impl Random {
 }
 
 pub(crate) fn command(linear_mm: [f64; 3], tool_mm: [f64; 3]) -> Command {
-    Command {
-        linear_mm: linear_mm.into(),
-        rotary_rad: Vector::zeros(),
-        tool_mm: tool_mm.into(),
-        direction: [0; 3],
-        ..Default::default()
-    }
+    Command { linear_mm: linear_mm.into(), tool_mm: tool_mm.into(), ..Default::default() }
 }
 
 /// A machine without errors.

@@ -123,13 +123,7 @@ pub fn field(machine: &RigidBody, tables: &[ParametricTable; 3]) -> Field {
         for &y in y {
             for &x in x {
                 let place_mm = Vector::new(x, y, z);
-                let error_mm = machine.error_mm(&Command {
-                    linear_mm: place_mm,
-                    rotary_rad: Vector::zeros(),
-                    tool_mm: Vector::zeros(),
-                    direction: [0; 3],
-                    ..Default::default()
-                });
+                let error_mm = machine.error_mm(&Command { linear_mm: place_mm, ..Default::default() });
                 vectors.push(ErrorVector { place_mm, error_mm, uncertainty_mm: Vector::zeros(), run: 0 });
             }
         }

@@ -1,25 +1,20 @@
 //! What a profile says of programs and of the control that runs them.
 
-use std::fmt::Write as _;
+use diagnostic::{Text, both};
 
-use diagnostic::{Language, Text, both};
-
-use super::tell;
+use super::Lines;
 use crate::profile::{AfterChange, BareLengths, FlankFrom, Profile};
 
 impl Profile {
     /// What is said of the machine's programs, where anything is.
-    pub(super) fn write_program_rules(&self, out: &mut String, language: Language) -> std::fmt::Result {
+    pub(super) fn write_program_rules(&self, out: &mut Lines) {
         let rules = &self.program;
         match rules.bare_lengths {
-            Some(BareLengths::Increments) => tell!(
-                out,
-                language,
-                "programs     Z10 is ten increments",
-                "программы    Z10 — это десять дискрет"
-            )?,
+            Some(BareLengths::Increments) => {
+                out.line(both!("programs     Z10 is ten increments", "программы    Z10 — это десять дискрет"))
+            }
             Some(BareLengths::Millimetres) => {
-                tell!(out, language, "programs     Z10 is Z10.", "программы    Z10 — это Z10.")?
+                out.line(both!("programs     Z10 is Z10.", "программы    Z10 — это Z10."))
             }
             None => {}
         }
@@ -30,31 +25,27 @@ impl Profile {
                 AfterChange::At(place_mm) => both!("{name} at {place_mm} mm", "{name} на {place_mm} мм"),
             };
             let axes: Vec<Text> = "XYZ".chars().zip(rules.tool_change).map(axis).collect();
-            tell!(out, language, "tool change  {}", "смена инстр. {:#}", Text::join(&axes, ", "))?;
+            out.line(both!("tool change  {}", "смена инстр. {:#}", Text::join(&axes, ", ")));
         }
         if let Some(mm) = rules.arc_tolerance_mm {
-            tell!(
-                out,
-                language,
+            out.line(both!(
                 "arcs         radii may differ by {mm} mm",
                 "дуги         радиусы могут различаться на {mm} мм"
-            )?;
+            ));
         }
-        self.write_cycles(out, language)?;
+        self.write_cycles(out);
         if !rules.harmless_m_codes.is_empty() {
             let codes: Vec<String> = rules.harmless_m_codes.iter().map(|code| format!("M{code}")).collect();
-            tell!(
-                out,
-                language,
+            out.line(both!(
                 "M codes      {} move neither an axis nor the frame",
                 "функции M    {} не двигают ни осей, ни системы координат",
                 codes.join(", ")
-            )?;
+            ));
         }
         let stands = |(axis, deg): (char, Option<f64>)| deg.map(|deg| format!("{axis}{deg}"));
         let start: Vec<String> = "ABC".chars().zip(rules.rotary_start_deg).filter_map(stands).collect();
         if !start.is_empty() {
-            tell!(out, language, "start        {}", "начало       {}", start.join(" "))?;
+            out.line(both!("start        {}", "начало       {}", start.join(" ")));
         }
         for call in &rules.calls {
             let axes: String =
@@ -66,13 +57,12 @@ impl Profile {
             } else {
                 both!("may move {axes}", "может двигать {axes}")
             };
-            tell!(out, language, "left alone   {code} {left}", "без правки   {code} {left:#}")?;
+            out.line(both!("left alone   {code} {left}", "без правки   {code} {left:#}"));
         }
-        Ok(())
     }
 
     /// What the control's cycles of lathes do.
-    fn write_cycles(&self, out: &mut String, language: Language) -> std::fmt::Result {
+    fn write_cycles(&self, out: &mut Lines) {
         let turning = &self.program.turning;
         let said = [
             (
@@ -164,13 +154,12 @@ impl Profile {
             ));
         }
         if !said.is_empty() {
-            tell!(out, language, "cycles       {}", "циклы        {:#}", Text::join(&said, ", "))?;
+            out.line(both!("cycles       {}", "циклы        {:#}", Text::join(&said, ", ")));
         }
-        Ok(())
     }
 
     /// What the control computes itself.
-    pub(super) fn write_kinematics(&self, out: &mut String, language: Language) -> std::fmt::Result {
+    pub(super) fn write_kinematics(&self, out: &mut Lines) {
         if let Some(kinematics) = &self.kinematics {
             let axes = self.chain().axes().filter(|axis| !axis.is_linear());
             let centres: Vec<Text> = axes
@@ -179,7 +168,7 @@ impl Profile {
                     both!("{} about {x} {y} {z} mm", "{} вокруг {x} {y} {z} мм", axis.letter())
                 })
                 .collect();
-            tell!(out, language, "tip control  {}", "ведение вершины {:#}", Text::join(&centres, ", "))?;
+            out.line(both!("tip control  {}", "ведение вершины {:#}", Text::join(&centres, ", ")));
             let rule = &kinematics.tilt_rule;
             let branch = rule.branch.map(|(axis, positive)| {
                 let side = if positive {
@@ -201,7 +190,7 @@ impl Profile {
             });
             let rule: Vec<Text> = branch.into_iter().chain(turns).chain(reference).collect();
             if !rule.is_empty() {
-                tell!(out, language, "tilted plane {}", "наклонная плоскость {:#}", Text::join(&rule, ", "))?;
+                out.line(both!("tilted plane {}", "наклонная плоскость {:#}", Text::join(&rule, ", ")));
             }
             if let Some(circle) = kinematics.great_circle {
                 let how = if circle {
@@ -209,9 +198,8 @@ impl Profile {
                 } else {
                     Text::pair("each rotary axis evenly", "каждая поворотная ось равномерно")
                 };
-                tell!(out, language, "vectors      {how}", "векторы      {how:#}")?;
+                out.line(both!("vectors      {how}", "векторы      {how:#}"));
             }
         }
-        Ok(())
     }
 }

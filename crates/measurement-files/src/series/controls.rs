@@ -62,12 +62,8 @@ pub(super) fn heidenhain(file: &File<'_>) -> Result<Vec<Series>, Box<Refusal>> {
         if cells.len() != header.len() {
             let message =
                 both!("{} numbers for {} columns", "чисел {}, а столбцов {}", cells.len(), header.len());
-            return Err(file.refuse(
-                CELL,
-                line.span(),
-                message,
-                both!("give every row all columns", "дайте каждой строке все столбцы"),
-            ));
+            let help = both!("give every row all columns", "дайте каждой строке все столбцы");
+            return Err(file.refuse(CELL, line.span(), message, help));
         }
         let cell = |title: &str| header.iter().position(|h| h == title).map(|k| cells[k]);
         let Some(position) = cell("AXISPOS") else { continue };
@@ -87,15 +83,11 @@ pub(super) fn heidenhain(file: &File<'_>) -> Result<Vec<Series>, Box<Refusal>> {
     }
     if found.is_empty() {
         let message = both!("no column is named by an axis", "ни один столбец не назван осью");
-        return Err(file.refuse(
-            COLUMN,
-            0..0,
-            message,
-            both!(
-                "a column X, Y or Z holds the values of that axis",
-                "значения оси стоят в столбце X, Y или Z"
-            ),
-        ));
+        let help = both!(
+            "a column X, Y or Z holds the values of that axis",
+            "значения оси стоят в столбце X, Y или Z"
+        );
+        return Err(file.refuse(COLUMN, 0..0, message, help));
     }
     Ok(found)
 }
@@ -120,12 +112,8 @@ pub(super) fn isg(file: &File<'_>) -> Result<Content, Box<Refusal>> {
         }
         let Some(cells) = numbers(line).filter(|n| n.len() == header.len()) else {
             let message = both!("expected {} numbers", "ожидалось чисел: {}", header.len());
-            return Err(file.refuse(
-                CELL,
-                whole.span(),
-                message,
-                both!("mm and rad, separated by spaces", "мм и рад, через пробел"),
-            ));
+            let help = both!("mm and rad, separated by spaces", "мм и рад, через пробел");
+            return Err(file.refuse(CELL, whole.span(), message, help));
         };
         let angle = |title: &String| ["C0Y", "B0Z", "A0Z"].iter().position(|known| known == title);
         if let Some(places) = header.iter().map(angle).collect::<Option<Vec<usize>>>() {
@@ -141,12 +129,8 @@ pub(super) fn isg(file: &File<'_>) -> Result<Content, Box<Refusal>> {
                 "a block begins with the axis: `X EXX EYX …`; of constant errors only C0Y, B0Z and A0Z are read",
                 "блок начинается с оси: `X EXX EYX …`; из постоянных погрешностей читаются только C0Y, B0Z и A0Z"
             );
-            return Err(file.refuse(
-                COLUMN,
-                whole.span(),
-                both!("`{}` is no linear axis", "`{}` — не линейная ось", header[0]),
-                help,
-            ));
+            let message = both!("`{}` is no linear axis", "`{}` — не линейная ось", header[0]);
+            return Err(file.refuse(COLUMN, whole.span(), message, help));
         };
         for (title, value) in header.iter().zip(&cells).skip(1) {
             let Some((function, own)) = symbol(title).filter(|(_, own)| *own == axis) else {
@@ -154,12 +138,9 @@ pub(super) fn isg(file: &File<'_>) -> Result<Content, Box<Refusal>> {
                     "`{title}` is no error function of {axis}",
                     "`{title}` — не функция погрешности оси {axis}"
                 );
-                return Err(file.refuse(
-                    COLUMN,
-                    whole.span(),
-                    message,
-                    both!("write EXX, EYX, … of the block's axis", "напишите EXX, EYX, … оси этого блока"),
-                ));
+                let help =
+                    both!("write EXX, EYX, … of the block's axis", "напишите EXX, EYX, … оси этого блока");
+                return Err(file.refuse(COLUMN, whole.span(), message, help));
             };
             let same = |s: &Series| s.axis == own && s.function == function;
             if !found.iter().any(same) {

@@ -165,12 +165,8 @@ impl<'f> File<'f> {
     }
 
     pub(super) fn damaged(&self, span: Range<usize>, message: Text) -> Box<Refusal> {
-        self.refuse(
-            UNREADABLE,
-            span,
-            message,
-            both!("the file is damaged; export it again", "файл повреждён; выведите его снова"),
-        )
+        let help = both!("the file is damaged; export it again", "файл повреждён; выведите его снова");
+        self.refuse(UNREADABLE, span, message, help)
     }
 
     pub(super) fn question(&self, message: &Text, help: Text) -> Box<Refusal> {
@@ -181,17 +177,16 @@ impl<'f> File<'f> {
 
     pub(super) fn function(&self) -> Result<(usize, Axis), Box<Refusal>> {
         self.told.symbol.ok_or_else(|| {
-            self.question(
-                &both!(
-                    "does not say which error function it holds",
-                    "не говорит, какая в нём функция погрешности"
-                ),
-                both!(
-                    "write `{}=EXX:um`: the standard's symbol and the unit of the deviations",
-                    "напишите `{}=EXX:um`: обозначение по стандарту и единицу отклонений",
-                    self.name
-                ),
-            )
+            let message = both!(
+                "does not say which error function it holds",
+                "не говорит, какая в нём функция погрешности"
+            );
+            let help = both!(
+                "write `{}=EXX:um`: the standard's symbol and the unit of the deviations",
+                "напишите `{}=EXX:um`: обозначение по стандарту и единицу отклонений",
+                self.name
+            );
+            self.question(&message, help)
         })
     }
 
@@ -222,13 +217,11 @@ impl<'f> File<'f> {
 
     pub(super) fn values(&self, options: &Text) -> Result<Values, Box<Refusal>> {
         self.told.values.ok_or_else(|| {
-            self.question(
-                &both!(
-                    "is a control's table: are its numbers what the axis did, or what the control adds?",
-                    "— таблица стойки: её числа — отклонения оси или то, что прибавляет стойка?"
-                ),
-                both!("add `--values {options}`", "добавьте `--values {options:#}`"),
-            )
+            let message = both!(
+                "is a control's table: are its numbers what the axis did, or what the control adds?",
+                "— таблица стойки: её числа — отклонения оси или то, что прибавляет стойка?"
+            );
+            self.question(&message, both!("add `--values {options}`", "добавьте `--values {options:#}`"))
         })
     }
 }

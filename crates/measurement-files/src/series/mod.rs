@@ -91,12 +91,8 @@ fn own_csv(name: &str, bytes: &[u8], told: Told<'_>, ignore: &[String]) -> Resul
                 other.name(),
                 series.name()
             );
-            return Err(sheet.refuse_column(
-                COLUMN,
-                key,
-                message,
-                both!("give each axis a file of its own", "дайте каждой оси отдельный файл"),
-            ));
+            let help = both!("give each axis a file of its own", "дайте каждой оси отдельный файл");
+            return Err(sheet.refuse_column(COLUMN, key, message, help));
         }
         if found.iter().any(|other| other.function == *function) {
             let message = both!("{} stands twice in the file", "{} стоит в файле дважды", series.name());
@@ -119,13 +115,11 @@ fn own_csv(name: &str, bytes: &[u8], told: Told<'_>, ignore: &[String]) -> Resul
         found.push(series);
     }
     if found.is_empty() {
-        return Err(sheet.lacks(
-            "EXX_mm",
-            both!(
-                "name error functions by symbol and unit, as in EXX_um or EBX_urad",
-                "называйте функции погрешности обозначением и единицей: EXX_um, EBX_urad"
-            ),
-        ));
+        let help = both!(
+            "name error functions by symbol and unit, as in EXX_um or EBX_urad",
+            "называйте функции погрешности обозначением и единицей: EXX_um, EBX_urad"
+        );
+        return Err(sheet.lacks("EXX_mm", help));
     }
     holds_what_is_told(&sheet, told, &found, &functions[0].2)?;
     Ok(found)

@@ -36,15 +36,11 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
             part.clear();
             if section == "DEVIATIONS" && !rows.is_empty() {
                 let message = both!("a second measurement in one file", "второе измерение в одном файле");
-                return Err(file.refuse(
-                    RUNS,
-                    line.span(),
-                    message,
-                    both!(
-                        "export each measurement to a file of its own",
-                        "выведите каждое измерение в отдельный файл"
-                    ),
-                ));
+                let help = both!(
+                    "export each measurement to a file of its own",
+                    "выведите каждое измерение в отдельный файл"
+                );
+                return Err(file.refuse(RUNS, line.span(), message, help));
             }
         } else if let Some((key, rest)) = line.text.split_once(':') {
             part = key.trim().to_lowercase();
@@ -67,15 +63,11 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
                             file.name,
                             rest.trim()
                         );
-                        return Err(file.refuse(
-                            AXES,
-                            line.span(),
-                            message,
-                            both!(
-                                "correct the symbol behind the file's name",
-                                "исправьте обозначение после имени файла"
-                            ),
-                        ));
+                        let help = both!(
+                            "correct the symbol behind the file's name",
+                            "исправьте обозначение после имени файла"
+                        );
+                        return Err(file.refuse(AXES, line.span(), message, help));
                     }
                 }
                 _ => {}
@@ -88,13 +80,11 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
                         rows.push(Deviation { run: run as usize, target: target as usize, value, line });
                     }
                     _ => {
-                        return Err(file.damaged(
-                            line.span(),
-                            both!(
-                                "expected run, target and deviation",
-                                "ожидались проход, цель и отклонение"
-                            ),
-                        ));
+                        let message = both!(
+                            "expected run, target and deviation",
+                            "ожидались проход, цель и отклонение"
+                        );
+                        return Err(file.damaged(line.span(), message));
                     }
                 },
                 _ => {}
@@ -135,10 +125,8 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
         };
         for row in own {
             let Some(position) = at(&row) else {
-                return Err(file.damaged(
-                    row.line.span(),
-                    both!("target {} of {}", "цель {} из {}", row.target, targets.len()),
-                ));
+                let message = both!("target {} of {}", "цель {} из {}", row.target, targets.len());
+                return Err(file.damaged(row.line.span(), message));
             };
             // Runs of the two directions are numbered through; as ISO 230-2 counts them, two make one.
             series.push(&run.div_ceil(2).to_string(), position, row.value * factor, direction);
@@ -181,28 +169,17 @@ pub(super) fn columns_of_runs(file: &File<'_>) -> Result<Series, Box<Refusal>> {
     if bracket(&titles[0]).is_some_and(|unit| Unit::named(&unit, None) != Some(MM)) {
         let (span, message) =
             (table.header.cells[0].span.clone(), both!("targets in `{}`", "цели в `{}`", titles[0]));
-        return Err(file.refuse(
-            UNIT,
-            span,
-            message,
-            both!("give the target positions in mm", "дайте положения целей в мм"),
-        ));
+        let help = both!("give the target positions in mm", "дайте положения целей в мм");
+        return Err(file.refuse(UNIT, span, message, help));
     }
     // Of a single run nothing hangs on it.
     let alone = (titles.len() == 2).then_some(0);
     let directions = titles.iter().enumerate().skip(1).map(|(run, title)| {
         let told = || file.told.ways.map(|ways| ways.of(run));
         way(title).or_else(told).or(alone).ok_or_else(|| {
-            file.question(
-                &both!(
-                    "does not say which way the axis went in `{title}`: lost motion is what two directions differ by",
-                    "не говорит, в какую сторону шла ось в `{title}`: мёртвый ход — это разность двух направлений"
-                ),
-                both!(
-                    "add `--runs alternating` (the first towards plus, the next towards minus, and so on), `--runs up` or `--runs down`; or say it in the titles: `Run 1 +`, `Run 2 -`",
-                    "добавьте `--runs alternating` (первый в плюс, следующий в минус и так далее), `--runs up` или `--runs down`; или скажите это в заголовках: `Run 1 +`, `Run 2 -`"
-                ),
-            )
+            let message = both!("does not say which way the axis went in `{title}`: lost motion is what two directions differ by", "не говорит, в какую сторону шла ось в `{title}`: мёртвый ход — это разность двух направлений");
+            let help = both!("add `--runs alternating` (the first towards plus, the next towards minus, and so on), `--runs up` or `--runs down`; or say it in the titles: `Run 1 +`, `Run 2 -`", "добавьте `--runs alternating` (первый в плюс, следующий в минус и так далее), `--runs up` или `--runs down`; или скажите это в заголовках: `Run 1 +`, `Run 2 -`");
+            file.question(&message, help)
         })
     });
     let directions: Vec<i8> = directions.collect::<Result<_, _>>()?;
@@ -217,12 +194,8 @@ pub(super) fn columns_of_runs(file: &File<'_>) -> Result<Series, Box<Refusal>> {
                     Text::pair("number", "число")
                 };
                 let help = both!("write decimal numbers with a point", "пишите десятичные числа с точкой");
-                file.refuse(
-                    CELL,
-                    cell.span.clone(),
-                    both!("`{text}` is no {what}", "`{text}` — не {what:#}"),
-                    help,
-                )
+                let message = both!("`{text}` is no {what}", "`{text}` — не {what:#}");
+                file.refuse(CELL, cell.span.clone(), message, help)
             };
             mark.number(&text).ok_or_else(refusal)
         };

@@ -1,11 +1,46 @@
 //! What each cause does to a radius, as columns.
 
 use nalgebra::DVector;
-use turning::{Bending, Force, Workpiece, WorkpieceError};
+use turning::{Bending, Clamping, Force, Workpiece, WorkpieceError};
 use units::math;
 
-use super::{Bar, CauseRow};
 use crate::turning::readings::order_within;
+
+/// A radius that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CauseRow {
+    /// Which part: one clamping, one finishing cut.
+    pub part: usize,
+    /// Which tool and edge, where that is known.
+    pub tool: Option<usize>,
+    /// Of the cross section, machine frame, mm.
+    pub z_mm: f64,
+    /// As commanded, mm.
+    pub diameter_mm: f64,
+    /// Measured less predicted, on the radius, mm.
+    pub gap_mm: f64,
+    /// Since the spindle was started, s, where that is known.
+    pub time_s: Option<f64>,
+    /// Of the reading about the spindle's axis, rad; `None`: a diameter.
+    pub angle_rad: Option<f64>,
+    /// Standard uncertainty on the radius, mm, where all rows state one.
+    pub uncertainty_mm: Option<f64>,
+}
+
+/// How the parts are held: an even bar of the diameter that is turned.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bar {
+    /// From the chuck's face, mm.
+    pub length_mm: f64,
+    /// Machine Z of the chuck's face, mm.
+    pub chuck_mm: f64,
+    /// Young's modulus, N/mm².
+    pub youngs_modulus_n_mm2: f64,
+    /// How it is held.
+    pub clamping: Clamping,
+    /// Steady rests, mm from the chuck.
+    pub steady_rests_mm: Vec<f64>,
+}
 
 /// What may be found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -109,7 +144,7 @@ impl<'a> Columns<'a> {
             radius_mm: 0.5 * diameters.iter().sum::<f64>() / diameters.len().max(1) as f64,
             diameters: diameters.len(),
             flexibility,
-            is_chucked: bar.is_none_or(|bar| !matches!(bar.clamping, turning::Clamping::Centres { .. })),
+            is_chucked: bar.is_none_or(|bar| !matches!(bar.clamping, Clamping::Centres { .. })),
         })
     }
 

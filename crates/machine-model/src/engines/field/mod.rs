@@ -14,7 +14,7 @@ mod variances;
 
 use nalgebra::Matrix3;
 
-use crate::solve::inside;
+use crate::engine::inside;
 use crate::{Command, Engine, EngineId, Move, PathModel, Solution, SolveError, Vector, Volume};
 use spline::{Basis, TensorSpline};
 use support::Support;

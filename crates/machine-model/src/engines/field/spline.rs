@@ -416,13 +416,7 @@ mod tests {
                     speed_mm: speed.into(),
                     acceleration_mm: acceleration.into(),
                     passes: if arc { 2 } else { 1 },
-                    state: Command {
-                        linear_mm: Vector::zeros(),
-                        rotary_rad: Vector::zeros(),
-                        tool_mm: Vector::zeros(),
-                        direction: [0; 3],
-                        ..Default::default()
-                    },
+                    state: Command::default(),
                     turn: None,
                 };
                 let bound = spline.chord_bound_mm(&stretch);

@@ -6,13 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use super::*;
 
 fn at(q: Vector) -> Command {
-    Command {
-        linear_mm: q,
-        rotary_rad: Vector::zeros(),
-        tool_mm: Vector::zeros(),
-        direction: [0; 3],
-        ..Default::default()
-    }
+    Command { linear_mm: q, ..Default::default() }
 }
 
 /// A field as a machine makes it, mm: functions of one axis, and angles with their levers.

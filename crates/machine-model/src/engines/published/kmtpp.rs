@@ -6,11 +6,11 @@
 
 use nalgebra::Matrix3;
 
+use crate::engine::inside;
 use crate::engines::tangential::PUBLISHED_INTERVAL;
 use crate::engines::traverses::Traverses;
 use crate::engines::{BuildError, ParametricTable};
 use crate::finite_rotations::rodrigues_displacement;
-use crate::solve::inside;
 use crate::{Command, Engine, EngineId, Range, Solution, SolveError, Traverse, Vector, Volume};
 
 /// Steps after which the astatic law counts as not settling.

@@ -2,10 +2,10 @@
 
 use nalgebra::Matrix3;
 
+use crate::engine::inside;
 use crate::engines::BuildError;
 use crate::engines::tangential::PUBLISHED_INTERVAL;
 use crate::engines::traverses::Traverses;
-use crate::solve::inside;
 use crate::{Command, Engine, EngineId, Solution, SolveError, Traverse, Vector, Volume};
 
 /// Which of the three methods.
