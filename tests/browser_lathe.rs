@@ -163,7 +163,7 @@ fn the_page_of_test_pieces_says_what_their_report_says() {
     );
     assert!(head.contains(&said), "{said}: {head}");
     assert!(head.contains("5 of them, 15.1\u{a0}\u{2192}\u{a0}0.38"), "{head}");
-    assert!(head.contains("These parts cannot tell apart wear and growth: add the column time_s"));
+    assert!(head.contains("Wear and growth cannot be told apart by these parts: add the column time_s"));
     // Both kinds of reading are drawn: twelve that were fitted, five that were not.
     let dots = |class: &str| {
         let path = page.split(&format!("class=\"dots {class}\"")).nth(1).expect("dots");
