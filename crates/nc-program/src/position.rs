@@ -141,10 +141,11 @@ fn direct(words: &Words<'_, '_, '_>, span: Span, value_deg: f64, axis: usize, st
             both!("where the axis comes from is not known", "откуда идёт ось, неизвестно")
         }
     };
-    Err(words.refuse(Refusal { code: codes::BAD_NUMBER, message, label, help: both!(
+    let help = both!(
         "write the angle without a name, counted on over whole turns, or turn the axis by a rapid of its own before",
         "напишите угол без имени, со счётом полных оборотов, или поверните ось раньше отдельным быстрым ходом"
-    ) }, span))
+    );
+    Err(words.refuse(Refusal { code: codes::BAD_NUMBER, message, label, help }, span))
 }
 
 /// The linear axes after the words of the block where a rotation, scaling or mirror is in force.

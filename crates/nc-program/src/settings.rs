@@ -10,7 +10,7 @@ use crate::modal::{
     ArcCentres, Compensation, CycleState, Distance, FeedMode, Modal, MotionMode, ReturnLevel, Shifts, Turn,
     Units, WorkOffset,
 };
-use crate::refusals::settings as refusal;
+use crate::refusals::{frames as of_frames, settings as refusal};
 use crate::setup::Setup;
 use crate::tool_length::{self, Length};
 use crate::words::{LINEAR_LETTERS, Outcome, Words};
@@ -354,7 +354,7 @@ fn switches(words: &Words<'_, '_, '_>, state: &mut Modal, wanted: &Wanted<'_>) -
     };
     let Some(span) = off.or(wanted.shift.map(|(_, span)| span)) else { return Ok(()) };
     if state.compensation != Compensation::Off {
-        return Err(words.refuse_code(refusal::UNDER_CUTTER_COMPENSATION, span));
+        return Err(words.refuse_code(of_frames::UNDER_CUTTER_COMPENSATION, span));
     }
     if off.is_some() {
         frames::unsettle(state, Transform::None);
@@ -366,7 +366,7 @@ fn switches(words: &Words<'_, '_, '_>, state: &mut Modal, wanted: &Wanted<'_>) -
         (Action::PresetSuspend, _) => (shifts.preset_mm, shifts.kept_mm) = ([0.0; 3], Some(shifts.preset_mm)),
         (_, Some(kept)) => shifts.preset_mm = kept,
         (_, None) => {
-            return Err(words.refuse_code(refusal::WITHOUT_SHIFT_OF_THIS_PROGRAM, span));
+            return Err(words.refuse_code(of_frames::WITHOUT_SHIFT_OF_THIS_PROGRAM, span));
         }
     }
     Ok(())

@@ -340,17 +340,17 @@ pub(crate) const CYCLE_THAT_CANNOT_BE_WRITTEN_OUT: Refusal = Refusal {
     ),
 };
 
-pub(crate) fn cycle_without_levels(letter: char, letter_2: char) -> Refusal {
+pub(crate) fn cycle_without_levels(depth: char, level: char) -> Refusal {
     Refusal {
         code: codes::CALLED_CYCLE,
         message: both!("a cycle without its levels", "цикл без своих уровней"),
         label: both!(
-            "{letter} below {letter_2} was expected in this block",
-            "в этом кадре ожидалось {letter} ниже {letter_2}"
+            "{depth} below {level} was expected in this block",
+            "в этом кадре ожидалось {depth} ниже {level}"
         ),
         help: both!(
-            "write {letter} and {letter_2} beside the cycle",
-            "напишите рядом с циклом {letter} и {letter_2}"
+            "write {depth} and {level} beside the cycle",
+            "напишите рядом с циклом {depth} и {level}"
         ),
     }
 }

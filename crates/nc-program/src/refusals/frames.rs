@@ -6,10 +6,10 @@ use diagnostic::{Refusal, Text, both};
 
 use crate::codes;
 
-pub(crate) fn two_codes_in_one_block(code: &str, code_2: &str) -> Refusal {
+pub(crate) fn two_codes_in_one_block(code: &str, motion: &str) -> Refusal {
     Refusal {
         code: codes::FRAME,
-        message: both!("{code} and {code_2} in one block", "{code} и {code_2} в одном кадре"),
+        message: both!("{code} and {motion} in one block", "{code} и {motion} в одном кадре"),
         label: both!(
             "moves the frame: before or after the motion?",
             "смещает систему координат: до движения или после?"

@@ -6,12 +6,12 @@ use diagnostic::{Refusal, Text, both};
 
 use crate::codes;
 
-pub(crate) fn both_take_the_words(code: &str, code_2: &str) -> Refusal {
+pub(crate) fn both_take_the_words(code: &str, other: &str) -> Refusal {
     Refusal {
         code: codes::WORDS_OF_TWO,
         message: both!(
-            "{code} and {code_2} both take the words of this block",
-            "слова этого кадра принимают и {code}, и {code_2}"
+            "{code} and {other} both take the words of this block",
+            "слова этого кадра принимают и {code}, и {other}"
         ),
         label: both!("whose are the axis words?", "чьи это слова осей?"),
         help: both!("write the two codes in two blocks", "напишите эти две функции двумя кадрами"),
@@ -73,32 +73,6 @@ pub(crate) const NO_WORK_OFFSET_P0: Refusal = Refusal {
     message: Text::pair("there is no work offset P0", "смещения нуля P0 нет"),
     label: Text::pair("they count from 1", "счёт идёт с 1"),
     help: Text::pair("write the number of the work offset", "напишите номер смещения нуля"),
-};
-
-pub(crate) const UNDER_CUTTER_COMPENSATION: Refusal = Refusal {
-    code: codes::FRAME,
-    message: Text::pair("under cutter compensation", "при коррекции на радиус"),
-    label: Text::pair(
-        "the compensated path jumps with it",
-        "эквидистанта скачком сместилась бы вместе с ней",
-    ),
-    help: Text::pair(
-        "cancel the compensation with G40 before it",
-        "отмените перед ней коррекцию функцией G40",
-    ),
-};
-
-pub(crate) const WITHOUT_SHIFT_OF_THIS_PROGRAM: Refusal = Refusal {
-    code: codes::FRAME,
-    message: Text::pair("without a shift of this program", "без сдвига в этой программе"),
-    label: Text::pair(
-        "brings back what an earlier program left",
-        "возвращает то, что осталось от прежней программы",
-    ),
-    help: Text::pair(
-        "write the shift with G92 or G52, or use a work offset",
-        "задайте сдвиг функцией G92 или G52 или возьмите смещение нуля",
-    ),
 };
 
 pub(crate) fn changes_under_transform(what: &Text, name: &Text) -> Refusal {
