@@ -4,6 +4,7 @@ use diagnostic::{Refusal, Text, both};
 use nc_syntax::dialect::{CycleCode, CycleLevels, GCode};
 use smallvec::SmallVec;
 use toolpath::{Cycle, CycleKind, Frame, Hole, Motion, Position};
+use units::decimal::Decimal;
 
 use crate::codes;
 use crate::frames::settle;
@@ -110,8 +111,7 @@ pub(crate) fn holes(
     let parameters = Cycle {
         kind: kind(cycle.kind),
         peck_mm: cycle.peck_mm,
-        // P beside a cycle without a dwell (G81, G85) is kept for the next, and is not its own.
-        dwell: cycle.dwell.filter(|_| !WITHOUT_DWELL.contains(&cycle.code)),
+        dwell: own_dwell(&cycle),
         return_to_initial: returns_to_initial(words, state.return_level, [initial_mm, r_mm])?,
     };
     let mut motions: Motions = SmallVec::with_capacity(count as usize);
@@ -182,6 +182,15 @@ fn returns_to_initial(
         },
         words.span(AXIS_LETTERS.or(R)),
     ))
+}
+
+/// The dwell of the cycle's own. P beside a cycle without one (G81, G85) is kept for the next, and P of another cycle is not
+/// that of pecks: of those only Haas' know one.
+fn own_dwell(cycle: &CycleState) -> Option<Decimal> {
+    let (time, said_by) = cycle.dwell?;
+    let pecks = matches!(cycle.kind, CycleCode::PeckFull | CycleCode::PeckChip);
+    let own = if pecks { said_by == cycle.code } else { !WITHOUT_DWELL.contains(&cycle.code) };
+    own.then_some(time)
 }
 
 /// Where an axis of the plane goes for the next hole: under G91 on from the last one.
@@ -262,7 +271,7 @@ fn read_words(
     }
     if let Some(value) = words.plain(b'P') {
         let time = words.number(b'P').map(|(number, _)| number.decimal);
-        cycle.dwell = time.filter(|_| value > 0.0);
+        cycle.dwell = time.filter(|_| value > 0.0).map(|time| (time, cycle.code));
     }
     Ok(())
 }

@@ -436,8 +436,8 @@ pub struct CycleState {
     pub bottom: Option<Level>,
     /// Q, mm, without sign.
     pub peck_mm: Option<f64>,
-    /// P as written, where it is above zero.
-    pub dwell: Option<Decimal>,
+    /// P as written, where it is above zero, and the cycle that said it.
+    pub dwell: Option<(Decimal, GCode)>,
     /// It has made a hole.
     pub drilled: bool,
 }

@@ -209,7 +209,7 @@ impl Process {
     pub fn in_cycle(&self, cycle: Option<&CycleState>) -> Self {
         let cycle = cycle.map(|cycle| {
             let peck = cycle.peck_mm.map(|mm| Decimal { mantissa: (mm * 1e6).round() as i64, decimals: 6 });
-            let dwell = cycle.dwell.filter(|_| cycle.kind == CycleCode::Synchronised);
+            let dwell = cycle.dwell.filter(|_| cycle.kind == CycleCode::Synchronised).map(|(time, _)| time);
             let peck = peck.filter(|_| !matches!(cycle.kind, CycleCode::Drill | CycleCode::Bore));
             let words = [(b'P', dwell), (b'Q', peck)];
             let arguments = words.iter().filter_map(|(letter, word)| Some(Argument::new(*letter, (*word)?)));

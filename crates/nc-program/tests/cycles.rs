@@ -148,6 +148,10 @@ fn parameters_are_modal_until_the_cycle_ends() {
     // P is kept, but G81 does not dwell.
     assert_eq!(holes[2].cycle.dwell, None);
     assert_eq!((holes[3].cycle.kind, holes[3].bottom_mm), (CycleKind::Synchronised, -6.0));
+    // Nor do pecks by the P of another cycle, which the next one that dwells has all the same.
+    let dwells = |text: &str| self::holes("fanuc", text).last().unwrap().cycle.dwell.is_some();
+    assert!(!dwells("G82 X1. Z-5. R2. P100 F100.\nG83 X2. Q2.\n"));
+    assert!(dwells("G82 X1. Z-5. R2. P100 F100.\nG83 X2. Q2.\nG82 X3.\n"));
     assert_eq!(refusal("fanuc", "G0 X0. Y0. Z9.\nG81 X1. Z-5. R2.\nG80\nG81 X2.\n"), (216, 4));
     assert_eq!(refusal("fanuc", "G0 X0. Y0. Z9.\nG81 X1. Z-5. R2.\nG0 X2.\nG82 X2. R2.\n"), (216, 4));
 }
