@@ -138,7 +138,7 @@ fn corrected(
 ) -> anyhow::Result<Vec<u8>> {
     let models = machine_model::Models { axes: machine.machine, tip: None };
     let job = crate::bench::job(profile, dialect, setup, models, &machine.datums);
-    let result = rewrite::correct(text, &job, |_| Ok::<(), Vec<Diagnostic>>(()));
+    let result = rewrite::correct(text, &job, |line| line, |_| Ok::<(), Vec<Diagnostic>>(()));
     Ok(result.map_err(refused)?.text)
 }
 

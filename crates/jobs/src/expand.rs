@@ -157,7 +157,8 @@ fn correct_expanded(
     // Looked for above, in the text as it was given.
     let job = Job { force: true, ..settings.job(force, &provenance)? };
     let total = expanded.text().len().max(1) as f64;
-    let result = rewrite::correct(expanded.text(), &job, |done| {
+    let source_line = |line| expanded.source_line(line).1;
+    let result = rewrite::correct(expanded.text(), &job, source_line, |done| {
         progress(done as f64 / total).map_err(PipelineEnd::Failed)
     });
     let mut corrected = match result {
@@ -181,12 +182,6 @@ fn correct_expanded(
         let evidence = Evidence::of(text, &questions);
         evidence.refusal(&questions).map_err(|finding| Failure::refused(name, text, vec![finding.0]))?;
         doubt(name, text, evidence.doubts_of_a_part(&questions));
-    }
-    if expanded.changed() {
-        let figures = &mut corrected.figures;
-        for figure in [&mut figures.largest, &mut figures.before, &mut figures.after] {
-            figure.1 = expanded.source_line(figure.1).1;
-        }
     }
     if corrected.text == expanded.text() {
         corrected.text = text.to_vec();

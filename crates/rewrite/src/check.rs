@@ -70,7 +70,7 @@ pub fn check(
 /// Of each line that cannot be held within the tolerance, what the correction proves of it instead, mm.
 fn accepted(job: &Job<'_>, posted: &Expanded<'_>) -> BTreeMap<u64, f64> {
     let job = Job { force: true, guards: Guards::default(), ..*job };
-    let corrected = pass::<Vec<Diagnostic>>(posted.text(), &job, |_| false, |_| Ok(()));
+    let corrected = pass::<Vec<Diagnostic>>(posted.text(), &job, |_| false, |line| line, |_| Ok(()));
     let Ok(Some(Corrected { figures, .. })) = corrected else { return BTreeMap::new() };
     let mut accepted = BTreeMap::new();
     for (line, off_mm) in figures.accepted {
@@ -106,7 +106,8 @@ fn check_within(
             }
         }
         let may_skip = steps.iter().any(|program| program.may_skip);
-        let [Program { datums, unsaid: here, .. }, Program { unsaid: there, control, .. }] = steps;
+        let [Program { datums, unsaid: here, .. }, Program { unsaid: there, mut control, .. }] = steps;
+        control.lines().for_each(|line| *line = commanded.source_line(*line).1);
         Ok((comparison, numbers.into_inner(), datums, control, may_skip, there.beside(&here)))
     };
     let compared = |optional: Optional, traces: Traces| {

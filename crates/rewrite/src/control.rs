@@ -47,6 +47,11 @@ impl ControlPart {
         self.0.as_ref().map(|cut| cut.by.off_mm)
     }
 
+    /// The lines of its places.
+    pub(crate) fn lines(&mut self) -> impl Iterator<Item = &mut u64> {
+        self.0.iter_mut().flat_map(|cut| cut.by.line.iter_mut().chain([&mut cut.line]))
+    }
+
     /// What it adds to the path, in words; `None` where it adds nothing.
     #[must_use]
     pub fn said(&self) -> Option<Text> {

@@ -106,6 +106,17 @@ impl Figures {
         }
     }
 
+    /// The lines of its places, to be read and changed.
+    pub(crate) fn each_line(&mut self, mut see: impl FnMut(&mut u64)) {
+        let Self { largest, before, after, tilt_before, tilt, held, accepted, control, .. } = self;
+        for (_, line) in [largest, before, after, tilt_before, tilt, &mut held.largest] {
+            see(line);
+        }
+        held.lines.iter_mut().flatten().for_each(&mut see);
+        accepted.iter_mut().for_each(|(line, _)| see(line));
+        control.lines().for_each(see);
+    }
+
     /// False where [`Figures::raise`] changes nothing.
     #[inline]
     pub(crate) fn would_rise(&self, by: &Correction) -> bool {

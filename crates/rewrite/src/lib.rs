@@ -31,7 +31,7 @@
 //!     blending_mm: Some(0.0),
 //! };
 //! let posted = b"G21 G90 G54\nG0 X10. Y10. Z30.\nG1 X90. F500.\nM30\n";
-//! let corrected = correct::<Vec<diagnostic::Diagnostic>>(posted, &job, |_| Ok(())).expect("inside the volume");
+//! let corrected = correct::<Vec<diagnostic::Diagnostic>>(posted, &job, |line| line, |_| Ok(())).expect("inside the volume");
 //! assert!(corrected.text != posted && corrected.figures.after.0 <= 1.9e-3);
 //! assert!(String::from_utf8_lossy(&corrected.text).contains("(CORRECTED BY VPOST AN EXAMPLE)"));
 //! ```

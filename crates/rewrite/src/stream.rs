@@ -456,7 +456,7 @@ mod tests {
             parts.iter().for_each(|part| text.push_str(PARTS[*part]));
             text.push_str("M30\n%\n");
             let whole: Result<Option<Corrected>, Vec<Diagnostic>> =
-                crate::whole::pass(text.as_bytes(), &job, |_| false, |_| Ok(()));
+                crate::whole::pass(text.as_bytes(), &job, |_| false, |line| line, |_| Ok(()));
             let chunked = in_chunks(text.as_bytes(), &job, chunk_bytes, threads);
             // A jump that cannot be hidden is refused, in one piece as in chunks.
             if let (Err(one), Err(other)) = (&whole, &chunked) {

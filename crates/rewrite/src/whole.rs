@@ -19,20 +19,22 @@ const REPORTED_BYTES: u64 = 1 << 13;
 
 /// Corrects a program.
 ///
-/// `interrupted` is asked now and then; what it returns ends the work.
+/// `source_line` names the line of the user's file that a line of the text stands for; `progress` is told now and then the
+/// bytes that are done; what it returns ends the work.
 ///
 /// # Errors
 /// The diagnostics of the first block that cannot be corrected with certainty.
 pub fn correct<E: From<Vec<Diagnostic>>>(
     text: &[u8],
     job: &Job<'_>,
+    source_line: impl Fn(u64) -> u64,
     progress: impl FnMut(u64) -> Result<(), E>,
 ) -> Result<Corrected, E> {
     nc_syntax::looks_like_program(text).map_err(|diagnostic| vec![diagnostic])?;
     if let (Some(diagnostic), false) = (corrected_before(text), job.force) {
         return Err(vec![diagnostic].into());
     }
-    let corrected = pass(text, job, |_| false, progress)?;
+    let corrected = pass(text, job, |_| false, source_line, progress)?;
     Ok(marked(corrected.expect("a pass that stops nowhere ends at the end"), text, job))
 }
 
@@ -46,7 +48,7 @@ pub fn correct_plain<E: From<Vec<Diagnostic>>>(
     job: &Job<'_>,
     progress: impl FnMut(u64) -> Result<(), E>,
 ) -> Result<Option<Corrected>, E> {
-    let corrected = pass(text, job, |block| nc_expand::computes(block, job.dialect), progress)?;
+    let corrected = pass(text, job, |block| nc_expand::computes(block, job.dialect), |line| line, progress)?;
     Ok(corrected.map(|corrected| marked(corrected, text, job)))
 }
 
@@ -68,6 +70,7 @@ pub(crate) fn pass<E: From<Vec<Diagnostic>>>(
     text: &[u8],
     job: &Job<'_>,
     stop: impl Fn(&Block<'_>) -> bool,
+    source_line: impl Fn(u64) -> u64,
     mut progress: impl FnMut(u64) -> Result<(), E>,
 ) -> Result<Option<Corrected>, E> {
     let mut numbers = BlockNumbers::new();
@@ -90,7 +93,8 @@ pub(crate) fn pass<E: From<Vec<Diagnostic>>>(
     if let Some((unfinished, _)) = pass.state.interpreter.unfinished() {
         return Err(vec![unfinished].into());
     }
-    let Pass { out, tally, .. } = pass;
+    let Pass { out, mut tally, .. } = pass;
+    tally.figures.each_line(|line| *line = source_line(*line));
     let warnings = tally.warnings(job);
     let Tally { mut figures, evidence, .. } = tally;
     figures.warnings = warnings.into_iter().map(|(warning, _)| warning).collect();

@@ -48,7 +48,8 @@ pub(crate) fn measure(text: &[u8], job: &Job<'_>, repetitions: usize) -> anyhow:
     let modal = best(repetitions, || ends(text, job));
     let mut whole = Ok(0);
     let all = best(repetitions, || {
-        whole = correct::<Vec<diagnostic::Diagnostic>>(text, job, |_| Ok(())).map(|c| c.text.len());
+        whole =
+            correct::<Vec<diagnostic::Diagnostic>>(text, job, |line| line, |_| Ok(())).map(|c| c.text.len());
     });
     whole.map_err(|found| anyhow::anyhow!("the benchmark's program was refused: {found:?}"))?;
     let positions = positions(text, job);
