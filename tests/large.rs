@@ -153,6 +153,44 @@ fn a_program_that_computes_is_worked_on_as_a_whole() {
     assert!(ran.stdout.is_empty() && messages(&ran).contains("G1 X#2 Y0."), "{}", messages(&ran));
 }
 
+/// Corners and polar words, written out in chunks: what a small program becomes, its messages and figures.
+#[test]
+fn shorthand_of_a_large_program_is_that_of_a_small_one() {
+    let mut text = "%\nO1000\nG17 G21 G40 G49 G80 G90 G54\nT1 M6\nG43 H1\nG0 X0. Y0. Z30.\n".to_owned();
+    for k in 0..12_000 {
+        let (x, y) = (milli(30_000 + k % 977), milli(25_000 + k % 1013));
+        let _ = write!(
+            text,
+            "G1 X-{x:.3} Y-{y:.3} Z5. F900\nX{x:.3} ,R2.\n(WALL {k})\nY{y:.3},C1.5\nX-{x:.3}\nY{:.3}\n",
+            -y + 3.0
+        );
+        if k % 1000 == 7 {
+            text.push_str("G16\nG1 X20. Y30.\nY75.\nG15\nG0 X400. Y0. Z30.\nG0 X0. Y0.\n");
+        }
+    }
+    text.push_str("G0 Z30.\nM30\n%\n");
+    let trailer = "(BEHIND THE PROGRAM)\n".repeat(200_000);
+    for profile in [PROFILE, "machine-profiles/perfect.toml"] {
+        let run = |text: &str| {
+            let place = Place::new(text);
+            let told = place.path("out.json");
+            let ran = place.correct(2, profile, &["--summary", told.to_str().expect("plain")]);
+            succeeded(&ran);
+            let mut told: serde_json::Value = serde_json::from_slice(&read(&told)).expect("JSON");
+            // The trailer is read and written as well.
+            for figure in ["input", "output", "blocks_in", "blocks_out"] {
+                told.as_object_mut().expect("an object").remove(figure);
+            }
+            let said = messages(&ran).replace(place.0.path().to_str().expect("plain"), "");
+            (String::from_utf8(ran.stdout).expect("text"), told.to_string(), said)
+        };
+        let (small, large) = (run(&text), run(&format!("{text}{trailer}")));
+        assert!(large.0.strip_suffix(&trailer) == Some(&small.0), "{profile}");
+        assert_eq!(small.0 == text, profile != PROFILE);
+        assert_eq!((&small.1, &small.2), (&large.1, &large.2), "{profile}");
+    }
+}
+
 #[test]
 fn warnings_show_their_line() {
     let text = program("G0 X400. Y0. Z30.\nG0 X0. Y0.\nM30\n%\n");

@@ -10,7 +10,7 @@ use nc_syntax::dialect::{Action, Dialect};
 use nc_syntax::{Block, Item, ItemKind, Value};
 
 use crate::lowering::{Came, Fault, Refused};
-use crate::output::{From, Marks, Output};
+use crate::output::{From, Marks, Output, PlainPart};
 use crate::shorthand;
 use crate::{called, short};
 
@@ -199,6 +199,11 @@ impl<'d> Rewriting<'d> {
     /// Starts a new line unless one was just started.
     pub(crate) fn fresh_line(&mut self) {
         self.out.fresh_line();
+    }
+
+    /// Takes what is written, if those are whole lines.
+    pub(crate) fn take(&mut self) -> PlainPart {
+        self.out.take()
     }
 
     /// The text and where each stretch of it comes from. Where the program is refused for a block before the `fault`, it is

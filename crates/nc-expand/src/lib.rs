@@ -45,6 +45,7 @@ mod okuma;
 #[cfg(test)]
 mod one_reader;
 mod output;
+mod parts;
 mod program;
 mod refusals;
 mod returns;
@@ -67,8 +68,13 @@ use nc_syntax::dialect::{Dialect, Macros};
 use nc_syntax::{Block, ItemKind, Reader};
 
 use lowering::{Came, Driver, Lowered};
+pub use output::PlainPart;
 use output::{From, Segment};
+pub use parts::{AsAWhole, Lowering};
 pub use variables::Preset;
+
+/// What was done, for the comment in the output, where shorthand alone was written out.
+pub const SHORTHAND_WRITTEN_OUT: &str = "SHORTHAND WRITTEN OUT";
 
 /// Where work ends that would not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,7 +169,7 @@ impl Expanded<'_> {
         match (self.flows, self.lowers) {
             (false, false) => "",
             (true, false) => "PROGRAM FLOW EXPANDED",
-            (false, true) => "SHORTHAND WRITTEN OUT",
+            (false, true) => SHORTHAND_WRITTEN_OUT,
             (true, true) => "PROGRAM FLOW EXPANDED, SHORTHAND WRITTEN OUT",
         }
     }

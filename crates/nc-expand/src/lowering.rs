@@ -84,12 +84,15 @@ impl Held {
 }
 
 /// What writes a control's blocks as plain ones.
-pub(crate) trait Lower<'d> {
+pub(crate) trait Lower<'d>: Send {
     /// The next block.
     fn came(&mut self, came: &Came<'_>) -> Result<(), Fault>;
 
     /// What comes next stands on a line of its own.
     fn fresh_line(&mut self);
+
+    /// What is written so far; `None` where nothing is before the end.
+    fn out(&mut self) -> Option<&mut Rewriting<'d>>;
 
     /// Nothing more comes: what was written.
     fn end(self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>);
@@ -108,7 +111,7 @@ pub(crate) struct Driver<'d> {
     lowers: bool,
     runs: bool,
     /// Behind the `%` that closes the program nothing is executed, whatever it would be.
-    closed: bool,
+    pub(crate) closed: bool,
     /// Q of the block that came last, where a lathe's cycles have it.
     pub(crate) last_q: Option<i64>,
     /// Flow goes on behind it: what is wrong there is told first.
@@ -198,6 +201,16 @@ impl<'d> Driver<'d> {
     /// What comes next stands on a line of its own.
     pub(crate) fn fresh_line(&mut self) {
         self.room.fresh_line();
+    }
+
+    /// What is written so far; `None` where nothing is before the end.
+    pub(crate) fn out(&mut self) -> Option<&mut Rewriting<'d>> {
+        self.room.out()
+    }
+
+    /// Some block cannot be written.
+    pub(crate) const fn failed(&self) -> bool {
+        self.fault.is_some()
     }
 
     /// What became of it; `length`: of the program itself.

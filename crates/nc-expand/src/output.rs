@@ -111,23 +111,59 @@ pub(crate) fn within_line(text: &[u8]) -> bool {
     text.last().is_some_and(|byte| !matches!(byte, b'\n' | b'\r'))
 }
 
+/// Whole lines of the flat text, and where they come from.
+#[derive(Debug, Default)]
+pub struct PlainPart {
+    text: Vec<u8>,
+    segments: Vec<Segment>,
+    /// Bytes of the flat text before them.
+    offset: u64,
+    /// Line ends up to their end.
+    lines: u32,
+}
+
+impl PlainPart {
+    /// Their bytes.
+    #[must_use]
+    pub fn text(&self) -> &[u8] {
+        &self.text
+    }
+
+    /// Where bytes of the flat text that start in it come from.
+    #[must_use]
+    pub fn origin(&self, span: &Range<u64>) -> Option<Range<u64>> {
+        let within = self.offset..self.offset + self.text.len() as u64;
+        within.contains(&span.start).then(|| origin(&self.segments, span).span)
+    }
+
+    /// The line that a line of the flat text in it comes from.
+    #[must_use]
+    pub fn source_line(&self, line: u64) -> Option<u64> {
+        let first = u64::from(self.segments.first()?.flat_line);
+        let within = first..=u64::from(self.lines);
+        within.contains(&line).then(|| source_line(&self.segments, line).1)
+    }
+}
+
 /// Writes the flat text.
 #[derive(Debug)]
 pub(crate) struct Output {
     pub(crate) text: Vec<u8>,
     pub(crate) segments: Vec<Segment>,
     marks: Marks,
+    /// Bytes that were taken from it.
+    taken: u64,
     /// Line ends written.
     lines: u32,
 }
 
 impl Output {
     pub(crate) const fn new(marks: Marks) -> Self {
-        Self { text: Vec::new(), segments: Vec::new(), marks, lines: 0 }
+        Self { text: Vec::new(), segments: Vec::new(), marks, taken: 0, lines: 0 }
     }
 
     fn segment(&mut self, from: From) {
-        let flat = self.text.len() as u64;
+        let flat = self.taken + self.text.len() as u64;
         if let Some(Segment { flat: start, from: last, .. }) = self.segments.last_mut()
             && (from.exact && last.exact && last.file == from.file)
             && last.offset + (flat - *start) == from.offset
@@ -164,6 +200,19 @@ impl Output {
         self.segment(From { exact: false, ..from });
         self.push(bytes);
         self.push(self.marks.line_ending);
+    }
+
+    /// Takes what is written, if those are whole lines.
+    pub(crate) fn take(&mut self) -> PlainPart {
+        if within_line(&self.text) { PlainPart::default() } else { self.take_all() }
+    }
+
+    /// Takes what is written.
+    pub(crate) fn take_all(&mut self) -> PlainPart {
+        let (text, segments) = (std::mem::take(&mut self.text), std::mem::take(&mut self.segments));
+        let offset = self.taken;
+        self.taken += text.len() as u64;
+        PlainPart { lines: self.lines + u32::from(within_line(&text)), text, segments, offset }
     }
 
     fn push(&mut self, bytes: &[u8]) {

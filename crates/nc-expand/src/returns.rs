@@ -100,6 +100,10 @@ impl<'d> Lower<'d> for Writer<'d> {
         self.out.fresh_line();
     }
 
+    fn out(&mut self) -> Option<&mut Rewriting<'d>> {
+        Some(&mut self.out)
+    }
+
     fn end(self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>) {
         (self.out, Ok(()))
     }

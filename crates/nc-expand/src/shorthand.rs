@@ -228,8 +228,8 @@ impl<'d> Corners<'d> {
         self.out.known.modal().plane.axes()
     }
 
-    pub(crate) fn wake(&mut self) {
-        self.out.wake();
+    pub(crate) const fn out(&mut self) -> &mut Rewriting<'d> {
+        &mut self.out
     }
 
     pub(crate) fn came(&mut self, came: &Came<'_>) -> Result<(), Fault> {

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use diagnostic::Diagnostic;
 use nc_program::{Evidence, Questions};
-use nc_syntax::{Envelope, Place, Reader};
+use nc_syntax::{Block, Envelope, Place, Reader};
 
 use crate::chunks::{CHUNK_BYTES, Chunk, Chunks, Survey, Unread};
 use crate::figures::Figures;
@@ -13,6 +13,7 @@ use crate::job::{Job, Warning};
 use crate::sink::{Sink, Written};
 use crate::state::State;
 use crate::stream::{self, End, Plan};
+use crate::tally::Tally;
 use crate::whole::{comment_position, each_block};
 
 /// How a program is worked on.
@@ -95,6 +96,14 @@ impl<E> From<Unread> for LargeEnd<E> {
     }
 }
 
+/// Why nothing more was written.
+pub(crate) enum Ended<E> {
+    /// The work ended early.
+    Early(End),
+    /// The caller wants no more.
+    Stopped(E),
+}
+
 /// A program that can be read more than once, and how it is worked on.
 pub struct Source<'a, O> {
     /// Its first megabytes.
@@ -107,33 +116,34 @@ pub struct Source<'a, O> {
     pub manner: Manner,
 }
 
-impl<R: Read + Seek + Send, O: Fn() -> R + Sync> Source<'_, O> {
-    /// Corrects it in chunks, some megabytes for each thread.
-    ///
-    /// `progress` is told the share that is done, 0 to 1, and may end the work. `out` is of no use after an error.
-    ///
-    /// # Errors
-    /// [`LargeEnd`].
-    pub fn correct<E: Send>(
+impl<R: Read + Send, O: Fn() -> R + Sync> Source<'_, O> {
+    /// What stands anywhere in it and bears on all of it, where that is no reason to look at all of it at once.
+    pub(crate) fn survey<E>(
         &self,
-        out: &mut (impl Write + Send),
         progress: &(dyn Fn(f64) -> Result<(), E> + Sync),
-    ) -> Result<Large, LargeEnd<E>> {
-        let (job, questions) = (self.job, Questions::new(self.job.dialect, self.job.setup));
+    ) -> Result<Survey, LargeEnd<E>> {
         // Told from the first bytes only; what ends within them is rare enough.
         if nc_syntax::looks_like_program(self.head).is_err() {
             return Err(LargeEnd::AsAWhole);
         }
-        let survey = Survey::of((self.open)(), job.dialect, self.manner.hashes, |_| {
+        let survey = Survey::of((self.open)(), self.job.dialect, self.manner.hashes, |_| {
             progress(0.0).map_err(LargeEnd::Stopped)
         })?;
-        if survey.corrected_before && !self.manner.force {
-            return Err(LargeEnd::AsAWhole);
-        }
+        if survey.corrected_before && !self.manner.force { Err(LargeEnd::AsAWhole) } else { Ok(survey) }
+    }
+
+    /// Writes it corrected; `as_it_was` is what is written of it, and how much, where nothing is.
+    pub(crate) fn written<E: Send, A: Read>(
+        &self,
+        survey: &Survey,
+        out: &mut (impl Write + Send),
+        (as_it_was, length): (impl Fn() -> A, u64),
+        progress: &(dyn Fn(f64) -> Result<(), E> + Sync),
+    ) -> Result<(Tally, Written), Ended<E>> {
         let plan = Plan {
-            job,
+            job: self.job,
             envelope: survey.envelope,
-            start: State::new(job, &survey.numbers),
+            start: State::new(self.job, &survey.numbers),
             threads: self.manner.threads.max(1),
             chunk_bytes: CHUNK_BYTES,
         };
@@ -148,35 +158,17 @@ impl<R: Read + Seek + Send, O: Fn() -> R + Sync> Source<'_, O> {
             }
         };
         let again = || Ok((self.open)());
-        let tally = match stream::correct(&plan, (self.open)(), &mut sink, &again, &goes_on) {
-            Ok(tally) => tally,
-            Err(End::Refused(chunk, diagnostics)) => {
-                return Err(self.refused(chunk, diagnostics, survey.envelope));
-            }
-            Err(End::Unfinished(finding)) => return Err(self.refused_as_a_whole(*finding)),
-            Err(End::Flows) => return Err(LargeEnd::AsAWhole),
-            Err(End::Unread(unread)) => return Err(unread.into()),
-            Err(End::Unwritten(error)) => return Err(LargeEnd::Unwritten(error)),
+        match stream::correct(&plan, (self.open)(), &mut sink, &again, &goes_on) {
+            Ok(tally) => match sink.finish(|| Ok(as_it_was()), length) {
+                Ok(written) => Ok((tally, written)),
+                Err(error) => Err(Ended::Early(End::Unwritten(error))),
+            },
             Err(End::Stopped) => {
                 let stopped = stopped.into_inner().unwrap_or_else(PoisonError::into_inner);
-                return Err(LargeEnd::Stopped(stopped.expect("who stops says why")));
+                Err(Ended::Stopped(stopped.expect("who stops says why")))
             }
-        };
-        let Written { bytes, hash, changed } = sink.finish(again).map_err(LargeEnd::Unwritten)?;
-        tally.evidence.refusal(&questions).map_err(|finding| self.refused_as_a_whole(*finding))?;
-        let mut warnings = tally.warnings(self.job);
-        warnings.extend(tally.evidence.doubts(&questions));
-        let mut figures = tally.figures;
-        figures.warnings = warnings.iter().map(|(warning, _)| warning.clone()).collect();
-        let warnings: io::Result<Vec<Part>> =
-            warnings.into_iter().map(|warning| self.part(warning)).collect();
-        Ok(Large {
-            input: Digest { bytes: survey.bytes, hash: survey.hash },
-            output: Digest { bytes, hash },
-            changed,
-            figures,
-            warnings: warnings.map_err(LargeEnd::Unread)?,
-        })
+            Err(end) => Err(Ended::Early(end)),
+        }
     }
 
     /// The mark of the correction, and the bytes of output before it.
@@ -186,35 +178,97 @@ impl<R: Read + Seek + Send, O: Fn() -> R + Sync> Source<'_, O> {
         let (at, line) = nc_emit::provenance_line(self.head, comment_position(reader), &comment);
         (at as u64, line)
     }
+}
+
+impl<R: Read + Seek + Send, O: Fn() -> R + Sync> Source<'_, O> {
+    /// Corrects it in chunks, some megabytes for each thread.
+    ///
+    /// `progress` is told the share that is done, 0 to 1, and may end the work. `out` is of no use after an error.
+    ///
+    /// # Errors
+    /// [`LargeEnd`].
+    pub fn correct<E: Send>(
+        &self,
+        out: &mut (impl Write + Send),
+        progress: &(dyn Fn(f64) -> Result<(), E> + Sync),
+    ) -> Result<Large, LargeEnd<E>> {
+        let survey = self.survey(progress)?;
+        let (tally, written) = match self.written(&survey, out, (&self.open, survey.bytes), progress) {
+            Ok(written) => written,
+            Err(Ended::Stopped(failure)) => return Err(LargeEnd::Stopped(failure)),
+            Err(Ended::Early(End::Refused(chunk, diagnostics))) => {
+                return Err(self.refused(chunk, diagnostics, survey.envelope));
+            }
+            Err(Ended::Early(End::Unfinished(finding))) => return Err(self.refused_as_a_whole(*finding)),
+            Err(Ended::Early(End::Unread(unread))) => return Err(unread.into()),
+            Err(Ended::Early(End::Unwritten(error))) => return Err(LargeEnd::Unwritten(error)),
+            Err(Ended::Early(End::Flows | End::Stopped)) => return Err(LargeEnd::AsAWhole),
+        };
+        let questions = self.questions();
+        tally.evidence.refusal(&questions).map_err(|finding| self.refused_as_a_whole(*finding))?;
+        let mut warnings = tally.warnings(self.job);
+        warnings.extend(tally.evidence.doubts(&questions));
+        self.done(&survey, written, tally.figures, warnings)
+    }
+
+    pub(crate) fn questions(&self) -> Questions<'_> {
+        Questions::new(self.job.dialect, self.job.setup)
+    }
+
+    /// What was done, in figures.
+    pub(crate) fn done<E>(
+        &self,
+        survey: &Survey,
+        Written { bytes, hash, changed }: Written,
+        figures: Figures,
+        warnings: Vec<Warning>,
+    ) -> Result<Large, LargeEnd<E>> {
+        let said = warnings.iter().map(|(warning, _)| warning.clone()).collect();
+        let warnings: io::Result<Vec<Part>> =
+            warnings.into_iter().map(|warning| self.part(warning)).collect();
+        Ok(Large {
+            input: Digest { bytes: survey.bytes, hash: survey.hash },
+            output: Digest { bytes, hash },
+            changed,
+            figures: Figures { warnings: said, ..figures },
+            warnings: warnings.map_err(LargeEnd::Unread)?,
+        })
+    }
+
+    /// What the program as a whole shows; `None` where it cannot be read, or a block from a chunk on is of the kind `ends`.
+    pub(crate) fn evidence(
+        &self,
+        envelope: Envelope,
+        from: usize,
+        ends: impl Fn(&Block<'_>) -> bool,
+    ) -> Option<Evidence> {
+        let dialect = self.job.dialect;
+        let mut chunks = Chunks::new((self.open)(), CHUNK_BYTES);
+        let questions = self.questions();
+        let (mut evidence, mut expects_name) = (Evidence::default(), false);
+        while let Some(chunk) = chunks.next().ok()? {
+            let mut found = false;
+            if chunk.index >= from {
+                each_block(&chunk.text, dialect, |block| found |= ends(block));
+            }
+            if found {
+                return None;
+            }
+            let mut reader = Reader::part(&chunk.text, dialect, envelope, chunk.place(expects_name));
+            evidence.see_all(&mut reader, &questions);
+            expects_name = reader.expects_name();
+        }
+        Some(evidence)
+    }
 
     /// A program that computes somewhere behind the block that was refused is told about as a whole.
     fn refused<E>(&self, chunk: Chunk, diagnostics: Vec<Diagnostic>, envelope: Envelope) -> LargeEnd<E> {
-        let dialect = self.job.dialect;
-        let computes = |text: &[u8]| {
-            let mut found = false;
-            each_block(text, dialect, |block| found |= nc_expand::computes(block, dialect));
-            found
+        let computes = |block: &Block<'_>| nc_expand::computes(block, self.job.dialect);
+        let Some(evidence) = self.evidence(envelope, chunk.index, computes) else {
+            return LargeEnd::AsAWhole;
         };
-        let mut chunks = Chunks::new((self.open)(), CHUNK_BYTES);
         // What the program as a whole shows tells more than one of its blocks.
-        let questions = Questions::new(dialect, self.job.setup);
-        let (mut evidence, mut expects_name) = (Evidence::default(), false);
-        loop {
-            match chunks.next() {
-                Ok(Some(other)) => {
-                    if other.index >= chunk.index && computes(&other.text) {
-                        return LargeEnd::AsAWhole;
-                    }
-                    let place = other.place(expects_name);
-                    let mut reader = Reader::part(&other.text, dialect, envelope, place);
-                    evidence.see_all(&mut reader, &questions);
-                    expects_name = reader.expects_name();
-                }
-                Ok(None) => break,
-                Err(_) => return LargeEnd::AsAWhole,
-            }
-        }
-        if let Err(finding) = evidence.refusal(&questions) {
+        if let Err(finding) = evidence.refusal(&self.questions()) {
             return self.refused_as_a_whole(*finding);
         }
         let Chunk { text: bytes, offset, line: first_line, .. } = chunk;

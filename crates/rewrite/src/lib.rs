@@ -48,6 +48,7 @@ mod guards;
 mod job;
 mod large;
 mod lengthless;
+mod lowered;
 mod nose;
 mod notices;
 mod pass;

@@ -47,10 +47,14 @@ impl<W: Write> Sink<W> {
         self.write(after)
     }
 
-    /// Ends the output.
-    pub(crate) fn finish<R: Read>(mut self, input: impl FnOnce() -> io::Result<R>) -> io::Result<Written> {
+    /// Ends the output; where nothing was changed it is all the `length` bytes of the input.
+    pub(crate) fn finish<R: Read>(
+        mut self,
+        input: impl FnOnce() -> io::Result<R>,
+        length: u64,
+    ) -> io::Result<Written> {
         if !self.changed {
-            self.mark = None;
+            (self.mark, self.same) = (None, length);
             self.copy(input)?;
         }
         if let Some((_, line)) = self.mark.take() {
@@ -105,7 +109,7 @@ mod tests {
         for (before, after) in parts {
             sink.put(before, after, || Ok(&input[..])).unwrap();
         }
-        let written = sink.finish(|| Ok(&input[..])).unwrap();
+        let written = sink.finish(|| Ok(&input[..]), input.len() as u64).unwrap();
         assert_eq!(written.bytes, out.len() as u64);
         (out, written.changed)
     }

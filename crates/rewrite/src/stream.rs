@@ -411,7 +411,7 @@ mod tests {
             Err(End::Refused(_, diagnostics)) => return Err(diagnostics),
             Err(_) => panic!("neither corrected nor refused"),
         };
-        sink.finish(|| Ok(text)).unwrap();
+        sink.finish(|| Ok(text), text.len() as u64).unwrap();
         let warnings = tally.warnings(job).into_iter().map(|(warning, _)| warning).collect();
         let figures = Figures { warnings, ..tally.figures };
         Ok((out, figures))

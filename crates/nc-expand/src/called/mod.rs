@@ -93,12 +93,16 @@ impl<'d> Lower<'d> for Writer<'d> {
         if self.modal.is_none() && self.unsaid == Unsaid::default() && !needed(&came.block, self.dialect) {
             return self.out.came(came);
         }
-        self.out.wake();
+        self.out.out().wake();
         self.block(came)
     }
 
     fn fresh_line(&mut self) {
         self.out.fresh_line();
+    }
+
+    fn out(&mut self) -> Option<&mut Rewriting<'d>> {
+        Some(self.out.out())
     }
 
     fn end(self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>) {

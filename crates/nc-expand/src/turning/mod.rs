@@ -96,6 +96,10 @@ impl<'d> Lower<'d> for Lathe<'d> {
         }
     }
 
+    fn out(&mut self) -> Option<&mut Rewriting<'d>> {
+        None
+    }
+
     fn end(mut self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>) {
         let blocks: Vec<Came<'_>> = self.held.iter_mut().map(Held::taken).collect();
         let ended = Writer::new(&blocks, self.turning, &mut self.out).all();

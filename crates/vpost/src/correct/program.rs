@@ -124,7 +124,12 @@ impl Text<'_> {
             let Part { bytes, offset, first_line, diagnostics } = part;
             Report { source: Some(Source { name: name.to_owned(), bytes, offset, first_line }), diagnostics }
         };
-        match source.correct(out, progress) {
+        let mut done = source.correct(out, progress);
+        if let Err(LargeEnd::AsAWhole) = done {
+            out.clear().map_err(|error| unwritten(&error))?;
+            done = source.correct_lowered(out, progress);
+        }
+        match done {
             Ok(Large { input, output, changed, figures, warnings }) => Ok(Program {
                 name: name.to_owned(),
                 input,
