@@ -1,7 +1,7 @@
 //! Blocks as statements: what is copied, what is computed, where it goes on.
 
-use diagnostic::{Diagnostic, Text, both};
-use nc_syntax::dialect::{Action, Macros, TurningCycle};
+use diagnostic::{Diagnostic, Refusal, Text, both};
+use nc_syntax::dialect::{Action, GCode, Macros, TurningCycle};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value as WordValue};
 
 use crate::codes;
@@ -9,6 +9,7 @@ use crate::expression::{Expression, Parser};
 use crate::flow::{Taken, assignment, call_of, fanuc_flow, printed, skip_word};
 use crate::o_word::{self, OStatement};
 use crate::okuma;
+use crate::refusals::calls as refusals;
 use crate::siemens::{self, Said};
 use crate::value::{NameId, Names, Program, Variable};
 
@@ -325,24 +326,13 @@ impl Compiler<'_, '_> {
             ));
         }
         let named = matches!(&complex.control, Some(Control::Call(call)) if call.program.is_some());
+        let refuse = |refusal: Refusal| Err(Box::new(refusal.at(block.file_span(whole(block)))));
         if named && complex.has_words {
-            let message =
-                both!("words beside the call of a subprogram", "слова рядом с вызовом подпрограммы");
-            return Err(Box::new(
-                Diagnostic::error(codes::COMBINATION, message)
-                    .at(block.file_span(whole(block)), both!("which comes first?", "что из них первое?"))
-                    .help(both!("write them in two blocks", "напишите их двумя кадрами")),
-            ));
+            return refuse(refusals::WORDS_BESIDE_CALL);
         }
         let apart = self.dialect.flow.macros != Macros::LinuxCnc;
         if apart && complex.has_words && !complex.assignments.is_empty() {
-            let message =
-                both!("an assignment and words stand in one block", "в одном кадре присваивание и слова");
-            return Err(Box::new(
-                Diagnostic::error(codes::COMBINATION, message)
-                    .at(block.file_span(whole(block)), both!("which comes first?", "что из них первое?"))
-                    .help(both!("write them in two blocks", "напишите их двумя кадрами")),
-            ));
+            return refuse(refusals::WORDS_BESIDE_ASSIGNMENT);
         }
         Ok(complex)
     }
@@ -439,75 +429,16 @@ impl Compiler<'_, '_> {
         let Some(kind) = call_of(rest, self.dialect.flow).filter(|_| calls) else {
             return Ok(None);
         };
-        let conflict = |message: Text, help: Text| {
-            Err(Box::new(
-                Diagnostic::error(codes::COMBINATION, message)
-                    .at(block.file_span(whole(block)), both!("whose are the words?", "чьи это слова?"))
-                    .help(help),
-            ))
-        };
+        let refuse = |refusal: Refusal| Box::new(refusal.at(block.file_span(whole(block))));
         if complex.control.is_some() {
-            return conflict(
-                both!("a call stands beside flow", "вызов стоит рядом с переходом"),
-                both!("write them in two blocks", "напишите их двумя кадрами"),
-            );
+            return Err(refuse(refusals::CALL_BESIDE_FLOW));
         }
-        if kind != Taken::Macro {
-            // P and L beside a code that takes them too.
-            for word in rest.words().filter(|word| word.letter == b'G') {
-                let action = word.g_code().and_then(|code| self.dialect.code(code)).map(|row| &row.action);
-                let simple = matches!(
-                    action,
-                    Some(
-                        Action::Rapid
-                            | Action::Line
-                            | Action::Absolute
-                            | Action::Incremental
-                            | Action::Plane(_)
-                            | Action::WorkOffset(_)
-                            | Action::Inch
-                            | Action::Millimetre
-                    )
-                );
-                if !simple {
-                    return conflict(
-                        both!(
-                            "a subprogram is called beside another code",
-                            "подпрограмма вызвана рядом с другой функцией"
-                        ),
-                        both!("write them in two blocks", "напишите их двумя кадрами"),
-                    );
-                }
-            }
-            if self.dialect.flow.macros == Macros::LinuxCnc
-                && rest.words().any(|word| !b"NMPL".contains(&word.letter))
-            {
-                return conflict(
-                    both!(
-                        "a subprogram is called beside other words",
-                        "подпрограмма вызвана рядом с другими словами"
-                    ),
-                    both!("write them in two blocks", "напишите их двумя кадрами"),
-                );
-            }
-        }
+        self.call_alone(rest, kind).map_err(refuse)?;
         let mut program = None;
         let mut repeats = None;
         let mut arguments = Vec::new();
         for word in rest.words() {
-            if word.letter == b'G' || word.letter == b'N' || (word.letter == b'M' && kind != Taken::Macro) {
-                if kind == Taken::Macro
-                    && word.letter == b'G'
-                    && word.g_code() != Some(nc_syntax::dialect::GCode(650))
-                {
-                    return conflict(
-                        both!(
-                            "a macro is called beside another code",
-                            "макрос вызван рядом с другой функцией"
-                        ),
-                        both!("write them in two blocks", "напишите их двумя кадрами"),
-                    );
-                }
+            if matches!(word.letter, b'G' | b'N') || (word.letter == b'M' && kind != Taken::Macro) {
                 continue;
             }
             let mut point = true;
@@ -535,47 +466,54 @@ impl Compiler<'_, '_> {
                 _ => {}
             }
         }
-        complex.control = Some(match kind {
-            Taken::Return => {
-                if repeats.is_some() {
-                    return conflict(
-                        both!(
-                            "M99 with L changes the count of its call",
-                            "M99 с L меняет число повторений своего вызова"
-                        ),
-                        both!("write M99 without L", "напишите M99 без L"),
-                    );
-                }
-                Control::Return { to: program }
+        complex.control = Some(if kind == Taken::Return {
+            if repeats.is_some() {
+                return Err(refuse(refusals::RETURN_WITH_COUNT));
             }
-            _ => {
-                let Some(program) = program else {
-                    return Err(Box::new(
-                        Diagnostic::error(
-                            codes::SYNTAX,
-                            both!("a call without P: which program?", "вызов без P: какая программа?"),
-                        )
-                        .at(
-                            block.file_span(whole(block)),
-                            both!("a P word was expected", "ожидалось слово P"),
-                        )
-                        .help(both!(
-                            "write the number of the program (of the block behind M97), as in `M98 P1000`",
-                            "напишите номер программы (после M97 — номер кадра), например `M98 P1000`"
-                        )),
-                    ));
-                };
-                let arguments = (kind == Taken::Macro).then_some(arguments);
-                Control::Call(Box::new(Call {
-                    number: program,
-                    program: None,
-                    local: kind == Taken::Local,
-                    repeats,
-                    arguments,
-                }))
-            }
+            Control::Return { to: program }
+        } else {
+            Control::Call(Box::new(Call {
+                number: program.ok_or_else(|| refuse(refusals::CALL_WITHOUT_PROGRAM))?,
+                program: None,
+                local: kind == Taken::Local,
+                repeats,
+                arguments: (kind == Taken::Macro).then_some(arguments),
+            }))
         });
         Ok(Some(kind))
+    }
+
+    /// Whose the words beside a call are must be certain.
+    fn call_alone(&self, rest: &Block<'_>, kind: Taken) -> Result<(), Refusal> {
+        let mut codes = rest.words().filter(|word| word.letter == b'G').map(|word| word.g_code());
+        if kind == Taken::Macro {
+            let alone = codes.all(|code| code == Some(GCode(650)));
+            return if alone { Ok(()) } else { Err(refusals::MACRO_BESIDE_CODE) };
+        }
+        // P and L beside a code that takes them too.
+        let simple = |action: &Action| {
+            matches!(
+                action,
+                Action::Rapid
+                    | Action::Line
+                    | Action::Absolute
+                    | Action::Incremental
+                    | Action::Plane(_)
+                    | Action::WorkOffset(_)
+                    | Action::Inch
+                    | Action::Millimetre
+            )
+        };
+        if !codes
+            .all(|code| code.and_then(|code| self.dialect.code(code)).is_some_and(|row| simple(&row.action)))
+        {
+            return Err(refusals::CALL_BESIDE_CODE);
+        }
+        let linuxcnc = self.dialect.flow.macros == Macros::LinuxCnc;
+        if linuxcnc && rest.words().any(|word| !b"NMPL".contains(&word.letter)) {
+            return Err(refusals::CALL_BESIDE_WORDS);
+        }
+        Ok(())
     }
 
     /// A flow item: assignments, conditions, loops, O-words. Notes in `cut` what is no words.

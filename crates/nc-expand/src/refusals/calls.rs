@@ -6,6 +6,60 @@ use diagnostic::{Refusal, Text, both};
 
 use crate::codes;
 
+/// Things beside each other in one block that belong into two.
+const fn beside(message: Text, label: Text) -> Refusal {
+    Refusal {
+        code: codes::COMBINATION,
+        message,
+        label,
+        help: Text::pair("write them in two blocks", "напишите их двумя кадрами"),
+    }
+}
+
+const WHOSE: Text = Text::pair("whose are the words?", "чьи это слова?");
+const FIRST: Text = Text::pair("which comes first?", "что из них первое?");
+
+pub(crate) const CALL_BESIDE_FLOW: Refusal =
+    beside(Text::pair("a call stands beside flow", "вызов стоит рядом с переходом"), WHOSE);
+pub(crate) const CALL_BESIDE_CODE: Refusal = beside(
+    Text::pair("a subprogram is called beside another code", "подпрограмма вызвана рядом с другой функцией"),
+    WHOSE,
+);
+pub(crate) const CALL_BESIDE_WORDS: Refusal = beside(
+    Text::pair("a subprogram is called beside other words", "подпрограмма вызвана рядом с другими словами"),
+    WHOSE,
+);
+pub(crate) const MACRO_BESIDE_CODE: Refusal = beside(
+    Text::pair("a macro is called beside another code", "макрос вызван рядом с другой функцией"),
+    WHOSE,
+);
+pub(crate) const WORDS_BESIDE_CALL: Refusal =
+    beside(Text::pair("words beside the call of a subprogram", "слова рядом с вызовом подпрограммы"), FIRST);
+pub(crate) const WORDS_BESIDE_ASSIGNMENT: Refusal = beside(
+    Text::pair("an assignment and words stand in one block", "в одном кадре присваивание и слова"),
+    FIRST,
+);
+
+pub(crate) const RETURN_WITH_COUNT: Refusal = Refusal {
+    code: codes::COMBINATION,
+    message: Text::pair(
+        "M99 with L changes the count of its call",
+        "M99 с L меняет число повторений своего вызова",
+    ),
+    label: WHOSE,
+    help: Text::pair("write M99 without L", "напишите M99 без L"),
+};
+
+pub(crate) const CALL_WITHOUT_PROGRAM: Refusal = Refusal {
+    code: codes::SYNTAX,
+    message: Text::pair("a call without P: which program?", "вызов без P: какая программа?"),
+    label: Text::pair("a P word was expected", "ожидалось слово P"),
+    help: Text::pair(
+        "write the number of the program (of the block behind M97), as in `M98 P1000`",
+        "напишите номер программы (после M97 — номер кадра), например `M98 P1000`",
+    ),
+};
+
 pub(crate) fn program_or_count(program: impl Display, times: impl Display, number: impl Display) -> Refusal {
     Refusal {
         code: codes::COMBINATION,
