@@ -4,12 +4,12 @@ use diagnostic::{Diagnostic, Text, both};
 use toolpath::{Arc, Feed, Motion, Shape};
 
 use crate::arc::{self, Circle, Fault, Tolerance};
+use crate::environment::Environment;
 use crate::frames::settle;
 use crate::modal::{ArcCentres, Modal, Turn, Units};
 use crate::motion::{Motions, arc_while_turning, division, feed_rate};
 use crate::position::{end, require_frame, require_known};
 use crate::refusals::circular as refusal;
-use crate::settings::Environment;
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, Outcome, Words};
 use nc_syntax::Letters;
 

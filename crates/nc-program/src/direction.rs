@@ -9,10 +9,10 @@ use nc_syntax::Letters;
 use toolpath::{AXIS_NAMES, Kinematics, NoAngles, unit};
 
 use crate::codes;
+use crate::environment::Environment;
 use crate::modal::{Axis, Modal, MotionMode};
 use crate::position::require_rotary;
 use crate::refusals::direction as refusal;
-use crate::settings::Environment;
 use crate::setup::BetweenVectors;
 use crate::words::{AXIS_LETTERS, CENTRE_LETTERS, Outcome, ROTARY_LETTERS, SECONDARY_LETTERS, Words};
 

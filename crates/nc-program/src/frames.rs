@@ -7,10 +7,10 @@ use nc_syntax::dialect::{Action, FramePart, GCode, OffsetL20};
 use nc_syntax::{Dialect, Span};
 use toolpath::{Frame, Kinematics};
 
+use crate::environment::{BASE_FRAME, Demand, Environment};
 use crate::modal::{Compensation, Distance, Modal, Units, WorkOffset};
 use crate::position::{increment_base, require_frame};
 use crate::refusals::frames as refusal;
-use crate::settings::{BASE_FRAME, Demand, Environment};
 use crate::tool_length;
 use crate::transform::Transform;
 use crate::words::{

@@ -11,6 +11,7 @@ use crate::codes;
 use crate::curves::{self, CurvePart};
 use crate::delete;
 use crate::direction::DirectionWords;
+use crate::environment::{Environment, Owner};
 use crate::modal::{
     ArcCentres, Aside, Axes, Axis, Compensation, Distance, FeedMode, LastFeed, Lost, Modal, MotionMode,
     Naming, Progress, ReturnLevel, Shifts, Stated, ToolLength, Transform, Units, Why, WorkOffset, XWords,
@@ -21,7 +22,7 @@ use crate::offset::{self, Offset};
 use crate::path_control;
 use crate::plain::Plain;
 use crate::refusals::interpreter as refusal;
-use crate::settings::{self, Environment, Owner};
+use crate::settings;
 use crate::setup::{AfterChange, Setup};
 use crate::tilted;
 use crate::tip;

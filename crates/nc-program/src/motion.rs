@@ -10,6 +10,7 @@ use crate::codes;
 use crate::curves::{self, CurvePart};
 use crate::cycle;
 use crate::direction::{self, DirectionWords};
+use crate::environment::{Demand, Environment, Owner};
 use crate::frames::{self, settle};
 use crate::modal::{
     Axes, Axis, Compensation, Distance, FeedMode, LastFeed, Lost, Modal, MotionMode, Units, Why,
@@ -17,7 +18,6 @@ use crate::modal::{
 use crate::offset;
 use crate::position::{end, known_axes, require_frame, require_known, require_rotary};
 use crate::refusals::motion as refusal;
-use crate::settings::{Demand, Environment, Owner};
 use crate::tip;
 use crate::tool_length;
 use crate::turning;

@@ -12,9 +12,9 @@
 use nc_syntax::dialect::{Action, FramePart, GCode};
 use toolpath::Kinematics;
 
+use crate::environment::{Demand, Environment, Owner};
 use crate::modal::{Axis, Compensation, Distance, Lost, Modal, Naming, ReturnLevel, Shifts, Why};
 use crate::motion::Moved;
-use crate::settings::{Demand, Environment, Owner};
 use crate::words::{AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Words};
 use nc_syntax::Letters;
 

@@ -10,8 +10,8 @@ use toolpath::{Division, Motion, Partial};
 use nc_syntax::Letters;
 use nc_syntax::dialect::{Action, Side};
 
+use crate::environment::Environment;
 use crate::modal::{Compensation, Modal};
-use crate::settings::Environment;
 use crate::words::{Preparatory, Words};
 
 /// Shortest piece of an offset path, in radii: in front of an inner corner of 37 degrees the tool stops three radii before

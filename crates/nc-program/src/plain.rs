@@ -9,10 +9,10 @@ use nc_syntax::{PlainLine, PlainWord};
 use toolpath::{Division, Feed, FeedRate, Frame, Position, Shape};
 use units::decimal::Decimal;
 
+use crate::environment::Environment;
 use crate::interpreter::{Context, Interpreter, context};
 use crate::modal::{Axis, Compensation, Distance, FeedMode, LastFeed, Modal, MotionMode, Naming, Progress};
 use crate::motion::Moved;
-use crate::settings::Environment;
 
 /// What is known of plain lines in the state in force.
 #[derive(Clone, Debug, Default)]

@@ -5,10 +5,11 @@ use nc_syntax::Span;
 use nc_syntax::dialect::Action;
 use toolpath::{AXIS_NAMES, Frame, Position};
 
+use crate::environment::{BASE_FRAME, Environment};
 use crate::modal::{Axes, Axis, Distance, Lost, Modal, MotionMode, Naming, Units, Why};
 use crate::refusals::position as refusal;
-use crate::settings::{BASE_FRAME, Environment, missing_offset};
 use crate::words::{AXIS_LETTERS, LINEAR, Outcome, ROTARY, ROTARY_LETTERS, Words};
+use crate::work_offset::missing_offset;
 use crate::{codes, frames};
 use nc_syntax::Letters;
 

@@ -1,80 +1,21 @@
 //! What the codes of a block set before anything moves, whatever their order in the block.
 
-use diagnostic::{Entry, Refusal, both};
+use diagnostic::{Refusal, both};
+use nc_syntax::Span;
 use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
-use nc_syntax::{Dialect, Span};
 use toolpath::{Kinematics, Plane};
 
 use crate::codes;
+use crate::environment::{BASE_FRAME, Demand, Environment, Owner};
 use crate::modal::{
     ArcCentres, Compensation, CycleState, Distance, FeedMode, Modal, MotionMode, ReturnLevel, Shifts, Turn,
     Units, WorkOffset,
 };
 use crate::refusals::{frames as of_frames, settings as refusal};
-use crate::setup::Setup;
 use crate::tool_length::{self, Length};
 use crate::words::{LINEAR_LETTERS, Outcome, Words};
-use crate::{frames, path_control, swivel, tilted, tip, transform::Transform};
+use crate::{frames, path_control, swivel, tilted, tip, transform::Transform, work_offset};
 use nc_syntax::Letters;
-
-/// What a program is read against.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Environment<'d> {
-    pub(crate) dialect: &'d Dialect,
-    pub(crate) setup: &'d Setup,
-    /// Modal group of G1: a G80 of the same group cancels it too.
-    pub(crate) motion_group: Option<u8>,
-}
-
-impl Environment<'_> {
-    /// The M code of a block that changes the tool.
-    pub(crate) fn tool_change(&self, words: &Words<'_, '_, '_>) -> Option<(u16, Span)> {
-        let changes = |number: u16| self.dialect.m_code(number).is_some_and(|row| row.changes_tool);
-        words.m_codes.iter().copied().find(|(number, _)| changes(*number))
-    }
-
-    /// False for the Y of a lathe, which stands at 0 whatever moves.
-    pub(crate) fn moves_axis(&self, axis: usize) -> bool {
-        axis != 1 || self.dialect.turning.is_none()
-    }
-}
-
-/// Whose the axis words of the block are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Owner {
-    /// The motion code or cycle in force.
-    Motion,
-    /// G4: a time.
-    Dwell,
-    /// G4 whose time is set elsewhere: nobody's.
-    DwellBySetting,
-    /// G28, G30.
-    Reference,
-    /// G53.
-    MachineCoordinates,
-    /// G52, G92, G10, G68…
-    Frame,
-    /// G4 whose time is P alone: the axis words are the motion's.
-    DwellP,
-    /// G43.1
-    Length,
-    /// G31 and the like.
-    Probe,
-    /// A code that moves nothing.
-    Arguments,
-}
-
-/// What the block asks for beyond its settings.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Demand<'d> {
-    pub(crate) owner: Owner,
-    /// The code that owns the words, where it is not the motion.
-    pub(crate) owner_span: Option<Span>,
-    /// The motion or cycle code written in this block.
-    pub(crate) written_motion: Option<Span>,
-    /// The code that moves the frame by its words.
-    pub(crate) frame: Option<&'d Action>,
-}
 
 /// Collected while the codes are read, applied afterwards in a fixed order.
 #[derive(Default)]
@@ -92,9 +33,6 @@ struct Wanted<'d> {
     /// G40.
     compensation_off: Option<Span>,
 }
-
-/// The base frame's name in the profile.
-pub(crate) const BASE_FRAME: &str = "G500";
 
 /// Stands for the name of a work offset that H numbers.
 const BY_H: &str = "H";
@@ -154,44 +92,7 @@ pub(crate) fn apply<'d>(
                 }
             }
         }
-        let unwritten = match action {
-            Action::PolarOn => Some((
-                both!("its words are radius and angle", "её слова — радиус и угол"),
-                both!("write the points in X and Y, G15 in force", "напишите точки в X и Y, при G15"),
-            )),
-            Action::Turning(_) | Action::Called(_) => Some((
-                both!("a cycle of the control", "цикл стойки"),
-                both!("let the CAM write the moves", "выводите движения из CAM"),
-            )),
-            _ => None,
-        };
-        if let Some((label, help)) = unwritten {
-            let message = both!("{} was not written out", "{} не расписана движениями", words.text(span));
-            return Err(words.refuse(Refusal { code: codes::REFUSED_CODE, message, label, help }, span));
-        }
-        if *action == Action::Swivel && (state.shifts.local_mm != [0.0; 3] || !state.transform.is_none()) {
-            return Err(words.refuse_code(refusal::WHILE_FRAME_IN_FORCE, span));
-        }
-        if *action == Action::ContourTolerance && may_switch_tip(&words.text(span), before) {
-            let call = words.text(span);
-            let name = call.split('(').next().unwrap_or_default();
-            let message = both!(
-                "{name} is refused: may switch TRAORI by its second argument",
-                "{name} не принимается: может переключать TRAORI вторым аргументом"
-            );
-            let label = both!(
-                "its third digit from the right is a transformation, and 0 ends the one in force",
-                "третья справа цифра — трансформация, а 0 отменяет действующую"
-            );
-            let help = both!(
-                "write the tolerance alone, as in CYCLE832(0.01)",
-                "напишите только допуск, например CYCLE832(0.01)"
-            );
-            return Err(words.refuse(Refusal { code: codes::COMMAND, message, label, help }, span));
-        }
-        if let Action::Refuse { reason, help } = action {
-            return Err(words.refused_code(span, reason, help));
-        }
+        followed(words, before, state, action, span)?;
     }
     if let Some(said) = path_control::said(env.dialect, words, state.units) {
         state.path_control = said;
@@ -203,10 +104,10 @@ pub(crate) fn apply<'d>(
     tool_length::tool(env, words, state)?;
     if let Some(offset) = wanted.offset {
         if let (code, Some(BY_H), span) = offset {
-            offset_by_h(env, words, state, (code, span), wanted.length.is_some())?;
+            work_offset::by_h(env, words, state, (code, span), wanted.length.is_some())?;
         } else {
             let other = takes_p(env, words, state, &demand, &wanted);
-            work_offset(env, words, state, offset, other)?;
+            work_offset::by_name(env, words, state, offset, other)?;
         }
     }
     // H has chosen the work offset, and no length.
@@ -230,6 +131,55 @@ pub(crate) fn apply<'d>(
         cycle_frame(words, before, state)?;
     }
     Ok(demand)
+}
+
+/// Refuses a code that cannot be followed here.
+fn followed(
+    words: &Words<'_, '_, '_>,
+    before: &Modal,
+    state: &Modal,
+    action: &Action,
+    span: Span,
+) -> Outcome<()> {
+    let unwritten = match action {
+        Action::PolarOn => Some((
+            both!("its words are radius and angle", "её слова — радиус и угол"),
+            both!("write the points in X and Y, G15 in force", "напишите точки в X и Y, при G15"),
+        )),
+        Action::Turning(_) | Action::Called(_) => Some((
+            both!("a cycle of the control", "цикл стойки"),
+            both!("let the CAM write the moves", "выводите движения из CAM"),
+        )),
+        _ => None,
+    };
+    if let Some((label, help)) = unwritten {
+        let message = both!("{} was not written out", "{} не расписана движениями", words.text(span));
+        return Err(words.refuse(Refusal { code: codes::REFUSED_CODE, message, label, help }, span));
+    }
+    if *action == Action::Swivel && (state.shifts.local_mm != [0.0; 3] || !state.transform.is_none()) {
+        return Err(words.refuse_code(refusal::WHILE_FRAME_IN_FORCE, span));
+    }
+    if *action == Action::ContourTolerance && may_switch_tip(&words.text(span), before) {
+        let call = words.text(span);
+        let name = call.split('(').next().unwrap_or_default();
+        let message = both!(
+            "{name} is refused: may switch TRAORI by its second argument",
+            "{name} не принимается: может переключать TRAORI вторым аргументом"
+        );
+        let label = both!(
+            "its third digit from the right is a transformation, and 0 ends the one in force",
+            "третья справа цифра — трансформация, а 0 отменяет действующую"
+        );
+        let help = both!(
+            "write the tolerance alone, as in CYCLE832(0.01)",
+            "напишите только допуск, например CYCLE832(0.01)"
+        );
+        return Err(words.refuse(Refusal { code: codes::COMMAND, message, label, help }, span));
+    }
+    if let Action::Refuse { reason, help } = action {
+        return Err(words.refused_code(span, reason, help));
+    }
+    Ok(())
 }
 
 /// CYCLE832: the digit of hundreds of its second argument chooses a transformation on the 840D (Programming Manual Cycles); later
@@ -261,88 +211,6 @@ fn takes_p(
         || curve
         || !words.m_codes.is_empty()
         || (arc && env.dialect.frames.arc_turns)
-}
-
-/// G15 of Okuma; `length`: a tool length is chosen by H too.
-fn offset_by_h(
-    env: &Environment<'_>,
-    words: &Words<'_, '_, '_>,
-    state: &mut Modal,
-    (code, span): (GCode, Span),
-    length: bool,
-) -> Outcome<()> {
-    const H: Letters = Letters::of(b"H");
-    if length {
-        let message = both!("{} beside a tool length", "{} рядом с коррекцией на длину", words.text(span));
-        let help = both!("write them in two blocks", "напишите их двумя кадрами");
-        return Err(words.refuse(
-            Refusal {
-                code: codes::WORDS_OF_TWO, message, label: both!("whose is H?", "чьё это H?"), help
-            },
-            words.span(H),
-        ));
-    }
-    let number = match words.whole(b'H')? {
-        Some(number) if number > 0 => number,
-        given => {
-            let message = match given {
-                None => both!("{} without H", "{} без H", words.text(span)),
-                Some(_) => both!("{} with H0", "{} с H0", words.text(span)),
-            };
-            let label = both!("a number from 1 was expected", "ожидался номер от 1");
-            let help =
-                both!("write the number of the work offset as H", "напишите номер смещения нуля словом H");
-            return Err(words.refuse(Refusal { code: codes::WORK_OFFSET, message, label, help }, span));
-        }
-    };
-    let name = frames::by_h(code, number);
-    let zero_mm = frames::offset(env, state, &name);
-    if zero_mm.is_none() {
-        return Err(missing_offset(words, &name, span));
-    }
-    state.work_offset = WorkOffset { code: Some(code), number: Some(number), zero_mm, rewritten: false };
-    Ok(())
-}
-
-/// G54 and its like; `other`: a P may be another code's.
-fn work_offset(
-    env: &Environment<'_>,
-    words: &Words<'_, '_, '_>,
-    state: &mut Modal,
-    (code, name, span): (GCode, Option<&str>, Span),
-    other: bool,
-) -> Outcome<()> {
-    const P: Letters = Letters::of(b"P");
-    const FIRST: GCode = GCode(540);
-    let may_be_numbered = name.is_none() || (env.dialect.frames.p_selects_numbered && code == FIRST);
-    let number = match words.number(b'P') {
-        None if name.is_none() => {
-            return Err(words.refuse_code(refusal::WITHOUT_P, span));
-        }
-        None => None,
-        Some(_) if other && !may_be_numbered => None,
-        Some(_) if other => {
-            return Err(words.refuse(refusal::p_of_two_codes(&words.text(span)), words.span(P)));
-        }
-        Some(_) if may_be_numbered => words.whole(b'P')?,
-        Some(_) => {
-            return Err(words.refuse(refusal::p_without_meaning(&words.text(span)), words.span(P)));
-        }
-    };
-    if number == Some(0) {
-        return Err(words.refuse(refusal::NO_WORK_OFFSET_P0, words.span(P)));
-    }
-    let name = match (number, name) {
-        (Some(number), _) => frames::numbered(number),
-        (None, name) => name.unwrap_or_default().to_owned(),
-    };
-    let zero_mm = frames::offset(env, state, &name);
-    // The base frame may be unknown as long as nothing moves in it.
-    if zero_mm.is_none() && name != BASE_FRAME {
-        return Err(missing_offset(words, &name, span));
-    }
-    state.work_offset = WorkOffset { code: Some(code), number, zero_mm, rewritten: false };
-    Ok(())
 }
 
 /// G69, G50, and G92.1 to G92.3 where they take no words: done before the motion of their block.
@@ -561,20 +429,4 @@ fn cycle_frame(words: &Words<'_, '_, '_>, before: &Modal, after: &Modal) -> Outc
     };
     let span = words.codes.first().map_or_else(|| words.span(Letters::of(b"H")), |code| code.span);
     Err(words.refuse(refusal::changes_during_cycle(&what), span))
-}
-
-/// A name as a key of the profile: with a point in it it is quoted.
-fn toml_key(name: &str) -> String {
-    let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    if name.chars().all(bare) { name.to_owned() } else { format!("\"{name}\"") }
-}
-
-/// The refusal of an offset nobody gave.
-pub(crate) fn missing_offset(
-    words: &Words<'_, '_, '_>,
-    name: &str,
-    span: Span,
-) -> Box<diagnostic::Diagnostic> {
-    let entry = Entry::new("work_offsets_mm", None, toml_key(name), "[X, Y, Z]");
-    Box::new(words.refuse(refusal::work_offset_not_given(name), span).settled_by(entry))
 }

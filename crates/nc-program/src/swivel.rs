@@ -11,10 +11,10 @@ use nc_syntax::Span;
 use toolpath::{Kinematics, Plane, TiltedPlane};
 
 use crate::codes;
+use crate::environment::Environment;
 use crate::frames;
 use crate::modal::{Axis, Modal, Units};
 use crate::position::require_frame;
-use crate::settings::Environment;
 use crate::tilted::{declared, lose, not_certain};
 use crate::words::{Outcome, Words};
 use nc_syntax::Letters;

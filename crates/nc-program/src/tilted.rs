@@ -12,12 +12,12 @@ use smallvec::SmallVec;
 use toolpath::{AXIS_NAMES, Kinematics, Motion, NoAngles, TiltedPlane, unit};
 
 use crate::codes;
+use crate::environment::{Demand, Environment, Owner};
 use crate::frames::absolute;
 use crate::modal::{Axis, Lost, Modal, Units, Why};
 use crate::naming;
 use crate::position::{require_frame, require_rotary};
 use crate::refusals::tilted as refusal;
-use crate::settings::{Demand, Environment, Owner};
 use crate::swivel;
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, Words};
 use nc_syntax::Letters;

@@ -6,9 +6,9 @@ use nc_syntax::dialect::{Action, TipSwitch};
 use toolpath::Kinematics;
 
 use crate::codes;
+use crate::environment::{Demand, Environment};
 use crate::modal::{Axis, Compensation, Lost, Modal, Why};
 use crate::refusals::tip as refusal;
-use crate::settings::{Demand, Environment};
 use crate::words::{Outcome, Words};
 use nc_syntax::Letters;
 

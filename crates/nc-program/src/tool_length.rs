@@ -5,11 +5,11 @@ use nc_syntax::dialect::{LengthAfter, LengthAtChange, TWord, Turning};
 use nc_syntax::{Letters, Span};
 
 use crate::codes;
+use crate::environment::{Demand, Environment};
 use crate::frames;
 use crate::modal::{Distance, Modal, MotionMode, ToolLength, Units, WrittenLength};
 use crate::motion::compensated;
 use crate::refusals::tool_length as refusal;
-use crate::settings::{Demand, Environment};
 use crate::words::{
     ARC_LETTERS, AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, ROTARY_LETTERS, SECONDARY_LETTERS, Words,
 };

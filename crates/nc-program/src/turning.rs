@@ -5,9 +5,9 @@ use nc_syntax::dialect::{Action, GCode};
 use toolpath::{Motion, Plane, Shape};
 
 use crate::codes;
+use crate::environment::{Demand, Environment, Owner};
 use crate::modal::{Distance, Modal, MotionMode, XWords};
 use crate::refusals::turning as refusal;
-use crate::settings::{Demand, Environment, Owner};
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, LINEAR, Outcome, ROTARY_LETTERS, Words};
 use nc_syntax::Letters;
 

@@ -6,12 +6,12 @@ use nc_syntax::dialect::CurveCode;
 use toolpath::{Bezier, Division, Feed, MOST_DEGREE, Motion, Position, Shape};
 
 use super::{CurvePart, is_curve, plane_axes};
+use crate::environment::Environment;
 use crate::frames::settle;
 use crate::modal::{Modal, MotionMode, Units};
 use crate::motion::{Moved, feed_rate};
 use crate::position::{end, require_frame, require_known};
 use crate::refusals::curves as refusal;
-use crate::settings::Environment;
 use crate::words::{AXIS_LETTERS, Outcome, Words};
 
 /// I, J, P and Q in mm, by letter.

@@ -9,12 +9,12 @@ use super::faults::{every_knot, of_fault, order_refused, weight_refused};
 use super::points::both_axes;
 use super::{Begun, CurvePart, POINT_LETTERS, cut, not_skipped, plane_axes};
 use crate::codes;
+use crate::environment::Environment;
 use crate::frames::settle;
 use crate::modal::{Distance, Modal, MotionMode};
 use crate::motion::Moved;
 use crate::position::{end, require_frame, require_known};
 use crate::refusals::curves as refusal;
-use crate::settings::Environment;
 use crate::words::{LINEAR_LETTERS, Outcome, Words};
 
 /// A block of G6.2.

@@ -18,10 +18,10 @@ use nc_syntax::{Letters, Span};
 use toolpath::{Division, Feed, Motion, Nurbs, Plane, Position, Shape};
 
 use crate::codes;
+use crate::environment::Environment;
 use crate::modal::{Axis, Distance, FeedMode, Modal, Naming};
 use crate::motion::{Moved, compensated, feed_rate};
 use crate::refusals::curves as refusal;
-use crate::settings::Environment;
 use crate::words::{AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, Preparatory, ROTARY_LETTERS, Words};
 
 /// What a block is of a curve.

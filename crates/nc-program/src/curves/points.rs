@@ -7,12 +7,12 @@ use toolpath::{MOST_DEGREE, Nurbs};
 
 use super::faults::{order_refused, weight_refused};
 use super::{Begun, CurvePart, POINT_LETTERS, cut, not_skipped, plane_axes};
+use crate::environment::Environment;
 use crate::frames::settle;
 use crate::modal::{Modal, MotionMode};
 use crate::motion::Moved;
 use crate::position::{end, require_frame, require_known};
 use crate::refusals::curves as refusal;
-use crate::settings::Environment;
 use crate::words::{Outcome, Words};
 
 /// A control point of G5.2.
