@@ -7,6 +7,7 @@ mod ratchet;
 mod source;
 
 use std::collections::BTreeSet;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
@@ -156,6 +157,7 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
         return ratchet::write(root, &house.limited(), &options.raise);
     }
     if options.check {
+        unnamed_tests(root, &sources, &metadata)?;
         return ratchet::check(root, &house.limited());
     }
     if options.json {
@@ -240,6 +242,27 @@ fn sources(root: &Path, of_tests: &BTreeSet<PathBuf>) -> anyhow::Result<Vec<Sour
             Source::measure(path, &text, is_test)
         })
         .collect()
+}
+
+/// A file of tests that no test program names would never run, and nothing would say so.
+fn unnamed_tests(root: &Path, sources: &[Source], metadata: &Value) -> anyhow::Result<()> {
+    let programs = metadata.to_string();
+    let unnamed = |path: &&Path| {
+        let (Some(folder), Some(name)) = (path.parent(), path.file_stem().and_then(OsStr::to_str)) else {
+            return false;
+        };
+        let whole = std::fs::read_to_string(root.join(folder).join("whole.rs")).unwrap_or_default();
+        folder.file_name() == Some(OsStr::new("tests"))
+            && !path.iter().any(|part| part == "src")
+            && !programs.contains(&format!("/{}\"", path.display()))
+            && !whole.lines().any(|line| line == format!("mod {name};"))
+    };
+    let unnamed = sources.iter().map(|source| source.path.as_path()).filter(unnamed);
+    let unnamed: Vec<String> = unnamed.map(|path| path.display().to_string()).collect();
+    if unnamed.is_empty() {
+        return Ok(());
+    }
+    bail!("no test program names {}: write `mod` for it in the whole.rs beside it", unnamed.join(", "))
 }
 
 /// Programs that `cargo test` builds beside those of unit tests, and how many of them link the whole command.

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests may stop the test")]
 #![allow(clippy::disallowed_methods, reason = "another arithmetic than the code's")]
 
-mod control;
+use crate::control;
 
 use control::{ALLOWED_MM, OPTIONS, block};
 use correction::{Block, CorrectionError, Corrector, Directed, Goal, Options, Orientation, Piece};

@@ -1,7 +1,7 @@
 //! The whole path, from the words alone: a control is played here that knows nothing but the pieces,
 //! and the machine's real path is sampled against the programmed one.
 
-mod control;
+use crate::control;
 
 use control::{ALLOWED_MM, OPTIONS, begin, block, distance, feed, position, tried};
 use correction::{CorrectionError, Corrector, Curve, Goal, Options, PieceKind};

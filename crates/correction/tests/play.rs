@@ -1,7 +1,7 @@
 //! Machines whose error depends on the direction: the pieces are run on a forward model of the test's own, with play as a
 //! hysteresis along the commanded path.
 
-mod control;
+use crate::control;
 
 use control::{ALLOWED_MM, Control, OPTIONS, Ran, block, distance, position, stated, tried};
 use correction::{CorrectionError, Corrector, Curve};

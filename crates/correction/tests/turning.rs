@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may stop the test")]
 
-mod control;
+use crate::control;
 
 use control::{ALLOWED_MM, OPTIONS, block};
 use correction::{Block, CorrectionError, Corrector, Goal, Options, Piece};

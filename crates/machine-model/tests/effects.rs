@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may stop the test")]
 
-mod machines;
+use crate::machines;
 
 use machine_model::effects::{Conditions, EffectGeometry, EffectKind, EffectTerm, MissingCondition, Shape};
 use machine_model::{

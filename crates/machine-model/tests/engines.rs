@@ -1,7 +1,7 @@
 //! The product engines against themselves and against what their premises demand.
 
-mod machines;
-mod stan_s500;
+use crate::machines;
+use crate::stan_s500;
 
 use machine_model::engines::{
     BuildError, EngineInputs, Kmtpp, ParametricTable, TangentialInterval, Tracker, build,

@@ -1,6 +1,6 @@
 //! Every printed number of Pimushkin 2023 that the project keeps, recomputed.
 
-mod stan_s500;
+use crate::stan_s500;
 
 use machine_model::engines::published::{KmtppPublished, Method, TangentialPublished};
 use machine_model::engines::{Tangential, build};

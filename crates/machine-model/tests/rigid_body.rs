@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may stop the test")]
 
-mod machines;
+use crate::machines;
 
 use machine_model::{
     AxisTables, Command, Engine, Interpolation, LANES, Move, PathModel, Range, RigidBody, RotaryAxis,

@@ -1,6 +1,6 @@
 //! When the second order of rotations begins to matter, on the tables of the STAN S500.
 
-mod stan_s500;
+use crate::stan_s500;
 
 use machine_model::finite_rotations::{second_order, threshold};
 use machine_model::{Command, Vector};

@@ -1,6 +1,6 @@
 //! One block, one piece: which bytes change.
 
-mod common;
+use crate::common;
 
 use common::{dialect, least_increment, piece, read, rewritten};
 use nc_emit::Emitter;

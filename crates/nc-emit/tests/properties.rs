@@ -1,6 +1,6 @@
 //! Whatever is asked for is what the text says afterwards, and nothing else has changed.
 
-mod common;
+use crate::common;
 
 use common::{dialect, least_increment, read};
 use nc_emit::{Emitter, Piece, WordEdit};

@@ -1,6 +1,6 @@
 //! The comment that says who corrected a program, and its place.
 
-mod common;
+use crate::common;
 
 use common::{dialect, read};
 use nc_emit::{find_provenance, insert_provenance, provenance_comment, provenance_position};

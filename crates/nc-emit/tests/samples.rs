@@ -1,6 +1,6 @@
 //! The shipped programs in their dialects: nothing asked, nothing changed; and a look at what is written.
 
-mod common;
+use crate::common;
 
 use common::{piece, rewritten};
 use nc_emit::{Emitter, Piece, WordEdit, insert_provenance, provenance_position};

@@ -1,6 +1,6 @@
 //! One block becomes several; whole programs as snapshots.
 
-mod common;
+use crate::common;
 
 use common::{dialect, piece, read, rewritten};
 use nc_emit::{BlockNumbers, Emitter, Piece};

@@ -1,7 +1,7 @@
 //! Cycles and dimensions called by name: what they are written out as, against moves worked out by hand from Siemens'
 //! Programming Guide Cycles.
 
-mod common;
+use crate::common;
 
 use common::{blocks, expanded};
 

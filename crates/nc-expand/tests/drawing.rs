@@ -1,6 +1,6 @@
 //! Corners and angles of a lathe's drawing, worked out by hand.
 
-mod common;
+use crate::common;
 
 use common::blocks;
 use nc_expand::{Environment, Limits, expand};

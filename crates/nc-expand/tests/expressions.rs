@@ -1,7 +1,7 @@
 //! Expressions against a reference that shares no algorithm with the product: a flat list of operands and
 //! operators is reduced rank by rank, as one does on paper.
 
-mod common;
+use crate::common;
 
 use common::flat;
 use proptest::prelude::*;

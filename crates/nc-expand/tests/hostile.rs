@@ -1,6 +1,6 @@
 //! Programs that would run or grow without end: refused quickly, whatever they hold.
 
-mod common;
+use crate::common;
 
 use std::time::{Duration, Instant};
 

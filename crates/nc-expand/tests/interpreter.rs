@@ -3,7 +3,7 @@
 //! The samples that come with LinuxCNC are run as they are; variables nobody set are 0, as they are in a
 //! freshly started interpreter.
 
-mod common;
+use crate::common;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

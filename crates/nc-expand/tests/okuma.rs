@@ -1,6 +1,6 @@
 //! Okuma's common variables, jumps and calls: executed, against programs worked out by hand.
 
-mod common;
+use crate::common;
 
 use common::{blocks, expanded};
 

@@ -1,7 +1,7 @@
 //! Contours with pockets (type II of G71 and G72): whatever the contour, what is written leaves it whole, and no pass of it goes
 //! deeper than one depth of cut, or in a rapid through what still stands.
 
-mod common;
+use crate::common;
 
 use common::blocks;
 use nc_expand::{Environment, Limits, expand};

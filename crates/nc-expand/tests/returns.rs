@@ -1,6 +1,6 @@
 //! Okuma's drilling cycles, written out as moves: heights against Okuma's Programming Manual, worked out by hand.
 
-mod common;
+use crate::common;
 
 use common::{blocks, expanded};
 

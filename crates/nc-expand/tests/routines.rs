@@ -1,6 +1,6 @@
 //! Cycles whose contour is a subroutine, against LinuxCNC's interpreter: a program and what it was expanded to move alike.
 
-mod common;
+use crate::common;
 
 use std::path::Path;
 use std::process::{Command, Stdio};

@@ -1,6 +1,6 @@
 //! What each rule of flow makes of a program.
 
-mod common;
+use crate::common;
 
 use common::{blocks, expanded, flat, linuxcnc, refused};
 

@@ -1,6 +1,6 @@
 //! Corners and polar words: what they are written out as, against points worked out by hand.
 
-mod common;
+use crate::common;
 
 use common::{blocks, expanded};
 

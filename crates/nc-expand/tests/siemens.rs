@@ -1,6 +1,6 @@
 //! Siemens' variables and flow: what is executed, against values worked out by hand.
 
-mod common;
+use crate::common;
 
 use common::{blocks, expanded};
 

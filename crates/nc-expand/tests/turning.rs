@@ -1,6 +1,6 @@
 //! Cycles of lathes: the moves that they are written out as, worked out by hand.
 
-mod common;
+use crate::common;
 
 use common::blocks;
 use nc_expand::{Environment, Expanded, Limits, Refusal, expand};

@@ -1,6 +1,6 @@
 //! Arcs from blocks: planes, centres, radii, helices.
 
-mod common;
+use crate::common;
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

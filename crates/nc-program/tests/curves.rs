@@ -1,6 +1,6 @@
 //! G5, G5.1, G5.2 with G5.3 and G6.2: what is read, and what is refused, each for its own reason.
 
-mod common;
+use crate::common;
 
 use common::{feed, run};
 use nc_program::CurvePart;

@@ -1,6 +1,6 @@
 //! Drilling cycles: which blocks drill, where, and how deep.
 
-mod common;
+use crate::common;
 
 use common::{end, hole, motions, refusal, run};
 use toolpath::{CycleKind, Hole, Plane};

@@ -1,6 +1,6 @@
 //! What a program as a whole shows: signs of a lathe, lengths without a point, unknown M codes, the unit, a cut.
 
-mod common;
+use crate::common;
 
 use common::{dialect, setup};
 use diagnostic::Severity;

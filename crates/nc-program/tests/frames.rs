@@ -1,6 +1,6 @@
 //! Codes that move the frame: where the axes then go, and what is refused.
 
-mod common;
+use crate::common;
 
 use common::{centre, end, feed, hole, motions, refusal, run, run_with, setup, sweep};
 use nc_program::Setup;

@@ -1,6 +1,6 @@
 //! What the user reads.
 
-mod common;
+use crate::common;
 
 use common::{dialect, message, message_with, setup};
 use nc_program::Setup;

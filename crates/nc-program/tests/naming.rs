@@ -1,6 +1,6 @@
 //! Which axes a program has itself named in the frame in force: only those may get words that nobody wrote.
 
-mod common;
+use crate::common;
 
 use common::{run, run_with, setup};
 use nc_program::Setup;

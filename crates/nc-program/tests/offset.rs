@@ -1,6 +1,6 @@
 //! Cutter compensation: which motions may become pieces that the control offsets as one.
 
-mod common;
+use crate::common;
 
 use common::{dialect, run_with, setup};
 use nc_program::Setup;

@@ -1,6 +1,6 @@
 //! What must hold for any program.
 
-mod common;
+use crate::common;
 
 use common::{dialect, run, setup};
 use nc_program::{Interpreter, Setup};

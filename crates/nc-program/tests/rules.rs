@@ -1,6 +1,6 @@
 //! One test for each rule of reading, named by the trap it guards against.
 
-mod common;
+use crate::common;
 #[path = "rules/controls.rs"]
 mod controls;
 

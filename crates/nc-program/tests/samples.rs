@@ -1,6 +1,6 @@
 //! The shipped sample programs: which motions they are, and where the faulty one is refused.
 
-mod common;
+use crate::common;
 
 use common::{Run, run_with, setup};
 use toolpath::{Motion, Shape};

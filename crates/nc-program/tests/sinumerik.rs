@@ -1,6 +1,6 @@
 //! What Siemens' mills have of their own: edges of tools, the program's frame, machine coordinates by name.
 
-mod common;
+use crate::common;
 
 use common::{dialect, run, run_with, setup};
 use nc_program::process::{Said, said};

@@ -1,6 +1,6 @@
 //! CYCLE800: the plane and the angles that its arguments make, and direct angles of modulo axes.
 
-mod common;
+use crate::common;
 
 use common::{Run, dialect, run_with};
 use nc_program::{Setup, TipControl};

@@ -2,7 +2,7 @@
 
 use nc_syntax::{Block, Invalid, ItemKind, MAX_BLOCK_BYTES, Reader};
 
-mod common;
+use crate::common;
 
 /// Number of blocks, the kinds of items seen (invalid ones only), and the most items kept at once.
 fn read(text: &[u8]) -> (usize, Vec<Invalid>, usize) {

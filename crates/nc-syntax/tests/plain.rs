@@ -1,6 +1,6 @@
 //! The plain line, read the quick way.
 
-mod common;
+use crate::common;
 
 use proptest::prelude::*;
 

@@ -6,7 +6,7 @@ use nc_syntax::dialect::{Paren, PointFree, Semicolon};
 use nc_syntax::{Block, Dialect, EnvelopeFinder, Invalid, ItemKind, Place, Reader, Value};
 use proptest::prelude::*;
 
-mod common;
+use crate::common;
 
 /// One line per block: what stands in it, in the order it stands.
 fn shown(text: &[u8], dialect: &Dialect) -> Vec<String> {

@@ -124,7 +124,7 @@ fn iso230_2() -> String {
     format!(
         "## ISO 230-2\n\nReadings and results that others published (`samples/calibration`, reports of five runs at five targets; {}).\n\n{}\n\
          Two of their lines follow other formulas than the standard's: E is printed as E↑, R as the larger of R↑ and R↓. The standard's E spans both directions, and its R is the largest \
-         of `2s↑ + 2s↓ + |B|`, R↑ and R↓ at a target. `cargo test -p calibration --test iso230_2` holds all twelve against exact fractions.\n\n",
+         of `2s↑ + 2s↓ + |B|`, R↑ and R↓ at a target. `cargo test -p calibration --test whole iso230_2::` holds all twelve against exact fractions.\n\n",
         sources.join("; "),
         table(&head, &rows)
     )

@@ -1,6 +1,6 @@
 //! A control that knows nothing but the pieces: program words in, axis commands out.
 
-#![allow(dead_code, clippy::expect_used, reason = "shared by test files that use different parts")]
+#![allow(clippy::expect_used, reason = "helpers of tests may stop the test")]
 
 use correction::{
     Block, Centre, Corrected, CorrectionError, Corrector, Curve, Goal, Options, Outside, Piece, PieceKind,

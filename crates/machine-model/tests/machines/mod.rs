@@ -1,6 +1,6 @@
 //! Random machines for the tests.
 
-#![allow(dead_code, clippy::unwrap_used, reason = "shared by test files that use different parts")]
+#![allow(clippy::unwrap_used, reason = "helpers of tests may stop the test")]
 
 use machine_model::{
     AxisTables, Chain, Command, Description, Interpolation, LinearAxis, Range, RotaryAxis, Squareness, Table,

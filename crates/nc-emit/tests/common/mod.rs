@@ -1,5 +1,4 @@
 //! A dialect, a way to write edits as text, and a program run through the emitter.
-#![allow(dead_code, reason = "each test file uses a part")]
 
 use nc_emit::{Emitter, Piece, WordEdit};
 use nc_syntax::dialect::{GCode, PointFree};

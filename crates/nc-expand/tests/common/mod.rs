@@ -1,7 +1,5 @@
 //! What the tests of this crate share.
 
-#![allow(dead_code, reason = "each test file uses its own part of this")]
-
 use std::io;
 
 use nc_expand::{Environment, Expanded, Limits, Preset, Refusal, expand};

@@ -1,5 +1,4 @@
 //! Programs as text, run through the reader and a shipped dialect.
-#![allow(dead_code, reason = "each test file uses its own part")]
 
 use diagnostic::Diagnostic;
 use nc_program::{Interpreter, Modal, Setup, Step};

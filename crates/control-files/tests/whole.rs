@@ -1,0 +1,6 @@
+//! All tests of the room in one program, linked once.
+
+mod any_text;
+mod linuxcnc;
+mod machines;
+mod messages;
