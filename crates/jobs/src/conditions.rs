@@ -5,7 +5,7 @@ use machine_model::effects::Conditions;
 use machine_model::{Engine, EngineId};
 use machine_profile::{EngineError, Profile};
 
-use crate::message::{Failure, OPTION, Report};
+use crate::message::{Failure, OPTION, Report, notice};
 use crate::options::JobOptions;
 use crate::values::Condition;
 
@@ -35,14 +35,11 @@ pub fn conditions(options: &JobOptions) -> Result<Conditions, Failure> {
             };
             for place in places {
                 if place.replace(*value).is_some() {
-                    return Err(Failure::option(
-                        both!(
-                            "`--at {given}`: `{}` is given twice",
-                            "`--at {given}`: `{}` дано дважды",
-                            condition.name()
-                        ),
-                        both!("leave one", "оставьте одно"),
-                    ));
+                    return Err(Failure::usage(notice!(OPTION;
+                        "`--at {given}`: `{}` is given twice",
+                        "`--at {given}`: `{}` дано дважды", condition.name();
+                        "leave one", "оставьте одно"
+                    )));
                 }
             }
         }

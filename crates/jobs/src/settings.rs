@@ -15,7 +15,7 @@ use nc_syntax::dialect::{
 use rewrite::{Datums, Guards, Job};
 
 use crate::flow::Flow;
-use crate::message::{Failure, OPTION, Report, Source};
+use crate::message::{Failure, OPTION, Report, Source, notice};
 use crate::options::{self, JobOptions};
 pub use crate::setup::tools;
 use crate::setup::{setup, start_anywhere};
@@ -103,16 +103,12 @@ impl Settings {
         }
         let tolerance_um = options.tolerance.unwrap_or(profile.correction.tolerance_um);
         if !(tolerance_um > 0.0 && tolerance_um.is_finite()) {
-            return Err(Failure::option(
-                both!(
-                    "a tolerance of {tolerance_um} um cannot be kept",
-                    "допуск {tolerance_um} мкм выдержать нельзя"
-                ),
-                both!(
-                    "give micrometres above zero: `--tolerance 1`",
-                    "дайте микрометры больше нуля: `--tolerance 1`"
-                ),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "a tolerance of {tolerance_um} um cannot be kept",
+                "допуск {tolerance_um} мкм выдержать нельзя";
+                "give micrometres above zero: `--tolerance 1`",
+                "дайте микрометры больше нуля: `--tolerance 1`"
+            )));
         }
         let datums = datums::of(options, &profile, &setup, engine.as_ref())?;
         let engine = datums::counted_from(&datums, engine);
@@ -170,17 +166,13 @@ impl Settings {
     pub fn path_model(&self) -> Result<&dyn machine_model::PathModel, Failure> {
         self.engine.path_model().ok_or_else(|| {
             let name = self.engine.id().name();
-            Failure::option(
-                both!(
-                    "engine `{name}` reproduces a publication and corrects no programs",
-                    "метод `{name}` воспроизводит публикацию и программ не исправляет"
-                ),
-                both!(
-                    "use `--engine {}`, or `vpost solve` for single points",
-                    "возьмите `--engine {}` или, для отдельных точек, `vpost solve`",
-                    name.trim_end_matches("-published")
-                ),
-            )
+            Failure::usage(notice!(OPTION;
+                "engine `{name}` reproduces a publication and corrects no programs",
+                "метод `{name}` воспроизводит публикацию и программ не исправляет";
+                "use `--engine {}`, or `vpost solve` for single points",
+                "возьмите `--engine {}` или, для отдельных точек, `vpost solve`",
+                name.trim_end_matches("-published")
+            ))
         })
     }
 
@@ -228,17 +220,12 @@ fn guards(options: &JobOptions, dialect: &Dialect) -> Result<Guards, Failure> {
     }
     // Whether a lathe keeps X as a diameter its parameters say.
     if dialect.flow.macros == Macros::None || dialect.turning.is_some() {
-        return Err(Failure::option(
-            both!(
-                "no way is known to ask dialect {} for its work offsets",
-                "как спросить у диалекта {} его смещения нуля, неизвестно",
-                dialect.name
-            ),
-            both!(
-                "correct without `--guard`, and compare the offsets by hand",
-                "исправляйте без `--guard` и сравните смещения вручную"
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "no way is known to ask dialect {} for its work offsets",
+            "как спросить у диалекта {} его смещения нуля, неизвестно", dialect.name;
+            "correct without `--guard`, and compare the offsets by hand",
+            "исправляйте без `--guard` и сравните смещения вручную"
+        )));
     }
     Ok(Guards::Put)
 }
@@ -249,55 +236,38 @@ fn turning_dialect(dialect: Dialect, profile: &Profile) -> Result<Dialect, Failu
     let Some(turning) = &dialect.turning else {
         return match &profile.lathe {
             None => Ok(dialect),
-            Some(lathe) => Err(Failure::option(
-                both!(
-                    "dialect {name} is of mills, and {} is a lathe",
-                    "диалект {name} — фрезерный, а {} — токарный станок",
-                    lathe.chain
-                ),
-                both!("use a dialect of lathes: {}", "возьмите токарный диалект: {}", lathe_dialects()),
-            )),
+            Some(lathe) => Err(Failure::usage(notice!(OPTION;
+                "dialect {name} is of mills, and {} is a lathe",
+                "диалект {name} — фрезерный, а {} — токарный станок", lathe.chain;
+                "use a dialect of lathes: {}", "возьмите токарный диалект: {}", lathe_dialects()
+            ))),
         };
     };
     let Some(lathe) = &profile.lathe else {
-        return Err(Failure::option(
-            both!(
-                "dialect {name} is of lathes, and {} has no spindle",
-                "диалект {name} — токарный, а в {} нет шпинделя",
-                profile.chain()
-            ),
-            both!(
-                "write the chain of the lathe into the profile, like \"[w S b Z X t]\", or use a mill's dialect",
-                "впишите в профиль цепь токарного станка, например \"[w S b Z X t]\", или возьмите фрезерный диалект"
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "dialect {name} is of lathes, and {} has no spindle",
+            "диалект {name} — токарный, а в {} нет шпинделя", profile.chain();
+            "write the chain of the lathe into the profile, like \"[w S b Z X t]\", or use a mill's dialect",
+            "впишите в профиль цепь токарного станка, например \"[w S b Z X t]\", или возьмите фрезерный диалект"
+        )));
     };
     if turning.systems.is_empty() {
         return Ok(dialect);
     }
     let systems: Vec<&str> = turning.systems.iter().map(|system| system.name.as_str()).collect();
     let Some(system) = &profile.program.g_code_system else {
-        return Err(Failure::option(
-            both!(
-                "which G-code system? the profile of {} does not say",
-                "какая система G-кодов? в профиле {} не сказано",
-                lathe.chain
-            ),
-            both!(
-                "write `g_code_system = \"A\"` under `[program]`, one of: {}",
-                "впишите `g_code_system = \"A\"` в раздел `[program]`, одно из: {}",
-                systems.join(", ")
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "which G-code system? the profile of {} does not say",
+            "какая система G-кодов? в профиле {} не сказано", lathe.chain;
+            "write `g_code_system = \"A\"` under `[program]`, one of: {}",
+            "впишите `g_code_system = \"A\"` в раздел `[program]`, одно из: {}", systems.join(", ")
+        )));
     };
     dialect.in_system(system).ok_or_else(|| {
-        Failure::option(
-            both!(
-                "dialect {name} has no G-code system {system}",
-                "в диалекте {name} нет системы G-кодов {system}"
-            ),
-            both!("one of: {}", "одно из: {}", systems.join(", ")),
-        )
+        Failure::usage(notice!(OPTION;
+            "dialect {name} has no G-code system {system}", "в диалекте {name} нет системы G-кодов {system}";
+            "one of: {}", "одно из: {}", systems.join(", ")
+        ))
     })
 }
 
@@ -374,17 +344,12 @@ fn settle_lengths(options: &JobOptions, profile: &Profile, dialect: &mut Dialect
         None => return Ok(false),
         Some(BareLengths::Millimetres) => *point_free = PointFree::Unit,
         Some(BareLengths::Increments) if *point_free == PointFree::Unit => {
-            return Err(Failure::option(
-                both!(
-                    "dialect {} reads a length without a point as Z10 = Z10., not as increments",
-                    "диалект {} читает размер без точки как Z10 = Z10., а не в дискретах",
-                    dialect.name
-                ),
-                both!(
-                    "give the dialect of the control, or change `numbers.without_point` in a copy of the grammar where its manual says so",
-                    "дайте диалект этой стойки или, если так сказано в её руководстве, измените `numbers.without_point` в копии таблицы"
-                ),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "dialect {} reads a length without a point as Z10 = Z10., not as increments",
+                "диалект {} читает размер без точки как Z10 = Z10., а не в дискретах", dialect.name;
+                "give the dialect of the control, or change `numbers.without_point` in a copy of the grammar where its manual says so",
+                "дайте диалект этой стойки или, если так сказано в её руководстве, измените `numbers.without_point` в копии таблицы"
+            )));
         }
         Some(BareLengths::Increments) => {}
     }
@@ -416,16 +381,12 @@ fn declare_calls(profile: &Profile, dialect: &mut Dialect) -> Result<(), Failure
             }
         };
         if taken {
-            return Err(Failure::option(
-                both!(
-                    "the profile leaves {}{} to the control, which the table of dialect {} knows as something else",
-                    "профиль оставляет {}{} стойке, а в таблице диалекта {} это другое",
-                    call.letter,
-                    tenths / 10,
-                    dialect.name
-                ),
-                both!("remove it from `[calls]` in the profile", "уберите её из раздела `[calls]` профиля"),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "the profile leaves {}{} to the control, which the table of dialect {} knows as something else",
+                "профиль оставляет {}{} стойке, а в таблице диалекта {} это другое", call.letter, tenths / 10,
+                dialect.name;
+                "remove it from `[calls]` in the profile", "уберите её из раздела `[calls]` профиля"
+            )));
         }
         let unknown = call.unknown;
         dialect.calls.push(ControlCall { letter, tenths, program: call.program, unknown });
@@ -445,17 +406,13 @@ fn declare_harmless(profile: &Profile, dialect: &mut Dialect) -> Result<(), Fail
                 let acts =
                     row.ends_program || row.calls || row.refuse.is_some() || row.loses_position != [false; 3];
                 if acts {
-                    return Err(Failure::option(
-                        both!(
-                            "the profile calls M{number} harmless, which the table of dialect {} knows as something else",
-                            "профиль называет M{number} безобидной, а в таблице диалекта {} она значит другое",
-                            dialect.name
-                        ),
-                        both!(
-                            "remove \"M{number}\" from `harmless` under `[m_codes]`; where a tool change leaves the axes is said with `tool_change` under `[program]`",
-                            "уберите \"M{number}\" из `harmless` раздела `[m_codes]`; где оставляет оси смена инструмента, говорит `tool_change` в разделе `[program]`"
-                        ),
-                    ));
+                    return Err(Failure::usage(notice!(OPTION;
+                        "the profile calls M{number} harmless, which the table of dialect {} knows as something else",
+                        "профиль называет M{number} безобидной, а в таблице диалекта {} она значит другое",
+                        dialect.name;
+                        "remove \"M{number}\" from `harmless` under `[m_codes]`; where a tool change leaves the axes is said with `tool_change` under `[program]`",
+                        "уберите \"M{number}\" из `harmless` раздела `[m_codes]`; где оставляет оси смена инструмента, говорит `tool_change` в разделе `[program]`"
+                    )));
                 }
             }
         }
@@ -480,14 +437,11 @@ fn orientation(profile: &Profile, options: &JobOptions, engine: &dyn Engine) -> 
         both!("correct the tip alone: `--orientation xyz`", "исправляйте только вершину: `--orientation xyz`")
     };
     if profile.has_rotary().iter().filter(|has| **has).count() != 2 {
-        return Err(Failure::option(
-            both!(
-                "directions cannot be corrected on a machine with other than two rotary axes: {}",
-                "направления нельзя исправлять на станке, у которого не две поворотные оси: {}",
-                profile.chain()
-            ),
-            help(),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "directions cannot be corrected on a machine with other than two rotary axes: {}",
+            "направления нельзя исправлять на станке, у которого не две поворотные оси: {}", profile.chain();
+            help()
+        )));
     }
     let proven = engine.path_model().is_some_and(|model| {
         let at = Command {
@@ -503,13 +457,11 @@ fn orientation(profile: &Profile, options: &JobOptions, engine: &dyn Engine) -> 
             && !model.has_rotary_play()
     });
     if !proven {
-        return Err(Failure::option(
-            both!(
-                "directions are corrected by engine `rigid-body` alone, without [[effect]] entries and lost motion of axes",
-                "направления исправляет только метод `rigid-body`, без разделов [[effect]] и без люфта осей"
-            ),
-            help(),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "directions are corrected by engine `rigid-body` alone, without [[effect]] entries and lost motion of axes",
+            "направления исправляет только метод `rigid-body`, без разделов [[effect]] и без люфта осей";
+            help()
+        )));
     }
     Ok(Orientation::Full(profile.correction.singularity))
 }
@@ -537,13 +489,11 @@ fn declare_switches(profile: &Profile, dialect: &mut Dialect) {
 /// None was given.
 pub fn machine(options: &JobOptions) -> Result<&Path, Failure> {
     options.machine.as_deref().ok_or_else(|| {
-        Failure::option(
-            both!("which machine? no profile was given", "какой станок? профиль не задан"),
-            both!(
-                "add `-m PROFILE.toml`, for example `-m machine-profiles/stan_s500.toml`",
-                "добавьте `-m PROFILE.toml`, например `-m machine-profiles/stan_s500.toml`"
-            ),
-        )
+        Failure::usage(notice!(OPTION;
+            "which machine? no profile was given", "какой станок? профиль не задан";
+            "add `-m PROFILE.toml`, for example `-m machine-profiles/stan_s500.toml`",
+            "добавьте `-m PROFILE.toml`, например `-m machine-profiles/stan_s500.toml`"
+        ))
     })
 }
 
@@ -555,17 +505,12 @@ pub fn setup_tool(profile: &Profile) -> [f64; 3] {
 
 fn dialect(options: &JobOptions, profile: &Profile) -> Result<Dialect, Failure> {
     let Some(name) = options.dialect.as_deref().or(profile.control.as_deref()) else {
-        return Err(Failure::option(
-            both!(
-                "which dialect? neither the profile's `control` nor `--dialect` says",
-                "какой диалект? не говорят ни `control` профиля, ни `--dialect`"
-            ),
-            both!(
-                "add `--dialect D`, one of: {}",
-                "добавьте `--dialect D`, одно из: {}",
-                nc_dialect::builtin_names().join(", ")
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "which dialect? neither the profile's `control` nor `--dialect` says",
+            "какой диалект? не говорят ни `control` профиля, ни `--dialect`";
+            "add `--dialect D`, one of: {}",
+            "добавьте `--dialect D`, одно из: {}", nc_dialect::builtin_names().join(", ")
+        )));
     };
     load_dialect(name)
 }
@@ -598,7 +543,7 @@ fn no_dialect(code: Code, name: &str) -> Diagnostic {
         "одно из: {}; или путь к файлу таблицы, который кончается на .toml",
         names.join(", ")
     ));
-    Diagnostic::error(code, both!("there is no dialect `{name}`", "диалекта `{name}` нет")).help(help)
+    notice!(code; "there is no dialect `{name}`", "диалекта `{name}` нет"; help)
 }
 
 /// Checks that there is the dialect which a profile names.

@@ -8,7 +8,7 @@ use diagnostic::{Code, Text, both};
 use machine_model::{Axis, Command, EngineId, Interpolation, PathModel, Six, Vector};
 use machine_profile::Profile;
 
-use crate::message::{Deed, Failure, Messages};
+use crate::message::{Deed, Failure, Messages, OPTION, notice};
 use crate::number::short;
 use crate::{file, profile};
 
@@ -141,31 +141,25 @@ fn curves_lost(profile: &Profile, format: Format) -> Option<Text> {
 pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure> {
     let profile = profile::load(&arguments.profile)?.profile;
     if profile.lathe.is_some() && arguments.format == Format::Lattice {
-        return Err(Failure::option(
-            both!(
-                "a lathe's errors are those of a radius about the spindle: no lattice of vectors holds them",
-                "погрешности токарного станка — погрешности радиуса вокруг шпинделя: решётка векторов их не вмещает"
-            ),
-            both!(
-                "write `--format linuxcnc`, `isg` or `csv`; the wear of X is in `vpost predict --lathe PROGRAM --wear`",
-                "напишите `--format linuxcnc`, `isg` или `csv`; износ X даёт `vpost predict --lathe PROGRAM --wear`"
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "a lathe's errors are those of a radius about the spindle: no lattice of vectors holds them",
+            "погрешности токарного станка — погрешности радиуса вокруг шпинделя: решётка векторов их не вмещает";
+            "write `--format linuxcnc`, `isg` or `csv`; the wear of X is in `vpost predict --lathe PROGRAM --wear`",
+            "напишите `--format linuxcnc`, `isg` или `csv`; износ X даёт `vpost predict --lathe PROGRAM --wear`"
+        )));
     }
     if !(arguments.step > 0.0 && arguments.step.is_finite()) {
-        return Err(Failure::option(
-            both!("a step is above zero", "шаг больше нуля"),
-            both!("write `--step 50`", "напишите `--step 50`"),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "a step is above zero", "шаг больше нуля";
+            "write `--step 50`", "напишите `--step 50`"
+        )));
     }
     if profile.correction.engine == EngineId::Field && arguments.format != Format::Lattice {
-        return Err(Failure::option(
-            both!(
-                "the profile corrects by error vectors, which are no functions of axes",
-                "профиль исправляет по векторам погрешности, а это не функции осей"
-            ),
-            both!("write them as a lattice: `--format lattice`", "выведите их решёткой: `--format lattice`"),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "the profile corrects by error vectors, which are no functions of axes",
+            "профиль исправляет по векторам погрешности, а это не функции осей";
+            "write them as a lattice: `--format lattice`", "выведите их решёткой: `--format lattice`"
+        )));
     }
     std::fs::create_dir_all(&arguments.folder)
         .map_err(|error| Failure::file(&file::name(&arguments.folder), Deed::Make, &error))?;
@@ -188,13 +182,11 @@ pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure
         lost.push(both!("the profile's [[effect]] entries", "разделов [[effect]] профиля"));
     }
     if !lost.is_empty() {
-        let message =
-            both!("this form does not hold {}", "эта форма не вмещает {:#}", Text::join(&lost, "; "));
-        let help = both!(
+        messages.warning(notice!(LOST;
+            "this form does not hold {}", "эта форма не вмещает {:#}", Text::join(&lost, "; ");
             "correct programs with vpost to have all of the model; never both: what a control compensates must not stand in the profile as well",
             "чтобы была вся модель, исправляйте программы с vpost; но не оба сразу: то, что компенсирует стойка, не должно стоять и в профиле"
-        );
-        messages.warn(LOST, message, help);
+        ));
     }
     Ok(())
 }
@@ -295,11 +287,11 @@ fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<Text>, Failure> 
     // Counted before there are any.
     let points: f64 = cells.iter().map(|cells| cells + 1.0).product();
     if points > MOST_POINTS {
-        let message = both!(
+        return Err(Failure::usage(notice!(OPTION;
             "a lattice of {points:.3e} points, more than {MOST_POINTS:e}",
-            "решётка в {points:.3e} точек, больше {MOST_POINTS:e}"
-        );
-        return Err(Failure::option(message, both!("use a larger `--step`", "возьмите `--step` больше")));
+            "решётка в {points:.3e} точек, больше {MOST_POINTS:e}";
+            "use a larger `--step`", "возьмите `--step` больше"
+        )));
     }
     let places: [Vec<f64>; 3] = [0, 1, 2].map(|i| {
         let range = volume.0[i];

@@ -17,11 +17,11 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use blake3::{Hash, Hasher};
-use diagnostic::{Code, Diagnostic, both};
+use diagnostic::{Code, both};
 
 use crate::file::{self, Place};
 use crate::growing::{GrowingFile, Nursery};
-use crate::message::{Deed, Failure, Report};
+use crate::message::{Deed, Failure, Report, notice};
 use crate::to_disk;
 
 /// Someone else works in the output folder.
@@ -233,11 +233,11 @@ impl Kind {
         } else {
             both!("not what vpost makes there", "не то, что создаёт там vpost")
         };
-        let message = both!("{} is {what}", "{} — {what:#}", file::name(path));
-        Err(Failure::usage(Diagnostic::error(NOT_OURS, message).help(both!(
+        Err(Failure::usage(notice!(NOT_OURS;
+            "{} is {what}", "{} — {what:#}", file::name(path);
             "remove it, or give another output folder with `-O`",
             "уберите или дайте другую выходную папку ключом `-O`"
-        ))))
+        )))
     }
 }
 
@@ -274,14 +274,11 @@ fn share(lock: &File) -> bool {
 
 /// Someone else works there.
 fn busy(root: &Path) -> Failure {
-    let diagnostic = Diagnostic::error(
-        BUSY,
-        both!("another vpost batch is at work in {}", "в {} работает другой vpost batch", root.display()),
-    )
-    .help(both!(
+    let diagnostic = notice!(BUSY;
+        "another vpost batch is at work in {}", "в {} работает другой vpost batch", root.display();
         "let it end, or give a folder of its own with `-O`",
         "дождитесь конца или дайте отдельную папку ключом `-O`"
-    ));
+    );
     Failure::Later(Report { source: None, diagnostics: vec![diagnostic] })
 }
 

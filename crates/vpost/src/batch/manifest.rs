@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Code, Text, both};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ use super::inputs::Item;
 use super::job::Job;
 use crate::arguments::{JobOptions, Shared};
 use crate::file;
-use crate::message::{Deed, Failure, Messages};
+use crate::message::{Deed, Failure, Messages, notice};
 
 /// The manifest cannot be used.
 const MANIFEST: Code = Code(1010);
@@ -104,10 +104,10 @@ pub(crate) fn text(items: &[Item], output: &Path, job: &Job, shared: &Shared) ->
 fn line(text: &mut Vec<u8>, value: &impl Serialize) -> Result<(), Failure> {
     // Only the name of a file or folder can be what JSON does not hold.
     serde_json::to_writer(&mut *text, value).map_err(|error| {
-        unusable(
-            both!("the plan cannot be written: {error}", "план не записать: {error}"),
-            both!("give files and folders names that are UTF-8", "дайте файлам и папкам имена в UTF-8"),
-        )
+        Failure::usage(notice!(MANIFEST;
+            "the plan cannot be written: {error}", "план не записать: {error}";
+            "give files and folders names that are UTF-8", "дайте файлам и папкам имена в UTF-8"
+        ))
     })?;
     text.push(b'\n');
     Ok(())
@@ -140,17 +140,12 @@ fn include_hash(folders: &[PathBuf]) -> Result<Option<String>, Failure> {
 pub(crate) fn write(path: &Path, text: &[u8]) -> Result<(), Failure> {
     match std::fs::read(path) {
         Ok(present) if present == text => Ok(()),
-        Ok(_) => Err(unusable(
-            both!(
-                "{} is there already, and a manifest does not change",
-                "{} уже есть, а задание не меняется",
-                path.display()
-            ),
-            both!(
-                "give another name, or delete it if no shard of it will run again",
-                "дайте другое имя или удалите его, если его части больше не пойдут"
-            ),
-        )),
+        Ok(_) => Err(Failure::usage(notice!(MANIFEST;
+            "{} is there already, and a manifest does not change",
+            "{} уже есть, а задание не меняется", path.display();
+            "give another name, or delete it if no shard of it will run again",
+            "дайте другое имя или удалите его, если его части больше не пойдут"
+        ))),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => file::write(path, text),
         Err(error) => Err(Failure::file(&file::name(path), Deed::Read, &error)),
     }
@@ -164,17 +159,12 @@ impl Manifest {
             _ => Failure::file(&file::name(path), Deed::Read, &error),
         })?;
         let damaged = |what: Text| {
-            unusable(
-                both!(
-                    "{} is no manifest as `vpost batch plan` wrote it: {what}",
-                    "{} — не задание в том виде, как его записал `vpost batch plan`: {what:#}",
-                    path.display()
-                ),
-                both!(
-                    "copy it again, or make a new one with `vpost batch plan`",
-                    "скопируйте его снова или составьте заново: `vpost batch plan`"
-                ),
-            )
+            Failure::usage(notice!(MANIFEST;
+                "{} is no manifest as `vpost batch plan` wrote it: {what}",
+                "{} — не задание в том виде, как его записал `vpost batch plan`: {what:#}", path.display();
+                "copy it again, or make a new one with `vpost batch plan`",
+                "скопируйте его снова или составьте заново: `vpost batch plan`"
+            ))
         };
         let at = text.iter().position(|byte| *byte == b'\n').map_or(text.len(), |at| at + 1);
         let (first, lines) = text.split_at(at);
@@ -188,21 +178,16 @@ impl Manifest {
             )));
         }
         if schema["version"] != env!("CARGO_PKG_VERSION") {
-            return Err(unusable(
-                both!(
-                    "{} was written by vpost {}, this is {}",
-                    "{} записан vpost {:#}, а этот — {}",
-                    path.display(),
-                    schema["version"]
+            return Err(Failure::usage(notice!(MANIFEST;
+                "{} was written by vpost {}, this is {}",
+                "{} записан vpost {:#}, а этот — {}", path.display(),
+                schema["version"]
                         .as_str()
                         .map_or(Text::pair("of another version", "другой версии"), Text::same),
-                    env!("CARGO_PKG_VERSION")
-                ),
-                both!(
-                    "run one version on all machines; another version may write other bytes",
-                    "запускайте на всех машинах одну версию: другая может записать другие байты"
-                ),
-            ));
+                env!("CARGO_PKG_VERSION");
+                "run one version on all machines; another version may write other bytes",
+                "запускайте на всех машинах одну версию: другая может записать другие байты"
+            )));
         }
         let header: Header = serde_json::from_slice(first)
             .map_err(|error| damaged(both!("line 1: {error}", "строка 1: {error}")))?;
@@ -267,19 +252,11 @@ impl Manifest {
         let shared = Shared { job: self.header.options.clone(), messages: own.messages.clone() };
         let job = Job::load(&shared, messages)?;
         let changed = |what: Text| {
-            Failure::usage(
-                Diagnostic::error(
-                    JOB_CHANGED,
-                    both!(
-                        "{what} changed since the plan was made",
-                        "{what:#}: изменилось после составления плана"
-                    ),
-                )
-                .help(both!(
-                    "bring it back, or make a new plan with `vpost batch plan`",
-                    "верните прежнее или составьте план заново: `vpost batch plan`"
-                )),
-            )
+            Failure::usage(notice!(JOB_CHANGED;
+                "{what} changed since the plan was made", "{what:#}: изменилось после составления плана";
+                "bring it back, or make a new plan with `vpost batch plan`",
+                "верните прежнее или составьте план заново: `vpost batch plan`"
+            ))
         };
         if job.hash.to_hex().as_str() != self.header.job_blake3 {
             return Err(changed(both!(
@@ -303,8 +280,4 @@ fn stays_inside(output: &str) -> bool {
     let plain =
         |part: &&str| !part.is_empty() && *part != "." && *part != ".." && !part.contains(['\\', '\0']);
     parts.iter().all(plain) && parts.first() != Some(&OWN) && !Path::new(output).has_root()
-}
-
-fn unusable(message: Text, help: Text) -> Failure {
-    Failure::usage(Diagnostic::error(MANIFEST, message).help(help))
 }

@@ -10,7 +10,7 @@ use super::arguments::Budget;
 use crate::arguments::{Outside, Shared};
 use crate::figures::{printable, triple};
 use crate::file;
-use crate::message::{Failure, Messages, OPTION};
+use crate::message::{Failure, Messages, OPTION, notice};
 use crate::points::{self, POINTS};
 use crate::predict::POINT_OUTSIDE;
 use crate::values::{Ball, Given};
@@ -221,10 +221,7 @@ fn from_file(
             "give a row for each point at which the machine is to be judged",
             "дайте по строке на каждую точку, в которой оценивать станок"
         );
-        return Err(refuse(
-            Diagnostic::error(POINTS, both!("the point file has no rows", "в файле точек нет строк"))
-                .help(help),
-        ));
+        return Err(refuse(notice!(POINTS; "the point file has no rows", "в файле точек нет строк"; help)));
     }
     if points.rows.len() > MOST {
         return Err(too_many(name, points.rows.len(), 1));
@@ -234,11 +231,10 @@ fn from_file(
     for (row, (_, command)) in points.rows.iter().enumerate() {
         if let Err(error) = machine.model().base().rotary_inside(command) {
             let error = error.text();
-            let message = both!("point {}: {error}", "точка {}: {error:#}", row + 1);
-            return Err(refuse(
-                Diagnostic::error(POINT_OUTSIDE, message)
-                    .help(both!("leave the point out", "исключите точку")),
-            ));
+            return Err(refuse(notice!(POINT_OUTSIDE;
+                "point {}: {error}", "точка {}: {error:#}", row + 1;
+                "leave the point out", "исключите точку"
+            )));
         }
         if volume.contains(&command.linear_mm) {
             continue;
@@ -259,16 +255,12 @@ fn from_file(
         outside += 1;
     }
     if outside > 0 {
-        let message = both!(
+        messages.warning(notice!(POINT_OUTSIDE;
             "{outside} of {} points lie outside the calibrated volume",
-            "вне калиброванного объёма лежат точки: {outside} из {}",
-            points.rows.len()
-        );
-        let help = both!(
+            "вне калиброванного объёма лежат точки: {outside} из {}", points.rows.len();
             "each has the error of the volume's nearest point",
             "каждой приписана погрешность ближайшей точки объёма"
-        );
-        messages.warn(POINT_OUTSIDE, message, help);
+        ));
     }
     let commands: Vec<Command> = points.rows.into_iter().map(|(_, command)| command).collect();
     let mut what = both!("from {}", "из {}", printable(name));
@@ -291,14 +283,9 @@ fn too_many(what: &str, count: usize, directions: usize) -> Failure {
     } else {
         Text::EMPTY
     };
-    let message = both!(
+    Failure::usage(notice!(OPTION;
         "{what}: {count} control points{each} are more than the {MOST} of a budget",
-        "{what}: контрольных точек{each:#} {count}, а в бюджете их не больше {MOST}"
-    );
-    Failure::usage(
-        Diagnostic::error(OPTION, message).help(both!(
-            "errors are smooth: take a coarser grid",
-            "погрешности плавны: возьмите сетку крупнее"
-        )),
-    )
+        "{what}: контрольных точек{each:#} {count}, а в бюджете их не больше {MOST}";
+        "errors are smooth: take a coarser grid", "погрешности плавны: возьмите сетку крупнее"
+    ))
 }

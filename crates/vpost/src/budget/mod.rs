@@ -15,7 +15,7 @@ use machine_model::EngineId;
 
 use crate::arguments::Shared;
 use crate::conditions::{conditions, failure};
-use crate::message::{Failure, Messages};
+use crate::message::{Failure, Messages, OPTION, notice};
 use crate::roles::Roles;
 use crate::settings::machine;
 use crate::{file, profile};
@@ -35,16 +35,12 @@ pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> R
         .writes("--json", arguments.json.as_deref())
         .are_apart()?;
     if let Some(id) = shared.job.engine().filter(|id| *id != EngineId::RigidBody) {
-        return Err(Failure::option(
-            both!(
-                "engine `{id}` has no deviations to be scaled one by one",
-                "у метода `{id}` нет отклонений, которые можно менять по одному"
-            ),
-            both!(
-                "leave `--engine` out: a budget is of the rigid-body model",
-                "уберите `--engine`: бюджет считается по модели твёрдых тел"
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "engine `{id}` has no deviations to be scaled one by one",
+            "у метода `{id}` нет отклонений, которые можно менять по одному";
+            "leave `--engine` out: a budget is of the rigid-body model",
+            "уберите `--engine`: бюджет считается по модели твёрдых тел"
+        )));
     }
     let target_mm = arguments.target.map(target_mm).transpose()?;
     let model = profile.machine(&conditions(&shared.job)?).map_err(|error| failure(&error))?;
@@ -69,27 +65,19 @@ pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> R
     let target = target_mm.map(|mm| (mm, keep));
     let study = study::Study::new(profile.name, machine, points, from_zero, target);
     if study.moves_nothing() {
-        let message = both!(
+        return Err(Failure::usage(notice!(NO_DEVIATIONS;
             "no deviation moves any of the control points",
-            "ни одно отклонение не сдвигает контрольных точек"
-        );
-        let help = both!(
+            "ни одно отклонение не сдвигает контрольных точек";
             "take points away from the machine's zero, or with a tool: angles need an arm",
             "возьмите точки вдали от нуля станка или с инструментом: углам нужно плечо"
-        );
-        return Err(Failure::asks(NO_DEVIATIONS, message, help));
+        )));
     }
     if let Some(why) = study.target.as_ref().and_then(study::Target::out_of_reach) {
-        let message = both!(
-            "{} um cannot be reached: {why}",
-            "{} мкм недостижимы: {why:#}",
-            arguments.target.unwrap_or(0.0)
-        );
-        let help = both!(
+        messages.warning(notice!(OUT_OF_REACH;
+            "{} um cannot be reached: {why}", "{} мкм недостижимы: {why:#}", arguments.target.unwrap_or(0.0);
             "keep fewer deviations as they are (`--keep`), or raise `--target`",
             "сохраняйте меньше отклонений (`--keep`) или увеличьте `--target`"
-        );
-        messages.warn(OUT_OF_REACH, message, help);
+        ));
     }
     if let Some(path) = &arguments.json {
         file::write(path, &json::bytes(&study))?;
@@ -104,20 +92,15 @@ fn target_mm(target_um: f64) -> Result<f64, Failure> {
         return Ok(target_um * 1e-3);
     }
     if target_um > FARTHEST_UM {
-        let message =
-            both!("`--target {target_um}` is more than a metre", "`--target {target_um}` — больше метра");
-        return Err(Failure::option(
-            message,
-            both!("give micrometres: `--target 50`", "дайте микрометры: `--target 50`"),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "`--target {target_um}` is more than a metre", "`--target {target_um}` — больше метра";
+            "give micrometres: `--target 50`", "дайте микрометры: `--target 50`"
+        )));
     }
-    Err(Failure::option(
-        both!(
-            "`--target {target_um}`: no machine is that good",
-            "`--target {target_um}`: таких точных станков нет"
-        ),
-        both!("give micrometres above zero: `--target 50`", "дайте микрометры больше нуля: `--target 50`"),
-    ))
+    Err(Failure::usage(notice!(OPTION;
+        "`--target {target_um}`: no machine is that good", "`--target {target_um}`: таких точных станков нет";
+        "give micrometres above zero: `--target 50`", "дайте микрометры больше нуля: `--target 50`"
+    )))
 }
 
 /// Which deviations stay as they are.
@@ -132,13 +115,11 @@ fn keep(arguments: &Budget, machine: &Machine) -> Result<Vec<bool>, Failure> {
         }
         if !known {
             let names: Vec<&str> = machine.deviations().iter().map(|d| d.name.as_str()).collect();
-            return Err(Failure::option(
-                both!(
-                    "`--keep {given}`: this machine has no such deviation",
-                    "`--keep {given}`: такого отклонения у станка нет"
-                ),
-                both!("one of: {}", "одно из: {}", names.join(", ")),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "`--keep {given}`: this machine has no such deviation",
+                "`--keep {given}`: такого отклонения у станка нет";
+                "one of: {}", "одно из: {}", names.join(", ")
+            )));
         }
     }
     Ok(keep)

@@ -15,13 +15,13 @@ use machine_model::{
 use machine_profile::{Profile, ProfileText};
 
 use crate::arguments::Shared;
-use crate::message::{Failure, Messages};
+use crate::message::{Failure, Messages, OPTION, notice};
 use crate::values::{Given, Point3};
 use crate::{conditions, file};
 
 use super::bar_readings::{FAR, Measured, Readings};
 use super::bar_report::{before_and_after, circle_report, rotary_report};
-use super::codes::{AXES, CONTRADICTED, OPEN, OUTLIER, UNSAID, failure, question};
+use super::codes::{AXES, CONTRADICTED, OPEN, OUTLIER, QUESTION, UNSAID, failure};
 use super::output::{Output, Target};
 use super::page::{Bars, Shown};
 use super::sources::mean;
@@ -65,23 +65,19 @@ impl Base {
             // Where no rotary axis turns, the order of perfect axes makes no difference.
             let any = if readings.turn_something() { None } else { Some("[w X Y b Z t]") };
             let Some(chain) = arguments.target.chain.as_deref().or(any) else {
-                return Err(question(
-                    both!("which axis of the table carries which?", "какая ось стола несёт какую?"),
-                    both!(
-                        "add `-m PROFILE.toml` of the machine, or `--chain \"[w C A X Y b Z t]\"`: axes from the workpiece on",
-                        "добавьте `-m PROFILE.toml` станка или `--chain \"[w C A X Y b Z t]\"`: оси, начиная от детали"
-                    ),
-                ));
+                return Err(Failure::usage(notice!(QUESTION;
+                    "which axis of the table carries which?", "какая ось стола несёт какую?";
+                    "add `-m PROFILE.toml` of the machine, or `--chain \"[w C A X Y b Z t]\"`: axes from the workpiece on",
+                    "добавьте `-m PROFILE.toml` станка или `--chain \"[w C A X Y b Z t]\"`: оси, начиная от детали"
+                )));
             };
             let chain = Chain::parse(chain).map_err(|error| {
                 let error = error.text();
-                Failure::option(
-                    both!("`--chain {chain}`: {error}", "`--chain {chain}`: {error:#}"),
-                    both!(
-                        "write the axes as in `--chain \"[w C A X Y b Z t]\"`",
-                        "напишите оси так: `--chain \"[w C A X Y b Z t]\"`"
-                    ),
-                )
+                Failure::usage(notice!(OPTION;
+                    "`--chain {chain}`: {error}", "`--chain {chain}`: {error:#}";
+                    "write the axes as in `--chain \"[w C A X Y b Z t]\"`",
+                    "напишите оси так: `--chain \"[w C A X Y b Z t]\"`"
+                ))
             })?;
             let [low, high] = readings.span_mm();
             let linear = [0, 1, 2].map(|i| {
@@ -112,15 +108,12 @@ impl Base {
         };
         let chain = &self.description.chain;
         if let Some(axis) = chain.head().iter().find(|axis| readings.turn(**axis)) {
-            let message = both!(
+            return Err(Failure::usage(notice!(AXES;
                 "{axis} turns the tool on {chain}: a ball bar calibrates axes that turn the table, not those of a head",
-                "{axis} поворачивает на {chain} инструмент: телескопическим измерителем калибруют оси стола, а не головы"
-            );
-            let help = both!(
+                "{axis} поворачивает на {chain} инструмент: телескопическим измерителем калибруют оси стола, а не головы";
                 "leave the runs of {axis} out; location errors known from elsewhere go into [rotary.{axis}] of the profile",
                 "исключите проходы {axis}; известные из других измерений погрешности положения оси впишите в [rotary.{axis}] профиля"
-            );
-            return Err(Failure::asks(AXES, message, help));
+            )));
         }
         for axis in self.description.chain.table().to_vec() {
             let own = &mut self.description.rotary[axis.direction()];
@@ -132,16 +125,13 @@ impl Base {
                     beside[axis.direction()] = 0.0;
                     if beside.norm() > SAME_MM {
                         let [x, y, z] = own.centre_mm.into();
-                        let message = both!(
+                        return Err(Failure::usage(notice!(AXES;
                             "`--crossing {text}` lies {:.3} mm beside the axis of {axis}, which goes through centre_mm = [{x}, {y}, {z}]",
                             "`--crossing {text}` лежит в {:.3} мм от оси {axis}, которая проходит через centre_mm = [{x}, {y}, {z}]",
-                            beside.norm()
-                        );
-                        let help = both!(
+                            beside.norm();
                             "leave `--crossing` out, or correct centre_mm in the profile",
                             "уберите `--crossing` или исправьте centre_mm в профиле"
-                        );
-                        return Err(Failure::asks(AXES, message, help));
+                        )));
                     }
                 }
                 Some((_, at)) => {
@@ -149,16 +139,12 @@ impl Base {
                     self.centred.push(axis);
                 }
                 None if !said && readings.turn(axis) => {
-                    return Err(question(
-                        both!(
-                            "where is the axis of {axis}? its location errors count from there",
-                            "где ось {axis}? её погрешности положения отсчитываются оттуда"
-                        ),
-                        both!(
-                            "add `--crossing X,Y,Z`, or `-m PROFILE` with centre_mm of the axes of the table",
-                            "добавьте `--crossing X,Y,Z` или `-m PROFILE` с centre_mm осей стола"
-                        ),
-                    ));
+                    return Err(Failure::usage(notice!(QUESTION;
+                        "where is the axis of {axis}? its location errors count from there",
+                        "где ось {axis}? её погрешности положения отсчитываются оттуда";
+                        "add `--crossing X,Y,Z`, or `-m PROFILE` with centre_mm of the axes of the table",
+                        "добавьте `--crossing X,Y,Z` или `-m PROFILE` с centre_mm осей стола"
+                    )));
                 }
                 None => {}
             }
@@ -168,13 +154,11 @@ impl Base {
 
     fn machine_without_effects(&self) -> Result<RigidBody, Failure> {
         RigidBody::new(self.description.clone()).map_err(|error| {
-            question(
-                error.text(),
-                both!(
-                    "run `vpost profile check` on the base",
-                    "запустите `vpost profile check` для исходного профиля"
-                ),
-            )
+            Failure::usage(notice!(QUESTION;
+                error.text();
+                "run `vpost profile check` on the base",
+                "запустите `vpost profile check` для исходного профиля"
+            ))
         })
     }
 
@@ -215,17 +199,13 @@ impl Base {
         for (i, axis) in Axis::ALL[..3].iter().enumerate() {
             let (at, range) = (command.linear_mm[i], volume.0[i]);
             if at < range.low - SAME_MM || at > range.high + SAME_MM {
-                let message = both!(
+                return Err(Failure::usage(notice!(AXES;
                     "run `{name}`: {axis} at {at:.3} mm lies outside what the base profile knows, {:.3} to {:.3} mm",
                     "проход `{name}`: {axis} в {at:.3} мм лежит вне того, что знает исходный профиль, от {:.3} до {:.3} мм",
-                    range.low,
-                    range.high
-                );
-                let help = both!(
+                    range.low, range.high;
                     "is `-m` the profile of this machine? x_mm y_mm z_mm are machine coordinates",
                     "в `-m` профиль этого станка? x_mm y_mm z_mm — координаты станка"
-                );
-                return Err(Failure::asks(AXES, message, help));
+                )));
             }
         }
         Ok(())
@@ -436,16 +416,13 @@ fn write_circles(output: &mut Output, found: &CircleCalibration, messages: &Mess
     }
     for (name, term) in super::bar_report::SCALES.into_iter().zip(found.mismatch) {
         if let Some(term) = term.filter(|t| t.value.abs() > t.half_width_95.max(SEEN_RATIO)) {
-            let message = both!(
+            messages.warning(notice!(UNSAID;
                 "scale {name} of {:.1} um/m is not written: a bar does not say which of the two axes it is",
                 "масштаб {name} {:.1} мкм/м не записан: измеритель не говорит, какой из двух осей он",
-                term.value * 1e6
-            );
-            let help = both!(
+                term.value * 1e6;
                 "measure the positioning of both axes with an interferometer",
                 "измерьте позиционирование обеих осей интерферометром"
-            );
-            messages.warn(UNSAID, message, help);
+            ));
         }
     }
 }

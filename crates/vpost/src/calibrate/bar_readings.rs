@@ -9,7 +9,7 @@ use diagnostic::{Code, Diagnostic, Text, both};
 use machine_model::{Axis, Command, Vector};
 use measurement_files::{Row, Sheet};
 
-use crate::message::Failure;
+use crate::message::{Failure, notice};
 
 use super::codes::{AXES, UNITS};
 use super::sources;
@@ -193,15 +193,12 @@ fn line(row: &Row<'_>, place: (usize, usize)) -> Result<Line, Failure> {
     let (length_mm, apart_mm) = (bar.length_mm, (bar.centre_mm - bar.ball_mm).norm());
     // Lengths must be near what the balls' places say.
     if (length_mm - apart_mm).abs() > FAR * apart_mm {
-        let message = both!(
+        return Err(Failure::at_cell(row, row.bar_key())(notice!(UNITS;
             "a length of {length_mm} mm, where the balls are {apart_mm:.3} mm apart",
-            "длина {length_mm} мм, а между шарами {apart_mm:.3} мм"
-        );
-        let help = both!(
+            "длина {length_mm} мм, а между шарами {apart_mm:.3} мм";
             "give the whole length in mm, not its change; and both balls' places at angle 0",
             "дайте всю длину в мм, а не её изменение; и места обоих шаров при угле 0"
-        );
-        return Err(row.refuse(UNITS, row.bar_key(), message, help).into());
+        )));
     }
     let balls = [bar.ball_mm, bar.centre_mm];
     Ok(Line { place, balls, angles_deg, length_mm, direction: bar.direction })
@@ -236,8 +233,10 @@ impl Run {
         let turning: Vec<usize> = (0..4).filter(|&k| moves(&|l| l.angles_deg[k])).collect();
         let linear = (0..3).any(|i| moves(&|l| l.balls[0][i]));
         let refuse = |code, message: Text, help: Text| {
-            let message = both!("{file}, run `{}`: {message}", "{file}, проход `{}`: {message:#}", self.name);
-            Err(Failure::usage(Diagnostic::error(code, message).help(help)))
+            Err(Failure::usage(notice!(code;
+                "{file}, run `{}`: {message}", "{file}, проход `{}`: {message:#}", self.name;
+                help
+            )))
         };
         match (turning.as_slice(), linear) {
             ([], true) => Ok(Moves::Linear),

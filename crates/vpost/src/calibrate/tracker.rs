@@ -12,9 +12,9 @@ use measurement_files::Sheet;
 use crate::arguments::Shared;
 use crate::conditions::conditions;
 use crate::file;
-use crate::message::{Failure, Messages, Report};
+use crate::message::{Failure, Messages, OPTION, Report, notice};
 
-use super::codes::{DOUBTFUL, MISSING, UNFIT, failure, question};
+use super::codes::{DOUBTFUL, MISSING, QUESTION, UNFIT, failure};
 use super::output::{Output, Target};
 use super::sources::{self, span, three};
 use super::volumetric::moved;
@@ -92,10 +92,10 @@ fn readings(
 /// `vpost calibrate tracker`
 pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     if let Some(u) = arguments.u_um.filter(|u| !(*u > 0.0 && u.is_finite())) {
-        return Err(Failure::option(
-            both!("`--u-um {u}` is no uncertainty", "`--u-um {u}` — не неопределённость"),
-            both!("give micrometres above zero", "дайте микрометры больше нуля"),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "`--u-um {u}` is no uncertainty", "`--u-um {u}` — не неопределённость";
+            "give micrometres above zero", "дайте микрометры больше нуля"
+        )));
     }
     let mut output = if arguments.target.output.is_some()
         || arguments.target.against.is_some()
@@ -151,10 +151,10 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
         }
     }
     let Ok(traverses) = <[MeanTraverse; 3]>::try_from(traverses) else {
-        return Err(Failure::option(
-            both!("three traverses are needed", "нужны три прохода"),
-            both!("give X.csv Y.csv Z.csv", "дайте X.csv Y.csv Z.csv"),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "three traverses are needed", "нужны три прохода";
+            "give X.csv Y.csv Z.csv", "дайте X.csv Y.csv Z.csv"
+        )));
     };
     let frame = match arguments.frame {
         FrameName::AsMeasured => Frame::AsMeasured,
@@ -227,11 +227,10 @@ fn judge(changed: &TrackerMachine, has_base: bool, messages: &Messages) -> Resul
     let help = both!("measure each node more often", "измеряйте каждый узел больше раз");
     // A base corrects whatever it did before; without one a correction has to be better than none.
     if !has_base && changed.field_u95_mm > changed.field_p95_mm {
-        let message = both!(
-            "these traverses cannot carry a correction: {field}",
-            "эти проходы не дают поправки: {field:#}"
-        );
-        return Err(Failure::alone(UNFIT, message, help));
+        return Err(Failure::unfit(notice!(UNFIT;
+            "these traverses cannot carry a correction: {field}", "эти проходы не дают поправки: {field:#}";
+            help
+        )));
     }
     if !has_base && changed.field_u95_mm > 0.5 * changed.field_p95_mm {
         messages.warn(DOUBTFUL, field, help);
@@ -264,11 +263,11 @@ fn judge_chords(found: &TrackerCalibration, shared: &Shared, messages: &Messages
         messages.warn(DOUBTFUL, message, help);
         return Ok(());
     }
-    let message = both!(
+    Err(Failure::unfit(notice!(UNFIT;
         "these traverses cannot carry a correction by chords: {message}",
-        "эти проходы не дают поправки по хордам: {message:#}"
-    );
-    Err(Failure::alone(UNFIT, message, help))
+        "эти проходы не дают поправки по хордам: {message:#}";
+        help
+    )))
 }
 
 /// The interval tables: directions of every interval with their standard uncertainties.
@@ -314,13 +313,11 @@ fn report(
 ) -> Result<Text, Failure> {
     let k = arguments.interval;
     let (Some(g), Some(r01)) = (found.directions(k), found.offset_mm(k)) else {
-        return Err(question(
-            both!("the traverses have no interval {k}", "интервала {k} в проходах нет"),
-            both!(
-                "intervals are counted from 0; give one that all three have",
-                "интервалы считаются от 0; дайте такой, какой есть во всех трёх"
-            ),
-        ));
+        return Err(Failure::usage(notice!(QUESTION;
+            "the traverses have no interval {k}", "интервала {k} в проходах нет";
+            "intervals are counted from 0; give one that all three have",
+            "интервалы считаются от 0; дайте такой, какой есть во всех трёх"
+        )));
     };
     let mut out = Text::EMPTY;
     for (axis, traverse) in found.traverses.iter().enumerate() {

@@ -13,9 +13,9 @@ use measurement_files::{Row, micro, numbered};
 use crate::arguments::Shared;
 use crate::conditions::conditions;
 use crate::file;
-use crate::message::{Failure, Messages};
+use crate::message::{Failure, Messages, notice};
 
-use super::codes::{DOUBTFUL, UNFIT, question};
+use super::codes::{DOUBTFUL, QUESTION, UNFIT};
 use super::output::{Output, Target};
 use super::sources::{self, span, three};
 
@@ -61,13 +61,11 @@ fn read(
             ),
         )?;
         if !["dx_um", "dy_um", "dz_um", "xm_mm", "length_mm"].iter().any(|c| sheet.has(c)) {
-            return Err(question(
-                both!("{} has no reading", "в {} нет показаний", sheet.name()),
-                both!(
-                    "give dx_um,dy_um,dz_um, or xm_mm,ym_mm,zm_mm, or length_mm with bx_mm,by_mm,bz_mm",
-                    "дайте dx_um,dy_um,dz_um, или xm_mm,ym_mm,zm_mm, или length_mm с bx_mm,by_mm,bz_mm"
-                ),
-            ));
+            return Err(Failure::usage(notice!(QUESTION;
+                "{} has no reading", "в {} нет показаний", sheet.name();
+                "give dx_um,dy_um,dz_um, or xm_mm,ym_mm,zm_mm, or length_mm with bx_mm,by_mm,bz_mm",
+                "дайте dx_um,dy_um,dz_um, или xm_mm,ym_mm,zm_mm, или length_mm с bx_mm,by_mm,bz_mm"
+            )));
         }
         if sheet.has("length_mm") {
             sheet.need(
@@ -135,39 +133,29 @@ fn judge(found: &VolumetricCalibration, messages: &Messages) -> Result<(), Failu
     if let Some(([before, after], count)) = found.holdout
         && found.refuted
     {
-        let message = both!(
+        return Err(Failure::unfit(notice!(UNFIT;
             "{count} points that the fit did not see get no better by it: {:.2} um RMS before, {:.2} um after",
             "точки, оставленные для проверки ({count}), лучше не становятся: {:.2} мкм до, {:.2} мкм после (среднеквадратичное)",
-            before * 1e3,
-            after * 1e3
-        );
-        let help = both!(
+            before * 1e3, after * 1e3;
             "measure more points, or fit less: `--nodes 3`",
             "измерьте больше точек или определяйте меньше: `--nodes 3`"
-        );
-        return Err(Failure::alone(UNFIT, message, help));
+        )));
     }
     if stated && misfit > CONTRADICTION {
-        let message = both!(
+        return Err(Failure::unfit(notice!(UNFIT;
             "the readings contradict every machine of this chain: the best one leaves {misfit:.1} times what `u_um` states",
-            "показания противоречат любому станку с такой цепью: лучший оставляет в {misfit:.1} раза больше, чем говорит `u_um`"
-        );
-        let help = both!(
+            "показания противоречат любому станку с такой цепью: лучший оставляет в {misfit:.1} раза больше, чем говорит `u_um`";
             "look for exchanged or shifted columns; if the machine is that rough, give more `--nodes` or a larger u_um",
             "ищите переставленные или сдвинутые столбцы; если станок так неровен, дайте больше `--nodes` или больший u_um"
-        );
-        return Err(Failure::alone(UNFIT, message, help));
+        )));
     }
     if stated && misfit > ROUGH {
-        let message = both!(
+        messages.warning(notice!(DOUBTFUL;
             "the best machine leaves {misfit:.1} times what `u_um` states: uncertainties are widened by as much",
-            "лучший станок оставляет в {misfit:.1} раза больше, чем говорит `u_um`: неопределённости увеличены во столько же раз"
-        );
-        let help = both!(
+            "лучший станок оставляет в {misfit:.1} раза больше, чем говорит `u_um`: неопределённости увеличены во столько же раз";
             "give more `--nodes`, or state what the readings really scatter",
             "дайте больше `--nodes` или укажите действительный разброс показаний"
-        );
-        messages.warn(DOUBTFUL, message, help);
+        ));
     }
     Ok(())
 }

@@ -1,6 +1,5 @@
 //! Finite rotations on this machine: what the first order leaves out.
 
-use diagnostic::both;
 use error_map::ErrorMap;
 use machine_model::finite_rotations::{
     OrderInterval, Threshold, Translation, Truncation, order_interval, second_order, threshold,
@@ -9,7 +8,7 @@ use machine_model::{Command, Vector};
 use machine_profile::Profile;
 
 use super::options::{Asked, command};
-use crate::message::Failure;
+use crate::message::{Failure, OPTION, notice};
 
 /// Most nodes that are looked at: the errors of machines are smooth, and each costs 1296 compositions.
 const MOST_NODES: usize = 2000;
@@ -39,13 +38,11 @@ pub(super) struct SecondOrder {
 
 pub(super) fn of(profile: &Profile, map: &ErrorMap, asked: &Asked) -> Result<SecondOrder, Failure> {
     if asked.rotary_rad != Vector::zeros() {
-        return Err(Failure::option(
-            both!(
-                "`--second-order` compares rotations of the linear axes only",
-                "`--second-order` сравнивает повороты только линейных осей"
-            ),
-            both!("leave `--rotary` out", "уберите `--rotary`"),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "`--second-order` compares rotations of the linear axes only",
+            "`--second-order` сравнивает повороты только линейных осей";
+            "leave `--rotary` out", "уберите `--rotary`"
+        )));
     }
     let volume = profile.volume();
     let step = map.grid().len().div_ceil(MOST_NODES);

@@ -14,7 +14,7 @@ use super::curves::{Curve, curves};
 use super::deformation::{self, Deformation};
 use super::options::{Asked, command};
 use super::second_order::{self, SecondOrder};
-use crate::message::Failure;
+use crate::message::{Failure, OPTION, notice};
 
 /// Targets along each body diagonal.
 const TARGETS: u32 = 41;
@@ -136,13 +136,11 @@ impl Study {
                     freedom,
                     found.map_err(|too_large| {
                         let too_large = too_large.text();
-                        Failure::option(
-                            both!("`--clamp`: {too_large}", "`--clamp`: {too_large:#}"),
-                            both!(
-                                "give the size of a box that fits, X,Y,Z in mm",
-                                "дайте габарит, который помещается: X,Y,Z в мм"
-                            ),
-                        )
+                        Failure::usage(notice!(OPTION;
+                            "`--clamp`: {too_large}", "`--clamp`: {too_large:#}";
+                            "give the size of a box that fits, X,Y,Z in mm",
+                            "дайте габарит, который помещается: X,Y,Z в мм"
+                        ))
                     })?,
                 ));
             }
@@ -176,16 +174,12 @@ fn parts(
     for (name, ranges) in &asked.regions {
         let block = grid.region(ranges);
         if block.is_empty() {
-            return Err(Failure::option(
-                both!(
-                    "`--region {name}`: no node of the grid lies in it",
-                    "`--region {name}`: в ней нет ни одного узла сетки"
-                ),
-                both!(
-                    "make it larger, or the grid finer with `--grid`",
-                    "увеличьте её или сделайте сетку мельче ключом `--grid`"
-                ),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "`--region {name}`: no node of the grid lies in it",
+                "`--region {name}`: в ней нет ни одного узла сетки";
+                "make it larger, or the grid finer with `--grid`",
+                "увеличьте её или сделайте сетку мельче ключом `--grid`"
+            )));
         }
         blocks.push((Text::same(name.as_str()), block));
     }

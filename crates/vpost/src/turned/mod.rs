@@ -6,7 +6,7 @@ mod page;
 mod surface;
 mod wear;
 
-use diagnostic::{Code, Diagnostic, both};
+use diagnostic::{Code, both};
 use machine_profile::Profile;
 use rewrite::Manner;
 use turning::Lathe;
@@ -14,7 +14,7 @@ use turning::Lathe;
 use crate::arguments::{Predict, Shared};
 use crate::conditions::{conditions, failure};
 use crate::figures::fixed;
-use crate::message::{Failure, Messages};
+use crate::message::{Failure, Messages, OPTION, notice};
 use crate::roles::Roles;
 use crate::settings::Settings;
 use crate::{expand, file};
@@ -37,26 +37,21 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
     let lathe = settings.profile.lathe(&conditions(&shared.job)?).map_err(|error| failure(&error))?;
     let lathe = lathe.ok_or_else(|| no_lathe(&settings.profile_name, &settings.profile))?;
     if !(arguments.step > 0.0 && arguments.step.is_finite()) {
-        return Err(Failure::option(
-            both!("`--step {}` is no distance", "`--step {}` — не расстояние", arguments.step),
-            both!("write millimetres, like `--step 0.5`", "напишите миллиметры, например `--step 0.5`"),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "`--step {}` is no distance", "`--step {}` — не расстояние", arguments.step;
+            "write millimetres, like `--step 0.5`", "напишите миллиметры, например `--step 0.5`"
+        )));
     }
     let name = file::name(&arguments.points);
     let text = file::read_program(&arguments.points)?;
     let cuts = read(&text, &name, &settings)?;
     let mut surface = Surface::over(&cuts, &lathe, arguments).ok_or_else(|| {
-        let diagnostic = Diagnostic::error(
-            NOTHING_TURNED,
-            both!(
-                "the program turns nothing that could be predicted",
-                "программа ничего не точит, предсказывать нечего"
-            ),
-        )
-        .help(both!(
+        let diagnostic = notice!(NOTHING_TURNED;
+            "the program turns nothing that could be predicted",
+            "программа ничего не точит, предсказывать нечего";
             "feeds (G1, G2, G3) that move along Z are needed; with `--step` there may be up to 200000 places",
             "нужны рабочие ходы (G1, G2, G3) вдоль Z; мест с шагом `--step` может быть до 200000"
-        ));
+        );
         Failure::refused(&name, &text, vec![diagnostic])
     })?;
     cuts.iter().for_each(|cut| surface.cut(cut, &lathe));
@@ -76,17 +71,11 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
 }
 
 fn no_lathe(name: &str, profile: &Profile) -> Failure {
-    Failure::option(
-        both!(
-            "{name} is no lathe: its chain is {}",
-            "{name} — не токарный станок: его цепь — {}",
-            profile.chain()
-        ),
-        both!(
-            "leave `--lathe` out, or give the profile of a lathe",
-            "уберите `--lathe` или дайте профиль токарного станка"
-        ),
-    )
+    Failure::usage(notice!(OPTION;
+        "{name} is no lathe: its chain is {}", "{name} — не токарный станок: его цепь — {}", profile.chain();
+        "leave `--lathe` out, or give the profile of a lathe",
+        "уберите `--lathe` или дайте профиль токарного станка"
+    ))
 }
 
 /// The feeds of a program, its flow executed.
