@@ -6,6 +6,7 @@ use machine_profile::{Found, Profile, TouchPlace, TouchedBy};
 use nc_program::{Setup, ToolLength};
 use rewrite::{Datum, Datums, Touch, TouchTool, Touches, Zero};
 
+use crate::map::study::WorkOffset;
 use crate::message::{Failure, OPTION, notice};
 use crate::options::{self, JobOptions};
 use crate::setup;
@@ -107,9 +108,6 @@ impl FromZero {
     }
 }
 
-/// A work offset by its name, its machine coordinate, mm, and how far its zero lies from there, mm, where touched.
-pub type OffsetFound = (String, Vector, Option<Vector>);
-
 /// How far the zeros of a profile lie from where it says, mm: what is in those that were touched of the machine's error; `None`
 /// for true ones.
 ///
@@ -119,13 +117,14 @@ pub fn of_offsets(
     options: &JobOptions,
     profile: &Profile,
     engine: &dyn Engine,
-) -> Result<Vec<OffsetFound>, Failure> {
+) -> Result<Vec<WorkOffset>, Failure> {
     let setup = setup::setup(options, profile, &Stored::default())?;
     let datums = of(options, profile, &setup, engine)?;
     let offsets = setup.work_offsets.iter().map(|(name, zero_mm)| {
         let datum =
             engine.path_model().and_then(|of| datums.of_zero(of, name.clone(), *zero_mm, &datums.tool));
-        (name.clone(), Vector::from(*zero_mm), datum.map(|datum| datum.error_mm.into()))
+        let touched_mm = datum.map(|datum| datum.error_mm.into());
+        WorkOffset { name: name.clone(), zero_mm: Vector::from(*zero_mm), touched_mm }
     });
     Ok(offsets.collect())
 }

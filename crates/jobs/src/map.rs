@@ -1,5 +1,11 @@
 //! The error over the volume: where it is asked for, and what it is there.
 
+pub mod curves;
+pub mod deformation;
+pub mod dominant;
+pub mod second_order;
+pub mod study;
+
 use diagnostic::{Diagnostic, Speaks, Text, both};
 use error_map::{ErrorMap, Grid, Nodes};
 use machine_model::{Command, Engine, PathModel, Range, SolveError, Vector, Volume};
@@ -86,8 +92,7 @@ pub fn outside(
                 "the nodes outside have the error of the volume's nearest point",
                 "у узлов снаружи погрешность ближайшей точки объёма"
             );
-            let diagnostic = Diagnostic::warning(POINT_OUTSIDE, message).help(help);
-            warnings.push(Report { source: None, diagnostics: vec![diagnostic] });
+            warnings.push(Report::warning(Diagnostic::error(POINT_OUTSIDE, message).help(help)));
         }
     }
     Ok(warnings)

@@ -193,7 +193,7 @@ impl Settings {
     ///
     /// # Errors
     /// The engine corrects no programs.
-    pub fn job<'a>(&'a self, force: bool, provenance: &'a str) -> Result<Job<'a>, Failure> {
+    pub fn job<'a>(&'a self, provenance: &'a str) -> Result<Job<'a>, Failure> {
         Ok(Job {
             dialect: &self.dialect,
             setup: &self.setup,
@@ -205,7 +205,7 @@ impl Settings {
             options: self.options,
             decimals_mm: self.decimals_mm(),
             rotary_steps: self.profile.resolution_deg.map(decimal_steps),
-            force,
+            force: false,
             provenance,
             guards: self.guards,
             blending_mm: self.profile.blending_mm,

@@ -44,7 +44,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 pub use jobs::values;
-use jobs::{conditions, expand, figures, points, profile, summary};
+use jobs::{conditions, expand, figures, profile, summary};
 
 use diagnostic::Language;
 

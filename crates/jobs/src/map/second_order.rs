@@ -7,7 +7,7 @@ use machine_model::finite_rotations::{
 use machine_model::{Command, Vector};
 use machine_profile::Profile;
 
-use super::options::{Asked, command};
+use super::study::Asked;
 use crate::message::{Failure, OPTION, notice};
 
 /// Most nodes that are looked at: the errors of machines are smooth, and each costs 1296 compositions.
@@ -18,21 +18,28 @@ const LIMIT_MM: f64 = 1e-3;
 const PUBLISHED_TOOL_MM: f64 = 10.0;
 
 /// Equations (20) to (22) over the map.
-pub(super) struct SecondOrder {
+pub struct SecondOrder {
     /// Where exact product and first-order sum of the whole chain differ most, and by how much, mm.
     pub chain_place_mm: Vector,
+    /// By how much, mm.
     pub chain_difference_mm: f64,
     /// Angles at which that difference reaches a micrometre.
     pub threshold: Option<Threshold>,
+    /// What products of errors are measured by, mm.
     pub limit_mm: f64,
     /// Where the order of rotations matters most, in the published form.
     pub place_mm: Vector,
+    /// From gauge point to tip, mm.
     pub tool_mm: Vector,
     /// |δ| to first order, all plus, all minus, mm.
     pub first_mm: f64,
+    /// All angles positive.
     pub plus_mm: f64,
+    /// All negative.
     pub minus_mm: f64,
+    /// Over all orders of rotations.
     pub interval: OrderInterval,
+    /// Looked at.
     pub nodes: usize,
 }
 
@@ -48,7 +55,7 @@ pub(super) fn of(profile: &Profile, map: &ErrorMap, asked: &Asked) -> Result<Sec
     let step = map.grid().len().div_ceil(MOST_NODES);
     let commands: Vec<Command> = (0..map.grid().len())
         .step_by(step)
-        .map(|index| command(asked, volume.nearest(&map.grid().place_mm(index)), [0; 3]))
+        .map(|index| asked.command(volume.nearest(&map.grid().place_mm(index)), [0; 3]))
         .collect();
     let machine = &profile.description;
     let chain = second_order(machine, &commands).expect("a profile is a machine, a grid has nodes");
