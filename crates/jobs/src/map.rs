@@ -1,5 +1,6 @@
 //! The error over the volume: where it is asked for, and what it is there.
 
+pub mod asked;
 pub mod curves;
 pub mod deformation;
 pub mod dominant;

@@ -101,15 +101,7 @@ impl Settings {
             dialect.output.arc_radius_tolerance_mm = mm;
             dialect.output.arc_radius_tolerance_inch = None;
         }
-        let tolerance_um = options.tolerance.unwrap_or(profile.correction.tolerance_um);
-        if !(tolerance_um > 0.0 && tolerance_um.is_finite()) {
-            return Err(Failure::usage(notice!(OPTION;
-                "a tolerance of {tolerance_um} um cannot be kept",
-                "допуск {tolerance_um} мкм выдержать нельзя";
-                "give micrometres above zero: `--tolerance 1`",
-                "дайте микрометры больше нуля: `--tolerance 1`"
-            )));
-        }
+        let tolerance_um = tolerance_um(options, &profile)?;
         let datums = datums::of(options, &profile, &setup, engine.as_ref())?;
         let engine = datums::counted_from(&datums, engine);
         let orientation = orientation(&profile, options, engine.as_ref())?;
@@ -119,15 +111,11 @@ impl Settings {
         }
         let warning = conditions::temperature(&profile, options, tolerance_um)?;
         let doubts = conditions::doubts(&profile, engine_id);
-        let outside = match (options.outside, profile.correction.outside) {
-            (Some(options::Outside::Refuse), _) | (None, machine_profile::Outside::Refuse) => Outside::Refuse,
-            (Some(options::Outside::Clamp), _) | (None, machine_profile::Outside::Clamp) => Outside::Clamp,
-        };
         let limits = Options {
             tolerance_mm: tolerance_um * 1e-3,
             accept_mm: 1e-3
                 * options.accept.or(profile.correction.accept_um).unwrap_or(ACCEPTED * tolerance_um),
-            outside,
+            outside: outside(options, &profile),
             minimum_segment_mm: profile.correction.minimum_segment_mm,
             orientation_rad: profile.correction.orientation_urad * 1e-6,
             orientation,
@@ -210,6 +198,28 @@ impl Settings {
             guards: self.guards,
             blending_mm: self.profile.blending_mm,
         })
+    }
+}
+
+/// What correction keeps to, µm.
+fn tolerance_um(options: &JobOptions, profile: &Profile) -> Result<f64, Failure> {
+    let tolerance_um = options.tolerance.unwrap_or(profile.correction.tolerance_um);
+    if !(tolerance_um > 0.0 && tolerance_um.is_finite()) {
+        return Err(Failure::usage(notice!(OPTION;
+            "a tolerance of {tolerance_um} um cannot be kept",
+            "допуск {tolerance_um} мкм выдержать нельзя";
+            "give micrometres above zero: `--tolerance 1`",
+            "дайте микрометры больше нуля: `--tolerance 1`"
+        )));
+    }
+    Ok(tolerance_um)
+}
+
+/// What becomes of motions outside the calibrated volume.
+fn outside(options: &JobOptions, profile: &Profile) -> Outside {
+    match (options.outside, profile.correction.outside) {
+        (Some(options::Outside::Refuse), _) | (None, machine_profile::Outside::Refuse) => Outside::Refuse,
+        (Some(options::Outside::Clamp), _) | (None, machine_profile::Outside::Clamp) => Outside::Clamp,
     }
 }
 

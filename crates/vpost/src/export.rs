@@ -161,8 +161,7 @@ pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure
             "write them as a lattice: `--format lattice`", "выведите их решёткой: `--format lattice`"
         )));
     }
-    std::fs::create_dir_all(&arguments.folder)
-        .map_err(|error| Failure::file(&file::name(&arguments.folder), Deed::Make, &error))?;
+    std::fs::create_dir_all(&arguments.folder).map_err(file::fails(&arguments.folder, Deed::Make))?;
     let lost = match arguments.format {
         Format::Linuxcnc => linuxcnc(&profile, &arguments.folder)?,
         Format::Isg => isg(&profile, &arguments.folder)?,

@@ -2,7 +2,7 @@
 
 use machine_model::{PathModel, Vector};
 
-use super::study::Asked;
+use super::asked::Asked;
 
 /// Places along each curve.
 const CURVE: u32 = 101;

@@ -4,7 +4,7 @@ use diagnostic::{Text, both};
 use error_map::ErrorMap;
 use machine_model::{Matrix, PathModel, Range, Vector};
 
-use super::study::Asked;
+use super::asked::Asked;
 
 /// Of one cell, in its middle.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use machine_model::{EngineId, PathModel, Vector, WithEffects};
 use machine_profile::Profile;
 use rayon::prelude::*;
 
-use super::study::Asked;
+use super::asked::Asked;
 
 /// Nodes along an axis: the largest error of a smooth machine lies at an end or near one.
 const NODES: usize = 5;

@@ -7,7 +7,7 @@ use machine_model::finite_rotations::{
 use machine_model::{Command, Vector};
 use machine_profile::Profile;
 
-use super::study::Asked;
+use super::asked::Asked;
 use crate::message::{Failure, OPTION, notice};
 
 /// Most nodes that are looked at: the errors of machines are smooth, and each costs 1296 compositions.

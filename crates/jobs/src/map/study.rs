@@ -6,10 +6,11 @@ use error_map::diagonals::{Diagonal, body_diagonals};
 use error_map::placement::{self, Freedom, Place};
 use error_map::zero_point::{best_node, best_share, geometric_median, smallest_ball};
 use error_map::{Block, ErrorMap, Grid, Nodes, Plane, Statistics};
-use machine_model::{Command, EngineId, PathModel, Range, Vector};
+use machine_model::{EngineId, PathModel, Range, Vector};
 use machine_profile::Profile;
 use rayon::prelude::*;
 
+use super::asked::Asked;
 use super::curves::{Curve, curves};
 use super::deformation::{self, Deformation};
 use super::second_order::{self, SecondOrder};
@@ -19,36 +20,6 @@ use crate::message::{Failure, OPTION, notice};
 const TARGETS: u32 = 41;
 /// Samples of a workpiece along each axis.
 const PART_NODES: u64 = 11;
-
-/// What is asked for, in the mathematics' words.
-pub struct Asked {
-    /// The nodes.
-    pub grid: Grid,
-    /// From gauge point to tip, mm.
-    pub tool_mm: Vector,
-    /// Where the rotary axes stand.
-    pub rotary_rad: Vector,
-    /// The tolerance.
-    pub within_mm: f64,
-    /// Parts of the volume by name.
-    pub regions: Vec<(String, [Range; 3])>,
-    /// A layer at a place of the normal, or all layers.
-    pub planes: Vec<(Plane, Option<f64>)>,
-    /// Where the axes go for the workpiece.
-    pub part_box_mm: Option<[Range; 3]>,
-    /// Size of a workpiece that is to be placed.
-    pub clamp_mm: Option<Vector>,
-    /// What products of errors do is asked, too.
-    pub second_order: bool,
-}
-
-impl Asked {
-    /// The state in which errors are asked for.
-    pub fn command(&self, linear_mm: Vector, direction: [i8; 3]) -> Command {
-        let Self { tool_mm, rotary_rad, .. } = *self;
-        Command { linear_mm, rotary_rad, tool_mm, direction, ..Command::default() }
-    }
-}
 
 /// What the map shows.
 pub struct Study {

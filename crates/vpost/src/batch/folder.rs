@@ -65,10 +65,8 @@ impl OutputFolder {
     pub(crate) fn open(root: &Path, company: Company) -> Result<Self, Failure> {
         let own = root.join(OWN);
         // Made whole here, it is not made whole for each file.
-        let temporaries = std::path::absolute(own.join("tmp"))
-            .map_err(|error| Failure::file(&file::name(root), Deed::WriteTo, &error))?;
-        std::fs::create_dir_all(root)
-            .map_err(|error| Failure::file(&file::name(root), Deed::WriteTo, &error))?;
+        let temporaries = std::path::absolute(own.join("tmp")).map_err(file::fails(root, Deed::WriteTo))?;
+        std::fs::create_dir_all(root).map_err(file::fails(root, Deed::WriteTo))?;
         for (path, kind) in [
             (&own, Kind::Folder),
             (&own.join("tmp"), Kind::Folder),
@@ -83,7 +81,7 @@ impl OutputFolder {
         let lock = std::fs::create_dir_all(&temporaries)
             .and_then(|()| std::fs::create_dir_all(own.join("journal")))
             .and_then(|()| File::options().create(true).append(true).open(own.join("lock")))
-            .map_err(|error| Failure::file(&file::name(root), Deed::WriteTo, &error))?;
+            .map_err(file::fails(root, Deed::WriteTo))?;
         let temporaries = Nursery::new(temporaries);
         let alone = match lock.try_lock() {
             Ok(()) => true,
@@ -95,7 +93,7 @@ impl OutputFolder {
         };
         if alone {
             let folder = temporaries.path();
-            sweep(folder).map_err(|error| Failure::file(&file::name(folder), Deed::Empty, &error))?;
+            sweep(folder).map_err(file::fails(folder, Deed::Empty))?;
         }
         let held = match company {
             Company::Alone => alone,

@@ -69,8 +69,7 @@ pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure>
     for input in &programs.inputs {
         let data = input.metadata().map_err(|error| Failure::unread(&file::name(input), &error))?;
         if data.is_dir() {
-            let entries =
-                entries_of(input).map_err(|error| Failure::file(&file::name(input), Deed::Read, &error))?;
+            let entries = entries_of(input).map_err(file::fails(input, Deed::Read))?;
             search.folder(entries, Path::new(""), &mut found)?;
         } else {
             let name = input.file_name().map(Path::new).unwrap_or(input);
@@ -112,8 +111,7 @@ impl Search {
             if name.as_encoded_bytes().starts_with(b".") || matches(&self.exclude, &below) {
                 continue;
             }
-            let kind =
-                entry.file_type().map_err(|error| Failure::file(&file::name(&path), Deed::Read, &error))?;
+            let kind = entry.file_type().map_err(file::fails(&path, Deed::Read))?;
             if kind.is_dir() {
                 if self.output.is_some() && path.canonicalize().ok() == self.output {
                     continue;

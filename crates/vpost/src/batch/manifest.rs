@@ -3,6 +3,7 @@
 //! JSON Lines. The first line says how ([`Header`]), each further one names a program with its hash, in the order of
 //! the outputs. The header holds the hash of the lines below it, so a manifest that was cut or edited is none.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use diagnostic::{Code, Text, both};
@@ -67,8 +68,7 @@ pub(crate) fn text(items: &[Item], output: &Path, job: &Job, shared: &Shared) ->
     let hashed: Vec<Result<Program, Failure>> = items
         .par_iter()
         .map(|item| {
-            let (bytes, hash) = folder::hash(&item.input)
-                .map_err(|error| Failure::file(&file::name(&item.input), Deed::Read, &error))?;
+            let (bytes, hash) = folder::hash(&item.input).map_err(file::fails(&item.input, Deed::Read))?;
             let blake3 = hash.to_hex().to_string();
             Ok(Program { output: item.output.clone(), input: item.input.clone(), bytes, blake3 })
         })
@@ -120,11 +120,9 @@ fn include_hash(folders: &[PathBuf]) -> Result<Option<String>, Failure> {
     }
     let mut hasher = blake3::Hasher::new();
     for folder in folders {
-        let fail = |error: std::io::Error| Failure::file(&file::name(folder), Deed::Read, &error);
-        let mut paths = Vec::new();
-        for entry in std::fs::read_dir(folder).map_err(fail)? {
-            paths.push(entry.map_err(fail)?.path());
-        }
+        let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<std::io::Result<Vec<_>>>);
+        let entries = entries.map_err(file::fails(folder, Deed::Read))?;
+        let mut paths: Vec<PathBuf> = entries.iter().map(std::fs::DirEntry::path).collect();
         paths.sort();
         hasher.update(b"\0folder\0");
         for path in paths.iter().filter(|path| path.is_file()) {
@@ -178,13 +176,11 @@ impl Manifest {
             )));
         }
         if schema["version"] != env!("CARGO_PKG_VERSION") {
+            let other = schema["version"].as_str();
+            let other = other.map_or(Text::pair("of another version", "другой версии"), Text::same);
             return Err(Failure::usage(notice!(MANIFEST;
                 "{} was written by vpost {}, this is {}",
-                "{} записан vpost {:#}, а этот — {}", path.display(),
-                schema["version"]
-                        .as_str()
-                        .map_or(Text::pair("of another version", "другой версии"), Text::same),
-                env!("CARGO_PKG_VERSION");
+                "{} записан vpost {:#}, а этот — {}", path.display(), other, env!("CARGO_PKG_VERSION");
                 "run one version on all machines; another version may write other bytes",
                 "запускайте на всех машинах одну версию: другая может записать другие байты"
             )));
@@ -197,28 +193,13 @@ impl Manifest {
                 "строки после первой изменены или обрезаны"
             )));
         }
-        let mut items = Vec::new();
-        let mut outputs = std::collections::BTreeSet::new();
-        for (at, line) in lines.split(|byte| *byte == b'\n').filter(|line| !line.is_empty()).enumerate() {
-            let Program { output, input, bytes, blake3 } = serde_json::from_slice(line)
-                .map_err(|error| damaged(both!("line {}: {error}", "строка {}: {error}", at + 2)))?;
-            if !stays_inside(&output) {
-                return Err(damaged(both!(
-                    "line {}: its output leaves the output folder",
-                    "строка {}: её выходной файл вне выходной папки",
-                    at + 2
-                )));
-            }
-            // As for `plan`: letters' case counts for nothing on the shares that most controls read.
-            if !outputs.insert(output.to_lowercase()) {
-                return Err(damaged(both!(
-                    "line {}: its output is another program's, too",
-                    "строка {}: её выходной файл — ещё и другой программы",
-                    at + 2
-                )));
-            }
-            items.push(Item { input, output, bytes, blake3: Some(blake3) });
-        }
+        let mut outputs = BTreeSet::new();
+        let lines = lines.split(|byte| *byte == b'\n').filter(|line| !line.is_empty());
+        let item = |(line, at): (&[u8], u64)| {
+            let wrong = |what: Text| damaged(both!("line {at}: {what}", "строка {at}: {what:#}"));
+            item(line, &mut outputs).map_err(wrong)
+        };
+        let items = lines.zip(2..).map(item).collect::<Result<Vec<Item>, Failure>>()?;
         if items.iter().try_fold(0_u64, |sum, item: &Item| sum.checked_add(item.bytes)).is_none() {
             return Err(damaged(both!(
                 "its programs are larger than any disk",
@@ -272,6 +253,23 @@ impl Manifest {
         }
         Ok(job)
     }
+}
+
+/// A program of the manifest; `outputs`: those before it.
+fn item(line: &[u8], outputs: &mut BTreeSet<String>) -> Result<Item, Text> {
+    let Program { output, input, bytes, blake3 } =
+        serde_json::from_slice(line).map_err(|error| Text::same(error.to_string()))?;
+    if !stays_inside(&output) {
+        return Err(both!("its output leaves the output folder", "её выходной файл вне выходной папки"));
+    }
+    // As for `plan`: letters' case counts for nothing on the shares that most controls read.
+    if !outputs.insert(output.to_lowercase()) {
+        return Err(both!(
+            "its output is another program's, too",
+            "её выходной файл — ещё и другой программы"
+        ));
+    }
+    Ok(Item { input, output, bytes, blake3: Some(blake3) })
 }
 
 /// A name below the output folder, spelled in the one way in which `plan` spells it, and none of vpost's own.

@@ -9,8 +9,7 @@ use clap::Args;
 use diagnostic::{Speaks, Text, both};
 use machine_model::effects::{Conditions, EffectTerm};
 use machine_model::{
-    Axis, Chain, Command, Description, Engine, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector,
-    WithEffects,
+    Axis, Chain, Command, Description, Engine, LinearAxis, Range, RotaryAxis, Squareness, Vector, WithEffects,
 };
 use machine_profile::{Profile, ProfileText};
 
@@ -21,7 +20,7 @@ use crate::{conditions, file};
 
 use super::bar_readings::{FAR, Measured, Readings};
 use super::bar_report::{before_and_after, circle_report, rotary_report};
-use super::codes::{AXES, CONTRADICTED, OPEN, OUTLIER, QUESTION, UNSAID, failure};
+use super::codes::{AXES, CONTRADICTED, OPEN, OUTLIER, QUESTION, UNSAID, body, failure};
 use super::output::{Output, Target};
 use super::page::{Bars, Shown};
 use super::sources::mean;
@@ -152,23 +151,13 @@ impl Base {
         Ok(())
     }
 
-    fn machine_without_effects(&self) -> Result<RigidBody, Failure> {
-        RigidBody::new(self.description.clone()).map_err(|error| {
-            Failure::usage(notice!(QUESTION;
-                error.text();
-                "run `vpost profile check` on the base",
-                "запустите `vpost profile check` для исходного профиля"
-            ))
-        })
-    }
-
     /// The machine under these conditions.
     fn machine(&self, conditions: Conditions) -> Result<WithEffects, Failure> {
         let effects: Vec<EffectTerm> = match &self.profile {
             Some(profile) => profile.effect_terms(false).map_err(|error| conditions::failure(&error))?,
             None => Vec::new(),
         };
-        WithEffects::new(self.machine_without_effects()?, effects, conditions)
+        WithEffects::new(body(&self.description)?, effects, conditions)
             .map_err(|error| conditions::failure(&error.into()))
     }
 
@@ -220,8 +209,8 @@ struct Table {
 
 impl Table {
     fn new(base: &Base, readings: &Readings, target: &Target, shared: &Shared) -> Result<Self, Failure> {
-        let body = base.machine_without_effects()?;
-        let tests = readings.tests(base.tool_mm, &|command| body.nominal_tool(command));
+        let machine = body(&base.description)?;
+        let tests = readings.tests(base.tool_mm, &|command| machine.nominal_tool(command));
         let machines = base.machines(&tests.temperatures_c, target, shared)?;
         Ok(Self { tests, machines })
     }
@@ -284,7 +273,7 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
     let parts = [rotary.as_ref().map(|r| r.uncertainty_mm), circles.as_ref().map(|(c, _)| c.uncertainty_mm)];
     let found_mm = parts.into_iter().flatten().fold(0.0, units::math::hypot);
     file::print(out.in_language(messages.language()).as_bytes())?;
-    if target.output.is_none() && target.against.is_none() {
+    if !target.writes() {
         // What stays of a base is as uncertain as it says, which is asked where a profile is made.
         return show(base.profile.is_none().then_some(found_mm));
     }
@@ -316,8 +305,8 @@ fn circles(
     target: &Target,
     shared: &Shared,
 ) -> Result<Option<(CircleCalibration, Vec<String>)>, Failure> {
-    let body = base.machine_without_effects()?;
-    let circles = readings.circles(base.tool_mm, &|command| body.nominal_tool(command));
+    let machine = body(&base.description)?;
+    let circles = readings.circles(base.tool_mm, &|command| machine.nominal_tool(command));
     if circles.what.is_empty() {
         return Ok(None);
     }
@@ -378,13 +367,7 @@ fn write_locations(output: &mut Output, found: &RotaryCalibration, base: &Base) 
         output.text.set_triple(&["rotary", &axis.letter().to_string(), "centre_mm"], centre, 6);
     }
     for f in &found.locations {
-        let (unit, scale) = if f.location.is_length { ("um", 1e3) } else { ("urad", 1e6) };
-        let key = format!("{}_{unit}", f.location.name());
-        let axis = f.location.axis.letter().to_string();
-        output.text.set_number(&["rotary", &axis, &key], f.value * scale, 3);
-        if !f.location.is_length {
-            output.text.say_tilt(&axis);
-        }
+        output.location(&f.location, f.value, 3);
     }
 }
 

@@ -3,7 +3,9 @@
 use calibration::CalibrationError;
 use diagnostic::{Code, Diagnostic, Speaks, Text, both};
 
-use crate::message::Failure;
+use machine_model::{Description, RigidBody};
+
+use crate::message::{Failure, notice};
 
 pub(crate) use measurement_files::codes::{AXES, CELL, OPEN, QUESTION, RUNS};
 
@@ -69,6 +71,16 @@ pub(crate) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Fai
         return Failure::alone(code, error.text(), help);
     }
     Failure::refused(file, bytes, vec![Diagnostic::error(code, error.text()).help(help)])
+}
+
+/// The machine that a base describes.
+pub(crate) fn body(description: &Description) -> Result<RigidBody, Failure> {
+    RigidBody::new(description.clone()).map_err(|error| {
+        Failure::usage(notice!(QUESTION;
+            error.text();
+            "run `vpost profile check` on the base", "запустите `vpost profile check` для исходного профиля"
+        ))
+    })
 }
 
 /// A question that stays open.

@@ -15,7 +15,7 @@ use crate::message::{Failure, Messages, OPTION, notice};
 use super::axis_change::Session;
 use super::codes::{QUESTION, UNSAID, failure};
 use super::options::{Between, Directions, Interferometer, Reference, Slopes};
-use super::output::Output;
+use super::output::{Output, columns};
 use super::page::{Positions, Read};
 use super::squareness::{Asked, Functions};
 use super::{iso_report, plausibility, sources, squareness};
@@ -24,7 +24,7 @@ use crate::number::short;
 /// `vpost calibrate interferometer`
 pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let (mut all, angles_read) = read(arguments)?;
-    let writes = arguments.target.output.is_some() || arguments.target.against.is_some();
+    let writes = arguments.target.writes();
     if arguments.refine.is_some() && !writes {
         return Err(Failure::usage(notice!(OPTION;
             "`--refine` is for tables, and none are written",
@@ -319,8 +319,7 @@ fn write_axis(
         )));
     }
     let put = |output: &mut Output, key: &str, rows: &[Six]| {
-        let column = |k: usize| changed.given[k].then(|| rows.iter().map(|six| six[k]).collect::<Vec<f64>>());
-        let all: [Option<Vec<f64>>; 6] = std::array::from_fn(column);
+        let all = columns(changed.given, rows);
         match arguments.refine {
             None => output.errors(axis, key, nodes, &all),
             Some(step) => {

@@ -3,11 +3,12 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use calibration::rotary_ballbar::Location;
 use calibration::{Base, ChangedAxis, SetUp};
 use clap::Args;
 use diagnostic::{Speaks, both};
 use machine_model::effects::{Conditions, EffectKind};
-use machine_model::{Axis, Chain, Command, Description, Vector};
+use machine_model::{Axis, Chain, Command, Description, Six, Vector};
 use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
@@ -54,6 +55,13 @@ pub struct Target {
     /// Column to pass over (repeatable).
     #[arg(long, value_name = "NAME")]
     pub ignore_column: Vec<String>,
+}
+
+impl Target {
+    /// A profile is made: to be written, or to be compared.
+    pub(super) fn writes(&self) -> bool {
+        self.output.is_some() || self.against.is_some()
+    }
 }
 
 /// A profile in the making.
@@ -198,11 +206,7 @@ impl Output {
         for (axis, own) in axes.iter().enumerate() {
             let name = Axis::ALL[axis];
             let letter = name.letter().to_string();
-            for (key, rows) in [("errors", Some(&own.errors)), ("errors_negative", own.negative.as_ref())] {
-                let Some(rows) = rows else { continue };
-                let column = |f: usize| own.given[f].then(|| rows.iter().map(|row| row[f]).collect());
-                self.errors(name, key, &own.positions_mm, &std::array::from_fn(column));
-            }
+            self.tables(name, &own.positions_mm, own.given, [Some(&own.errors), own.negative.as_ref()]);
             let linear = &machine.linear[axis];
             if linear.backlash_mm != 0.0 {
                 self.text.set_number(&["axis", &letter, "backlash_um"], linear.backlash_mm * 1e3, 4);
@@ -257,6 +261,31 @@ impl Output {
         self.tables.retain(|(old, _)| old != name);
         self.tables.push((name.to_owned(), bytes));
         format!("{}/{name}", self.folder)
+    }
+
+    /// Tables of an axis: towards plus, and towards minus where that is another.
+    pub(super) fn tables(
+        &mut self,
+        axis: Axis,
+        positions_mm: &[f64],
+        given: [bool; 6],
+        both_ways: [Option<&Vec<Six>>; 2],
+    ) {
+        for (key, rows) in ["errors", "errors_negative"].into_iter().zip(both_ways) {
+            let Some(rows) = rows else { continue };
+            self.errors(axis, key, positions_mm, &columns(given, rows));
+        }
+    }
+
+    /// A location error of a rotary axis, in its own unit.
+    pub(super) fn location(&mut self, location: &Location, value: f64, decimals: i32) {
+        let (unit, scale) = if location.is_length { ("um", 1e3) } else { ("urad", 1e6) };
+        let axis = location.axis.letter().to_string();
+        let key = format!("{}_{unit}", location.name());
+        self.text.set_number(&["rotary", &axis, &key], value * scale, decimals);
+        if !location.is_length {
+            self.text.say_tilt(&axis);
+        }
     }
 
     /// Error functions of an axis as a table of the profile; `None` for functions that were not measured.
@@ -383,8 +412,7 @@ impl Output {
         }
         let Some(path) = &target.output else { return Ok(()) };
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf).join(&self.folder);
-        std::fs::create_dir_all(&folder)
-            .map_err(|error| Failure::file(&file::name(&folder), Deed::Make, &error))?;
+        std::fs::create_dir_all(&folder).map_err(file::fails(&folder, Deed::Make))?;
         for (name, bytes) in &self.tables {
             file::write(&folder.join(name), bytes)?;
         }
@@ -397,6 +425,11 @@ impl Output {
         ));
         Ok(())
     }
+}
+
+/// Functions one by one; `None` for those that are not given.
+pub(super) fn columns(given: [bool; 6], rows: &[Six]) -> [Option<Vec<f64>>; 6] {
+    std::array::from_fn(|f| given[f].then(|| rows.iter().map(|row| row[f]).collect()))
 }
 
 /// Error functions as CSV, µm with four decimals and µrad with four: finer than any instrument reads.

@@ -352,11 +352,8 @@ fn write(output: &mut Output, found: &TurningCalibration, base: &TurningBase) {
         output.text.set_number(&["squareness", "EB0Z_urad"], urad, 4);
     }
     if let Some(tables) = base.z_tables(change, found.stretch) {
-        for (key, rows) in [("errors", Some(&tables.errors)), ("errors_negative", tables.negative.as_ref())] {
-            let Some(rows) = rows else { continue };
-            let column = |f: usize| tables.given[f].then(|| rows.iter().map(|row| row[f]).collect());
-            output.errors(Axis::Z, key, &tables.positions_mm, &std::array::from_fn(column));
-        }
+        let both_ways = [Some(&tables.errors), tables.negative.as_ref()];
+        output.tables(Axis::Z, &tables.positions_mm, tables.given, both_ways);
     }
 }
 

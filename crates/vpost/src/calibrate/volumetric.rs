@@ -201,50 +201,12 @@ fn report(found: &VolumetricCalibration, runs: &[String]) -> Text {
             ));
         }
     }
-    for (term, rivals) in &found.open {
-        out.push(&if rivals.is_empty() {
-            both!(
-                "{term:<6} open: the points say nothing of it; as in the base\n",
-                "{term:<#6} открыто: точки ничего об этом не говорят; как в исходном профиле\n"
-            )
-        } else {
-            both!(
-                "{term:<6} open in part, which these points cannot tell from {rivals}: that stays as in the base\n",
-                "{term:<#6} открыто в той части, которую эти точки не различают ({rivals:#}): она остаётся как в исходном профиле\n"
-            )
-        });
-    }
-    if found.open.iter().any(|(term, _)| matches!(term.english().chars().nth(1), Some('A' | 'B' | 'C'))) {
-        out.push(&Text::pair(
-            "       angles need other tool vectors in one run, or other positions of the axes behind, to be seen\n",
-            "       чтобы увидеть углы, нужны другие векторы инструмента в одной серии или другие положения следующих осей\n",
-        ));
-    }
+    open(found, &mut out);
     out.push(&Text::pair(
         "gauge  X along its line, Y in its plane (EYX, EZX, EZY change by no slope); changes of positioning, straightness and of\n       the angles of the two axes next to the workpiece are 0 in the mean; slopes of EXY, EXZ, EYZ are squareness\n",
         "отсчёт X вдоль своей линии, Y в своей плоскости (у EYX, EZX, EZY нет наклона); изменения позиционирования, прямолинейности\n       и углов двух ближних к детали осей в среднем равны 0; наклоны EXY, EXZ, EYZ — это отклонения от перпендикулярности\n",
     ));
-    for (run, setup) in runs.iter().zip(&found.setups) {
-        out.push(&match setup {
-            Some(SetUp::Frame(motion)) => {
-                let moved = moved(motion);
-                both!("set-up {run}: {moved}\n", "установка {run}: {moved:#}\n")
-            }
-            Some(SetUp::Station { place_mm, zero_mm }) => both!(
-                "station {run}: {} mm, zero {zero_mm:.4} mm\n",
-                "станция {run}: {} мм, нуль {zero_mm:.4} мм\n",
-                three(place_mm, 4)
-            ),
-            None => Text::EMPTY,
-        });
-    }
-    if found.setups.len() > 1 {
-        out.push(&both!(
-            "       [setup] of a profile is one: of these {} none is written, and `predict --include-setup` adds none\n",
-            "       раздел [setup] в профиле один: из этих {} не записана ни одна, и `predict --include-setup` ничего не прибавит\n",
-            found.setups.len()
-        ));
-    }
+    set_ups(found, runs, &mut out);
     if found.left_out > 0 {
         out.push(&both!(
             "{} points lie outside the base's volume and were left out\n",
@@ -271,4 +233,52 @@ fn report(found: &VolumetricCalibration, runs: &[String]) -> Text {
         found.field_u95_mm * 1e3
     ));
     out
+}
+
+/// What the points do not tell.
+fn open(found: &VolumetricCalibration, out: &mut Text) {
+    for (term, rivals) in &found.open {
+        out.push(&if rivals.is_empty() {
+            both!(
+                "{term:<6} open: the points say nothing of it; as in the base\n",
+                "{term:<#6} открыто: точки ничего об этом не говорят; как в исходном профиле\n"
+            )
+        } else {
+            both!(
+                "{term:<6} open in part, which these points cannot tell from {rivals}: that stays as in the base\n",
+                "{term:<#6} открыто в той части, которую эти точки не различают ({rivals:#}): она остаётся как в исходном профиле\n"
+            )
+        });
+    }
+    if found.open.iter().any(|(term, _)| matches!(term.english().chars().nth(1), Some('A' | 'B' | 'C'))) {
+        out.push(&Text::pair(
+            "       angles need other tool vectors in one run, or other positions of the axes behind, to be seen\n",
+            "       чтобы увидеть углы, нужны другие векторы инструмента в одной серии или другие положения следующих осей\n",
+        ));
+    }
+}
+
+/// How the instrument stood in each run.
+fn set_ups(found: &VolumetricCalibration, runs: &[String], out: &mut Text) {
+    for (run, setup) in runs.iter().zip(&found.setups) {
+        out.push(&match setup {
+            Some(SetUp::Frame(motion)) => {
+                let moved = moved(motion);
+                both!("set-up {run}: {moved}\n", "установка {run}: {moved:#}\n")
+            }
+            Some(SetUp::Station { place_mm, zero_mm }) => both!(
+                "station {run}: {} mm, zero {zero_mm:.4} mm\n",
+                "станция {run}: {} мм, нуль {zero_mm:.4} мм\n",
+                three(place_mm, 4)
+            ),
+            None => Text::EMPTY,
+        });
+    }
+    if found.setups.len() > 1 {
+        out.push(&both!(
+            "       [setup] of a profile is one: of these {} none is written, and `predict --include-setup` adds none\n",
+            "       раздел [setup] в профиле один: из этих {} не записана ни одна, и `predict --include-setup` ничего не прибавит\n",
+            found.setups.len()
+        ));
+    }
 }

@@ -12,7 +12,8 @@ mod viewer;
 pub use arguments::Map;
 
 use diagnostic::both;
-use jobs::map::study::{Asked, Study};
+use jobs::map::asked::Asked;
+use jobs::map::study::Study;
 use jobs::map::{dominant as deviations, grid, model, rotary, tool};
 use machine_model::{Range, Vector, Volume};
 use machine_profile::Profile;

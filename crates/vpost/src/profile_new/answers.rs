@@ -36,18 +36,7 @@ pub(super) struct Answers {
 pub(super) fn complete(arguments: &New, said: Machine, messages: &Messages) -> Result<Answers, Failure> {
     let name = arguments.name.clone().or(said.name);
     let control = arguments.control.clone().or(said.control.map(str::to_owned));
-    let mut travels_mm = said
-        .travels_mm
-        .map(|ends| ends.map(|[low, high]| Range { low, high }).filter(|range| range.low < range.high));
-    for (travel_mm, axis) in travels_mm.iter_mut().zip([Axis::X, Axis::Y, Axis::Z]) {
-        let mut given = arguments.travel.iter().filter(|travel| travel.axis == axis);
-        if let Some(travel) = given.next() {
-            *travel_mm = Some(travel.range_mm);
-        }
-        if given.next().is_some() {
-            return Err(not_once(axis));
-        }
-    }
+    let travels_mm = travels_mm(arguments, said.travels_mm)?;
     let is_whole = name.is_some() && control.is_some() && travels_mm.iter().all(Option::is_some);
     let questions = if is_whole { None } else { Questions::at_a_terminal(messages) };
     let ask = questions.as_ref();
@@ -115,6 +104,22 @@ pub(super) fn complete(arguments: &New, said: Machine, messages: &Messages) -> R
         }
     };
     Ok(Answers { name, control, chain, travels_mm: ranges, rotary, output })
+}
+
+/// The travels that options give, else those of the control's files.
+fn travels_mm(arguments: &New, said: [Option<[f64; 2]>; 3]) -> Result<[Option<Range>; 3], Failure> {
+    let range = |[low, high]: [f64; 2]| Some(Range { low, high }).filter(|range| range.low < range.high);
+    let mut travels_mm = said.map(|ends| ends.and_then(range));
+    for (travel_mm, axis) in travels_mm.iter_mut().zip([Axis::X, Axis::Y, Axis::Z]) {
+        let mut given = arguments.travel.iter().filter(|travel| travel.axis == axis);
+        if let Some(travel) = given.next() {
+            *travel_mm = Some(travel.range_mm);
+        }
+        if given.next().is_some() {
+            return Err(not_once(axis));
+        }
+    }
+    Ok(travels_mm)
 }
 
 /// The answer of whoever is there; `None` where nobody is.

@@ -5,16 +5,15 @@ mod rows;
 
 use calibration::Base;
 use calibration::rtest::{HeldOut, RotaryTables, Term, calibrate};
-use diagnostic::{Speaks, both};
-use machine_model::{Description, RigidBody};
+use diagnostic::{Speaks, Text, both};
 
 use crate::arguments::Shared;
 use crate::file;
 use crate::message::{Failure, Messages, notice};
 
-use super::codes::{AXES, CONTRADICTED, DOUBTFUL, OPEN, OUTLIER, QUESTION, UNFIT, UNSAID, failure};
+use super::codes::{AXES, CONTRADICTED, DOUBTFUL, OPEN, OUTLIER, QUESTION, UNFIT, UNSAID, body, failure};
 use super::options::RTest;
-use super::output::{Output, error_table};
+use super::output::{Output, columns, error_table};
 use rows::Rows;
 
 /// What is left of the readings, in units of their stated uncertainty, is a contradiction above this.
@@ -64,7 +63,7 @@ pub(super) fn run(arguments: &RTest, shared: &Shared, messages: &Messages) -> Re
         file::write(path, &jobs::summary::json(&report::json(&found, held.as_ref(), &rows)))?;
     }
     judge(&found, held.as_ref(), messages)?;
-    if arguments.target.output.is_none() && arguments.target.against.is_none() {
+    if !arguments.target.writes() {
         return Ok(());
     }
     write(&mut output, &found);
@@ -110,7 +109,7 @@ fn refused(rows: &Rows, error: &calibration::CalibrationError) -> Failure {
 
 /// Judges by rows that the fit did not see; each must stand where the changed machine is known.
 fn held_out(found: &RotaryTables, held: &Rows, base: &Base) -> Result<HeldOut, Failure> {
-    let machine = model(&found.description)?;
+    let machine = body(&found.description)?;
     for (row, reading) in held.read.rows.iter().enumerate() {
         if let Err(error) = machine.rotary_inside(&reading.command) {
             let help = both!(
@@ -132,24 +131,15 @@ fn held_out(found: &RotaryTables, held: &Rows, base: &Base) -> Result<HeldOut, F
     found.held_out(&held.read.rows, base).map_err(|error| failure("", &[], &error))
 }
 
-fn model(description: &Description) -> Result<RigidBody, Failure> {
-    RigidBody::new(description.clone()).map_err(|error| {
-        Failure::usage(notice!(QUESTION;
-            error.text();
-            "run `vpost profile check` on the base", "запустите `vpost profile check` для исходного профиля"
-        ))
-    })
-}
+/// What would make the noise less.
+static LINEAR: Text = Text::pair(
+    "calibrate the linear axes of the profile first; measure more places of the ball; state the scatter as `u_um`",
+    "сначала откалибруйте линейные оси профиля; измерьте шар в большем числе мест; укажите разброс в `u_um`",
+);
 
-/// Refuses what contradicts what is known of noise or unseen rows; warns where it is doubtful.
-fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> Result<(), Failure> {
+/// Refuses what contradicts what is known of noise; warns where it is doubtful.
+fn judge_noise(found: &RotaryTables, messages: &Messages) -> Result<(), Failure> {
     let sigma_mm = found.estimate.sigma;
-    let linear = || {
-        both!(
-            "calibrate the linear axes of the profile first; measure more places of the ball; state the scatter as `u_um`",
-            "сначала откалибруйте линейные оси профиля; измерьте шар в большем числе мест; укажите разброс в `u_um`"
-        )
-    };
     let strangers = || {
         both!(
             "look for rows of two machines, exchanged columns, errors of the linear axes",
@@ -169,7 +159,7 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
             messages.warning(notice!(DOUBTFUL;
                 "the best machine leaves {times:.1} times what `u_um` states: intervals are widened by as much",
                 "наилучшая модель оставляет в {times:.1} раза больше, чем указано в `u_um`: интервалы расширены во столько же";
-                linear()
+                LINEAR.clone()
             ));
         }
     } else if sigma_mm > SCATTER_MM[0] {
@@ -183,15 +173,22 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
         messages.warning(notice!(DOUBTFUL;
             "the best machine leaves {:.1} um, more than an R-test scatters",
             "наилучшая модель оставляет {:.1} мкм: больше разброса R-теста", sigma_mm * 1e3;
-            linear()
+            LINEAR.clone()
         ));
     }
+    Ok(())
+}
+
+/// The same of what is known of unseen rows.
+fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> Result<(), Failure> {
+    judge_noise(found, messages)?;
+    let sigma_mm = found.estimate.sigma;
     if let Some(alone_mm) = found.alone_mm {
         messages.warning(notice!(DOUBTFUL;
             "runs leave {:.2} um one by one and {:.2} um together: they differ by more than noise",
             "серии порознь оставляют {:.2} мкм, вместе {:.2} мкм: они различаются больше, чем на шум",
             alone_mm * 1e3, found.estimate.misfit * 1e3;
-            linear()
+            LINEAR.clone()
         ));
     }
     let open: Vec<&str> = found.not_told_apart.iter().flatten().map(String::as_str).collect();
@@ -238,7 +235,7 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
             "held-out readings keep {:.2} um, the noise is {:.2} um: the profile does not hold everywhere as it holds where it was measured",
             "в отложенных отсчётах остаётся {:.2} мкм при шуме {:.2} мкм: профиль верен не везде так, как там, где измеряли",
             judged.rms_after_mm * 1e3, sigma_mm * 1e3;
-            linear()
+            LINEAR.clone()
         ));
     }
     Ok(())
@@ -247,18 +244,10 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
 fn write(output: &mut Output, found: &RotaryTables) {
     for term in found.terms.iter().filter(|term| term.is_written) {
         let Term::Location(location) = term.term else { continue };
-        let (unit, scale) = if location.is_length { ("um", 1e3) } else { ("urad", 1e6) };
-        let key = format!("{}_{unit}", location.name());
-        let axis = location.axis.letter().to_string();
-        output.text.set_number(&["rotary", &axis, &key], (term.base + term.change) * scale, 4);
-        if !location.is_length {
-            output.text.say_tilt(&axis);
-        }
+        output.location(&location, term.base + term.change, 4);
     }
     for table in &found.tables {
-        let functions: [Option<Vec<f64>>; 6] =
-            std::array::from_fn(|f| table.given[f].then(|| table.rows.iter().map(|row| row[f]).collect()));
-        let text = error_table(table.axis, &table.angles_deg, &functions);
+        let text = error_table(table.axis, &table.angles_deg, &columns(table.given, &table.rows));
         let letter = table.axis.letter();
         let name = output.table(&format!("{}.csv", letter.to_ascii_lowercase()), text.into_bytes());
         output.text.set_text(&["rotary", &letter.to_string(), "errors"], &name);

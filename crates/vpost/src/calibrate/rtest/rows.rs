@@ -319,20 +319,11 @@ fn reading(
 
 /// By component, else of the row, mm.
 fn uncertainty(row: &Row<'_>) -> Result<Option<[f64; 3]>, Failure> {
-    let own = row.any_of(UNCERTAINTIES)?;
-    let common = row.number("u_um")?;
-    let all = own.map(|um| um.or(common));
-    for (key, um) in UNCERTAINTIES.iter().zip(all) {
-        if um.is_some_and(|um| um <= 0.0) {
-            let key = if common.is_some() { "u_um" } else { key };
-            return Err(Failure::at_cell(row, key)(notice!(CELL;
-                "an uncertainty is above zero", "неопределённость больше нуля";
-                "give the standard uncertainty in um", "дайте стандартную неопределённость в мкм"
-            )));
-        }
-    }
-    Ok(match all {
-        [Some(x), Some(y), Some(z)] => Some([x, y, z].map(|um| um * 1e-3)),
+    let stated_mm = |key: &str| sources::uncertainty_mm(row, key);
+    let [x, y, z] = UNCERTAINTIES.map(stated_mm);
+    let (own, common) = ([x?, y?, z?], stated_mm("u_um")?);
+    Ok(match own.map(|mm| mm.or(common)) {
+        [Some(x), Some(y), Some(z)] => Some([x, y, z]),
         _ => None,
     })
 }
