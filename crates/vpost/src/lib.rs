@@ -22,7 +22,6 @@ pub mod language;
 pub mod manual;
 pub mod map;
 mod message;
-mod number;
 mod origin;
 mod predict;
 mod profile_command;

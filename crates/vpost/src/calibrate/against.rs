@@ -12,7 +12,7 @@ use crate::message::{Failure, notice};
 use crate::{file, profile};
 
 use super::codes::QUESTION;
-use crate::number::short;
+use crate::figures::short;
 
 /// Prints the comparison.
 pub(super) fn report(old: &Path, new: &Profile, language: Language) -> Result<(), Failure> {

@@ -23,7 +23,7 @@ use super::options::Interferometer;
 use super::output::{Output, SHORTEST_MM};
 use super::sources;
 use super::squareness::Asked;
-use crate::number::short;
+use crate::figures::short;
 
 /// The base as it was read, and where.
 pub(super) struct Session {

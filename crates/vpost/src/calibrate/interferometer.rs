@@ -19,7 +19,7 @@ use super::output::{Output, columns};
 use super::page::{Positions, Read};
 use super::squareness::{Asked, Functions};
 use super::{iso_report, plausibility, sources, squareness};
-use crate::number::short;
+use crate::figures::short;
 
 /// `vpost calibrate interferometer`
 pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messages) -> Result<(), Failure> {

@@ -12,8 +12,8 @@ use machine_model::{Axis, Chain, Command, Description, Six, Vector};
 use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
+use crate::figures::short;
 use crate::message::{Deed, Failure, Messages, OPTION, notice};
-use crate::number::short;
 use crate::{file, profile};
 
 use super::codes::{QUESTION, UNSAID};

@@ -10,7 +10,7 @@ use measurement_files::series::{Origin, Series};
 use measurement_files::{OddSizes, micro};
 
 use super::codes::{AXES, MISSING, RUNS, UNITS};
-use crate::number::short;
+use crate::figures::short;
 
 /// Deviations that are much too small or too large for their unit.
 ///

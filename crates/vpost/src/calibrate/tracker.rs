@@ -21,7 +21,7 @@ use super::codes::{DOUBTFUL, MISSING, QUESTION, UNFIT, failure};
 use super::output::{Output, Target};
 use super::sources::{self, span, three};
 use super::volumetric::moved;
-use crate::number::short;
+use crate::figures::short;
 
 /// `vpost calibrate tracker X.csv Y.csv Z.csv -o PROFILE`
 #[derive(Debug, Args)]

@@ -9,8 +9,8 @@ use diagnostic::{Language, both, say};
 use machine_model::Axis;
 use machine_profile::plus_turns;
 
+use crate::figures::short;
 use crate::message::{Failure, Messages, OPTION, notice};
-use crate::number::short;
 use crate::profile_new::answers::Answers;
 use crate::values::{AxisTable, Centre, Given, Sense, Travel};
 use crate::{file, profile};

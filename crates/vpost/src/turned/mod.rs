@@ -1,12 +1,12 @@
 //! Forward for a lathe: what a program leaves of the workpiece.
 
-mod cuts;
 pub(crate) mod judged;
 mod page;
-mod surface;
 mod wear;
 
 use diagnostic::{Code, both};
+use jobs::turned::read;
+use jobs::turned::surface::{Asked, HIGHEST_WAVE, Surface, Turned};
 use machine_profile::Profile;
 use rewrite::Manner;
 use turning::Lathe;
@@ -14,14 +14,12 @@ use turning::Lathe;
 use crate::arguments::{Predict, Shared};
 use crate::conditions::{conditions, failure};
 use crate::figures::fixed;
+use crate::file;
 use crate::message::{Failure, Messages, OPTION, notice};
 use crate::roles::Roles;
 use crate::settings::Settings;
-use crate::{expand, file};
 
-use cuts::{Cut, cuts};
 use page::{Correction, Facts};
-use surface::{HIGHEST_WAVE, Surface, Turned};
 
 /// Nothing is turned, or too much is asked.
 const NOTHING_TURNED: Code = Code(908);
@@ -45,7 +43,8 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
     let name = file::name(&arguments.points);
     let text = file::read_program(&arguments.points)?;
     let cuts = read(&text, &name, &settings)?;
-    let mut surface = Surface::over(&cuts, &lathe, arguments).ok_or_else(|| {
+    let asked = Asked { step_mm: arguments.step, bore: arguments.bore };
+    let mut surface = Surface::over(&cuts, &lathe, &asked).ok_or_else(|| {
         let diagnostic = notice!(NOTHING_TURNED;
             "the program turns nothing that could be predicted",
             "программа ничего не точит, предсказывать нечего";
@@ -76,13 +75,6 @@ fn no_lathe(name: &str, profile: &Profile) -> Failure {
         "leave `--lathe` out, or give the profile of a lathe",
         "уберите `--lathe` или дайте профиль токарного станка"
     ))
-}
-
-/// The feeds of a program, its flow executed.
-fn read(text: &[u8], name: &str, settings: &Settings) -> Result<Vec<Cut>, Failure> {
-    let expanded = expand::expanded(text, name, settings)?;
-    cuts(expanded.text(), settings)
-        .map_err(|diagnostics| Failure::Refused(expand::reports(&expanded, name, text, diagnostics)))
 }
 
 /// What the main job makes of the program, and what the lathe turns by that. A refusal is an answer.

@@ -10,9 +10,9 @@ use turning::Lathe;
 use units::math;
 
 use super::super::judged::{mm, um};
-use super::super::surface::{ANGLES, HIGHEST_WAVE, Place, Stretch, Turned};
 use crate::figures::round;
 use crate::message::{Failure, OPTION, notice};
+use jobs::turned::surface::{ANGLES, HIGHEST_WAVE, Place, Stretch, Turned};
 
 /// Roundness that differs by less is the same, µm.
 const SAME_UM: f64 = 0.01;
