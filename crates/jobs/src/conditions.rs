@@ -75,11 +75,12 @@ pub fn temperature(
         }
     }
     Ok(worst.map(|(letter, temperature, um)| {
-        let message = both!("the machine was calibrated at {calibrated_c} °C and is used at {temperature} °C: steel grows by {um:.1} um over the volume in {letter}", "станок откалиброван при {calibrated_c} °C, а работает при {temperature} °C: сталь удлиняется по {letter} на длине объёма на {um:.1} мкм"
-        );
-        let diagnostic = Diagnostic::warning(OTHER_TEMPERATURE, message).help(both!("calibrate at the temperature of use, or give the profile a `thermal.{letter}` effect", "калибруйте при рабочей температуре или внесите в профиль эффект `thermal.{letter}`"
-        ));
-        Report { source: None, diagnostics: vec![diagnostic] }
+        Report::warning(notice!(OTHER_TEMPERATURE;
+            "the machine was calibrated at {calibrated_c} °C and is used at {temperature} °C: steel grows by {um:.1} um over the volume in {letter}",
+            "станок откалиброван при {calibrated_c} °C, а работает при {temperature} °C: сталь удлиняется по {letter} на длине объёма на {um:.1} мкм";
+            "calibrate at the temperature of use, or give the profile a `thermal.{letter}` effect",
+            "калибруйте при рабочей температуре или внесите в профиль эффект `thermal.{letter}`"
+        ))
     }))
 }
 

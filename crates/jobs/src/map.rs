@@ -7,7 +7,7 @@ pub mod dominant;
 pub mod second_order;
 pub mod study;
 
-use diagnostic::{Diagnostic, Speaks, Text, both};
+use diagnostic::{Speaks, Text, both};
 use error_map::{ErrorMap, Grid, Nodes};
 use machine_model::{Command, Engine, PathModel, Range, SolveError, Vector, Volume};
 use machine_profile::Profile;
@@ -38,14 +38,7 @@ pub fn model(engine: &dyn Engine) -> Result<&dyn PathModel, Failure> {
 /// # Errors
 /// Which it knows.
 pub fn require_tool(model: &dyn PathModel, tool_mm: Vector) -> Result<(), Failure> {
-    let rotary_rad = Vector::zeros();
-    match model.knows(&Command {
-        linear_mm: rotary_rad,
-        rotary_rad,
-        tool_mm,
-        direction: [0; 3],
-        ..Default::default()
-    }) {
+    match model.knows(&Command { tool_mm, ..Command::default() }) {
         Err(error @ SolveError::OtherTool { .. }) => {
             let help = both!(
                 "give the tool vector of the measured vectors with `--tool-vector X,Y,Z`, or write it as default_mm",
@@ -83,17 +76,17 @@ pub fn outside(
                 known.high
             );
             if options.outside != Some(Outside::Clamp) {
-                let help = both!(
+                return Err(Failure::usage(notice!(POINT_OUTSIDE;
+                    message;
                     "stay inside, or take the nearest point's error with `--outside clamp`",
                     "оставайтесь внутри или возьмите погрешность ближайшей точки: `--outside clamp`"
-                );
-                return Err(Failure::usage(Diagnostic::error(POINT_OUTSIDE, message).help(help)));
+                )));
             }
-            let help = both!(
+            warnings.push(Report::warning(notice!(POINT_OUTSIDE;
+                message;
                 "the nodes outside have the error of the volume's nearest point",
                 "у узлов снаружи погрешность ближайшей точки объёма"
-            );
-            warnings.push(Report::warning(Diagnostic::error(POINT_OUTSIDE, message).help(help)));
+            )));
         }
     }
     Ok(warnings)
@@ -172,13 +165,7 @@ pub fn rotary(given: Option<&Given<Rotary>>, profile: &Profile) -> Result<Vector
         }
     }
     let rotary_rad = Vector::from(given.0.map(|angle| angle.unwrap_or(0.0).to_radians()));
-    let turned = Command {
-        linear_mm: Vector::zeros(),
-        rotary_rad,
-        tool_mm: Vector::zeros(),
-        direction: [0; 3],
-        ..Default::default()
-    };
+    let turned = Command { rotary_rad, ..Command::default() };
     profile.rigid_body_without_effects().rotary_inside(&turned).map_err(|error| {
         let error = error.text();
         Failure::usage(notice!(OPTION;

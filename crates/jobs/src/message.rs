@@ -152,6 +152,13 @@ impl Failure {
         }
     }
 
+    /// What is refused of a whole row of such a table.
+    pub fn at_row(row: &Row<'_>) -> impl FnOnce(Diagnostic) -> Self {
+        |Diagnostic { code, message, help, .. }| {
+            row.refuse_row(code, message, both!("this row", "эта строка"), help.unwrap_or(Text::EMPTY)).into()
+        }
+    }
+
     /// A question that only the user can answer, or a slip of theirs.
     #[must_use]
     pub fn asks(code: Code, message: Text, help: Text) -> Self {

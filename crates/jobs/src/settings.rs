@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use correction::{Options, Orientation, Outside};
 use diagnostic::{Code, Diagnostic, Text, both};
-use machine_model::{Command, Engine, EngineId, Models, PathModel, TipControl, Vector};
+use machine_model::{Command, Engine, EngineId, Models, PathModel, TipControl};
 use machine_profile::{BareLengths, Profile, TurningRules};
 use nc_program::{Questions, Setup};
 use nc_syntax::Dialect;
@@ -454,13 +454,7 @@ fn orientation(profile: &Profile, options: &JobOptions, engine: &dyn Engine) -> 
         )));
     }
     let proven = engine.path_model().is_some_and(|model| {
-        let at = Command {
-            linear_mm: Vector::zeros(),
-            rotary_rad: Vector::zeros(),
-            tool_mm: Vector::zeros(),
-            direction: [0; 3],
-            ..Default::default()
-        };
+        let at = Command::default();
         model.tool_directions(&at, &at.rotary_rad).is_some()
             && model.follows_turns()
             && !model.depends_on_direction()

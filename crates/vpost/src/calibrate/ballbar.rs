@@ -6,7 +6,7 @@ use calibration::CalibrationError;
 use calibration::linear_ballbar::{self, CircleCalibration};
 use calibration::rotary_ballbar::{self, RotaryCalibration, Test};
 use clap::Args;
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text};
 use machine_model::effects::{Conditions, EffectTerm};
 use machine_model::{
     Axis, Chain, Command, Description, Engine, LinearAxis, Range, RotaryAxis, Squareness, Vector, WithEffects,
@@ -224,16 +224,13 @@ impl Table {
         let read = tests.iter().flat_map(|test| &test.readings);
         for (reading, (expected_mm, (angle, length_mm))) in expected.iter().flatten().zip(read).enumerate() {
             if (length_mm - expected_mm).abs() > FAR * expected_mm {
-                let message = both!(
+                return Err(readings.at(self.tests.place(reading))(notice!(CONTRADICTED;
                     "at {:.1} degrees the balls would be {expected_mm:.3} mm apart on this table, not {length_mm} mm",
                     "при {:.1} градуса шары на этом столе были бы в {expected_mm:.3} мм друг от друга, а не в {length_mm} мм",
-                    angle.to_degrees()
-                );
-                let help = both!(
+                    angle.to_degrees();
                     "which axis turned? check the columns of the angles, centre_mm and the places of both balls",
                     "какая ось вращалась? проверьте столбцы углов, centre_mm и места обоих шаров"
-                );
-                return Err(readings.refuse(CONTRADICTED, self.tests.place(reading), message, help));
+                )));
             }
         }
         rotary_ballbar::calibrate(tests, &self.machines)
@@ -326,39 +323,29 @@ fn located(
     place: impl Fn(usize) -> (usize, usize),
 ) -> Failure {
     let CalibrationError::Outlier { point, message } = error else { return refusal(error) };
-    let help = both!(
+    readings.at(place(*point))(notice!(OUTLIER;
+        message.clone();
         "measure it again, or leave it out; readings moved by a row look like this as well",
         "измерьте снова или исключите; так же выглядят показания со сдвигом на строку"
-    );
-    readings.refuse(OUTLIER, place(*point), message.clone(), help)
+    ))
 }
 
 fn refusal(error: &CalibrationError) -> Failure {
-    let (code, help) = match error {
-        CalibrationError::Axes(_) => (
-            AXES,
-            both!(
-                "is `-m` (or `--chain`) the machine that was measured?",
-                "в `-m` (или `--chain`) тот станок, который измеряли?"
-            ),
+    Failure::unfit(match error {
+        CalibrationError::Axes(_) => notice!(AXES; error.text();
+            "is `-m` (or `--chain`) the machine that was measured?",
+            "в `-m` (или `--chain`) тот станок, который измеряли?"
         ),
-        CalibrationError::Unobservable(_) => (
-            OPEN,
-            both!(
-                "add the test that tells them apart: the spindle's turn for eX and eY, the ball 100 mm beside or above for a tilt",
-                "добавьте опыт, который их различит: поворот шпинделя для eX и eY, шар на 100 мм в стороне или выше для наклона"
-            ),
+        CalibrationError::Unobservable(_) => notice!(OPEN; error.text();
+            "add the test that tells them apart: the spindle's turn for eX and eY, the ball 100 mm beside or above for a tilt",
+            "добавьте опыт, который их различит: поворот шпинделя для eX и eY, шар на 100 мм в стороне или выше для наклона"
         ),
-        CalibrationError::Contradicted(_) => (
-            CONTRADICTED,
-            both!(
-                "check the files: columns exchanged, directions the wrong way round, a circle of another day or another bar",
-                "проверьте файлы: переставленные столбцы, направления наоборот, круг другого дня или другого измерителя"
-            ),
+        CalibrationError::Contradicted(_) => notice!(CONTRADICTED; error.text();
+            "check the files: columns exchanged, directions the wrong way round, a circle of another day or another bar",
+            "проверьте файлы: переставленные столбцы, направления наоборот, круг другого дня или другого измерителя"
         ),
         _ => return failure("", &[], error),
-    };
-    Failure::alone(code, error.text(), help)
+    })
 }
 
 fn write_locations(output: &mut Output, found: &RotaryCalibration, base: &Base) {

@@ -173,37 +173,26 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
 }
 
 fn warn_of_gaps(name: &str, mean: &MeanTraverse, messages: &Messages) {
-    let source = || Some(crate::message::Source::whole(name, []));
-    let say = |message: Text, help: Text| {
-        let diagnostics = vec![Diagnostic::warning(MISSING, message).help(help)];
-        messages.report(&Report { source: source(), diagnostics });
+    let say = |said: Diagnostic| {
+        let source = Some(crate::message::Source::whole(name, []));
+        messages.report(&Report { source, ..Report::warning(said) });
     };
     if let Some((at, found, usual)) = mean.short_of_runs.first() {
-        let message = both!(
+        say(notice!(MISSING;
             "{} of {} nodes lack readings: {at} mm has {found}, others {usual}",
             "не хватает показаний в узлах: {} из {}; в {at} мм их {found}, в остальных {usual}",
-            mean.short_of_runs.len(),
-            mean.nodes.len()
-        );
-        say(
-            message,
-            both!(
-                "their means count as less certain; measure them again, or leave the incomplete run out",
-                "их средние считаются менее точными; измерьте снова или исключите неполный проход"
-            ),
-        );
+            mean.short_of_runs.len(), mean.nodes.len();
+            "their means count as less certain; measure them again, or leave the incomplete run out",
+            "их средние считаются менее точными; измерьте снова или исключите неполный проход"
+        ));
     }
     if let Some((from, to, usual)) = mean.gaps.first() {
-        say(
-            both!(
-                "no node between {from} and {to} mm, where the step is {usual} mm elsewhere",
-                "между {from} и {to} мм нет узла, а в других местах шаг {usual} мм"
-            ),
-            both!(
-                "errors between them are taken as a straight line; measure the missing targets if they matter",
-                "погрешности между ними приняты по прямой; если это важно, измерьте пропущенные цели"
-            ),
-        );
+        say(notice!(MISSING;
+            "no node between {from} and {to} mm, where the step is {usual} mm elsewhere",
+            "между {from} и {to} мм нет узла, а в других местах шаг {usual} мм";
+            "errors between them are taken as a straight line; measure the missing targets if they matter",
+            "погрешности между ними приняты по прямой; если это важно, измерьте пропущенные цели"
+        ));
     }
 }
 

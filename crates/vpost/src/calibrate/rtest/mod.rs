@@ -75,36 +75,27 @@ pub(super) fn run(arguments: &RTest, shared: &Shared, messages: &Messages) -> Re
 /// What contradicts the readings, an outlier at its row.
 fn refused(rows: &Rows, error: &calibration::CalibrationError) -> Failure {
     use calibration::CalibrationError::{Axes, Contradicted, Outlier, Unobservable};
-    let (code, help) = match error {
+    Failure::unfit(match error {
         Outlier { point, .. } => {
-            let help = both!("measure it again, or take the row out", "измерьте снова или уберите строку");
-            let refusal = rows.refuse(*point, OUTLIER, error.text(), help);
-            return refusal.unwrap_or_else(|| failure("", &[], error));
+            return rows.at(*point)(notice!(OUTLIER;
+                error.text();
+                "measure it again, or take the row out", "измерьте снова или уберите строку"
+            ));
         }
-        Axes(_) => (
-            AXES,
-            both!(
-                "is `-m` the profile of the machine that was measured? an R-test turns A, B or C within a run, the ball in its nest",
-                "`-m` — профиль измеренного станка? в R-тесте внутри серии поворачивается A, B или C, а шар остаётся в гнезде"
-            ),
+        Axes(_) => notice!(AXES; error.text();
+            "is `-m` the profile of the machine that was measured? an R-test turns A, B or C within a run, the ball in its nest",
+            "`-m` — профиль измеренного станка? в R-тесте внутри серии поворачивается A, B или C, а шар остаётся в гнезде"
         ),
-        Unobservable(_) => (
-            OPEN,
-            both!(
-                "mount the ball beside the axis as well, 100 mm from it, at another height: three places not in one line show all",
-                "ставьте шар и в стороне от оси, в 100 мм от неё, на другой высоте: три точки не на одной прямой покажут всё"
-            ),
+        Unobservable(_) => notice!(OPEN; error.text();
+            "mount the ball beside the axis as well, 100 mm from it, at another height: three places not in one line show all",
+            "ставьте шар и в стороне от оси, в 100 мм от неё, на другой высоте: три точки не на одной прямой покажут всё"
         ),
-        Contradicted(_) => (
-            CONTRADICTED,
-            both!(
-                "measure again, a file for each machine; or calibrate the linear axes of the profile first",
-                "измерьте снова, на каждый станок свой файл; или сначала откалибруйте линейные оси профиля"
-            ),
+        Contradicted(_) => notice!(CONTRADICTED; error.text();
+            "measure again, a file for each machine; or calibrate the linear axes of the profile first",
+            "измерьте снова, на каждый станок свой файл; или сначала откалибруйте линейные оси профиля"
         ),
         _ => return failure("", &[], error),
-    };
-    Failure::alone(code, error.text(), help)
+    })
 }
 
 /// Judges by rows that the fit did not see; each must stand where the changed machine is known.
@@ -112,13 +103,11 @@ fn held_out(found: &RotaryTables, held: &Rows, base: &Base) -> Result<HeldOut, F
     let machine = body(&found.description)?;
     for (row, reading) in held.read.rows.iter().enumerate() {
         if let Err(error) = machine.rotary_inside(&reading.command) {
-            let help = both!(
+            return Err(held.at(row)(notice!(AXES;
+                error.text();
                 "hold out rows at angles between those that were measured",
                 "откладывайте строки с углами между измеренными"
-            );
-            return Err(held
-                .refuse(row, AXES, error.text(), help.clone())
-                .unwrap_or_else(|| Failure::alone(AXES, error.text(), help)));
+            )));
         }
     }
     if held.read.rows.len() < 2 * held.runs.len() {

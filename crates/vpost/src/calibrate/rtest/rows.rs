@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use calibration::rtest::BallReading;
-use diagnostic::{Code, Speaks, Text, both};
+use diagnostic::{Diagnostic, Speaks, Text, both};
 use machine_model::{Axis, Command, RigidBody, Vector};
 use machine_profile::Profile;
 use measurement_files::{Row, Sheet, numbered};
@@ -145,10 +145,12 @@ impl Rows {
         Ok(())
     }
 
-    /// A refusal at the row of a reading.
-    pub(super) fn refuse(&self, reading: usize, code: Code, message: Text, help: Text) -> Option<Failure> {
-        let row = self.read.row(reading)?;
-        Some(row.refuse_row(code, message, both!("this row", "эта строка"), help).into())
+    /// What is refused of the row of a reading.
+    pub(super) fn at(&self, reading: usize) -> impl FnOnce(Diagnostic) -> Failure {
+        move |wrong| match self.read.row(reading) {
+            Some(row) => Failure::at_row(&row)(wrong),
+            None => Failure::unfit(wrong),
+        }
     }
 
     /// Nominal places of a sphere, which [`reading`] has given as deviations, about their mean in each run.
@@ -169,21 +171,12 @@ impl Rows {
                 }
             }
             if let Some((k, off_mm)) = far {
-                let message = both!(
+                return Err(self.at(k)(notice!(AXES;
                     "by the profile the tip was {off_mm:.1} mm from where run `{}` has the sphere in the mean",
-                    "по профилю щуп был в {off_mm:.1} мм от среднего места сферы в серии `{}`",
-                    self.runs[run]
-                );
-                let help = both!(
+                    "по профилю щуп был в {off_mm:.1} мм от среднего места сферы в серии `{}`", self.runs[run];
                     "a sphere stands at one place of the workpiece: check centre_mm, the tool vector, the signs of the angles, the run",
                     "сфера стоит в одном месте детали: проверьте centre_mm, вектор инструмента, знаки углов, серию"
-                );
-                return Err(self.refuse(k, AXES, message, help.clone()).unwrap_or_else(|| {
-                    Failure::usage(notice!(QUESTION;
-                        "the sphere moves", "сфера смещается";
-                        help
-                    ))
-                }));
+                )));
             }
         }
         Ok(())
@@ -360,11 +353,11 @@ fn stands_where_the_profile_knows(
         }
     }
     if let Err(error) = machine.rotary_inside(command) {
-        let help = both!(
+        return Err(Failure::at_row(row)(notice!(AXES;
+            error.text();
             "angles are machine coordinates, degrees; `travel_deg` and the error tables of the profile say how far they go",
             "углы — координаты станка в градусах; их пределы — `travel_deg` и таблицы погрешностей профиля"
-        );
-        return Err(row.refuse_row(AXES, error.text(), both!("this row", "эта строка"), help).into());
+        )));
     }
     Ok(())
 }
