@@ -4,7 +4,7 @@ use diagnostic::{Text, both};
 use machine_model::Models;
 use nc_expand::Expanded;
 use path_comparison::{Comparison, Course, Lean, Traces};
-use rewrite::Checked;
+use rewrite::{Checked, Job};
 use serde::Serialize;
 
 use crate::message::Failure;
@@ -197,7 +197,7 @@ pub fn closed(
     });
     let [wanted, commanded] = programs;
     let (wanted, commanded): ((_, _, Expanded<'_>), (_, _, Expanded<'_>)) = (wanted?, commanded?);
-    let job = settings.job(true, "")?;
+    let job = Job { force: true, ..settings.job("")? };
     rewrite::check(&job, [&wanted.2, &commanded.2], traces, progress).map_err(|unreadable| {
         let (name, text, expanded) = [&wanted, &commanded][unreadable.program];
         Failure::Refused(expand::reports(expanded, name, text, unreadable.diagnostics))
@@ -222,7 +222,7 @@ pub fn courses(
     each: &mut dyn FnMut(usize, Course),
 ) -> Result<Vec<CalledFile>, Failure> {
     let expanded = expand::expanded(text, name, settings)?;
-    let job = settings.job(true, "")?;
+    let job = Job { force: true, ..settings.job("")? };
     let models: Vec<Models<'_>> = std::iter::once(job.models).chain(others.iter().copied()).collect();
     rewrite::courses(&job, &models, &expanded, COURSE_STEP_MM, each)
         .map_err(|diagnostics| Failure::Refused(expand::reports(&expanded, name, text, diagnostics)))?;

@@ -5,7 +5,7 @@ use machine_model::effects::Conditions;
 use machine_model::{Engine, EngineId};
 use machine_profile::{EngineError, Profile};
 
-use crate::message::{Failure, OPTION, Report};
+use crate::message::{Failure, OPTION, Report, notice};
 use crate::options::JobOptions;
 use crate::values::Condition;
 
@@ -35,14 +35,11 @@ pub fn conditions(options: &JobOptions) -> Result<Conditions, Failure> {
             };
             for place in places {
                 if place.replace(*value).is_some() {
-                    return Err(Failure::option(
-                        both!(
-                            "`--at {given}`: `{}` is given twice",
-                            "`--at {given}`: `{}` дано дважды",
-                            condition.name()
-                        ),
-                        both!("leave one", "оставьте одно"),
-                    ));
+                    return Err(Failure::usage(notice!(OPTION;
+                        "`--at {given}`: `{}` is given twice",
+                        "`--at {given}`: `{}` дано дважды", condition.name();
+                        "leave one", "оставьте одно"
+                    )));
                 }
             }
         }
@@ -78,11 +75,12 @@ pub fn temperature(
         }
     }
     Ok(worst.map(|(letter, temperature, um)| {
-        let message = both!("the machine was calibrated at {calibrated_c} °C and is used at {temperature} °C: steel grows by {um:.1} um over the volume in {letter}", "станок откалиброван при {calibrated_c} °C, а работает при {temperature} °C: сталь удлиняется по {letter} на длине объёма на {um:.1} мкм"
-        );
-        let diagnostic = Diagnostic::warning(OTHER_TEMPERATURE, message).help(both!("calibrate at the temperature of use, or give the profile a `thermal.{letter}` effect", "калибруйте при рабочей температуре или внесите в профиль эффект `thermal.{letter}`"
-        ));
-        Report { source: None, diagnostics: vec![diagnostic] }
+        Report::warning(notice!(OTHER_TEMPERATURE;
+            "the machine was calibrated at {calibrated_c} °C and is used at {temperature} °C: steel grows by {um:.1} um over the volume in {letter}",
+            "станок откалиброван при {calibrated_c} °C, а работает при {temperature} °C: сталь удлиняется по {letter} на длине объёма на {um:.1} мкм";
+            "calibrate at the temperature of use, or give the profile a `thermal.{letter}` effect",
+            "калибруйте при рабочей температуре или внесите в профиль эффект `thermal.{letter}`"
+        ))
     }))
 }
 

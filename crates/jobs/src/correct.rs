@@ -61,7 +61,7 @@ pub fn in_memory(
     progress: impl FnMut(f64) -> Result<(), Failure>,
 ) -> Result<(Vec<u8>, Program), Failure> {
     let expand::Done { corrected, warnings, lookups } =
-        expand::correct(text, name, settings, manner.force, progress)?;
+        expand::correct(text, name, settings, manner, progress)?;
     let program = Program {
         name: name.to_owned(),
         input: Digest::of(text, manner.hashes),

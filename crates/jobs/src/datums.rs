@@ -6,7 +6,8 @@ use machine_profile::{Found, Profile, TouchPlace, TouchedBy};
 use nc_program::{Setup, ToolLength};
 use rewrite::{Datum, Datums, Touch, TouchTool, Touches, Zero};
 
-use crate::message::Failure;
+use crate::map::study::WorkOffset;
+use crate::message::{Failure, OPTION, notice};
 use crate::options::{self, JobOptions};
 use crate::setup;
 use crate::stored::Stored;
@@ -80,13 +81,11 @@ impl FromZero {
         let Some(name) = name else { return Ok(Self(None)) };
         let setup = setup::setup(options, profile, &Stored::default())?;
         let Some((_, zero_mm)) = setup.work_offsets.iter().find(|(known, _)| known == name) else {
-            return Err(Failure::option(
-                both!("the profile has no {name}", "в профиле нет {name}"),
-                both!(
-                    "`--datum` names one of [work_offsets_mm]: add `{name} = [x, y, z]` there, how it was touched beside it",
-                    "`--datum` — одно из [work_offsets_mm]: добавьте туда `{name} = [x, y, z]` и как его нашли"
-                ),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "the profile has no {name}", "в профиле нет {name}";
+                "`--datum` names one of [work_offsets_mm]: add `{name} = [x, y, z]` there, how it was touched beside it",
+                "`--datum` — одно из [work_offsets_mm]: добавьте туда `{name} = [x, y, z]` и как его нашли"
+            )));
         };
         Ok(Self(Some((of(options, profile, &setup, engine)?, name.to_owned(), *zero_mm))))
     }
@@ -109,9 +108,6 @@ impl FromZero {
     }
 }
 
-/// A work offset by its name, its machine coordinate, mm, and how far its zero lies from there, mm, where touched.
-pub type OffsetFound = (String, Vector, Option<Vector>);
-
 /// How far the zeros of a profile lie from where it says, mm: what is in those that were touched of the machine's error; `None`
 /// for true ones.
 ///
@@ -121,13 +117,14 @@ pub fn of_offsets(
     options: &JobOptions,
     profile: &Profile,
     engine: &dyn Engine,
-) -> Result<Vec<OffsetFound>, Failure> {
+) -> Result<Vec<WorkOffset>, Failure> {
     let setup = setup::setup(options, profile, &Stored::default())?;
     let datums = of(options, profile, &setup, engine)?;
     let offsets = setup.work_offsets.iter().map(|(name, zero_mm)| {
         let datum =
             engine.path_model().and_then(|of| datums.of_zero(of, name.clone(), *zero_mm, &datums.tool));
-        (name.clone(), Vector::from(*zero_mm), datum.map(|datum| datum.error_mm.into()))
+        let touched_mm = datum.map(|datum| datum.error_mm.into());
+        WorkOffset { name: name.clone(), zero_mm: Vector::from(*zero_mm), touched_mm }
     });
     Ok(offsets.collect())
 }
@@ -155,18 +152,12 @@ fn inside(name: &str, way: &Way, engine: &dyn Engine) -> Result<(), Failure> {
         .filter_map(|(place, range)| Some(((*place)?, range)))
         .find(|(place, range)| !range.contains(*place))
     {
-        return Err(Failure::option(
-            both!(
-                "{name} was aligned to the way at {place} mm, outside the calibrated {} to {} mm",
-                "{name} выверен по ходу у {place} мм, вне калиброванных {}–{} мм",
-                range.low,
-                range.high
-            ),
-            both!(
-                "`aligned` takes axis commands (machine coordinates); calibrate a volume that holds them",
-                "`aligned` — команды осей (координаты станка); калибруйте объём, в котором они лежат"
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "{name} was aligned to the way at {place} mm, outside the calibrated {} to {} mm",
+            "{name} выверен по ходу у {place} мм, вне калиброванных {}–{} мм", range.low, range.high;
+            "`aligned` takes axis commands (machine coordinates); calibrate a volume that holds them",
+            "`aligned` — команды осей (координаты станка); калибруйте объём, в котором они лежат"
+        )));
     }
     Ok(())
 }
@@ -182,17 +173,12 @@ fn touches(
         let volume = engine.volume();
         if let Some(place) = at_mm.iter().find(|place| !volume.contains(&Vector::from(**place))) {
             let [x, y, z] = place;
-            return Err(Failure::option(
-                both!(
-                    "{} of {name} was touched at X{x} Y{y} Z{z}, outside the calibrated volume",
-                    "{} нуля {name} касались в X{x} Y{y} Z{z}, вне калиброванного объёма",
-                    ["X", "Y", "Z"][axis]
-                ),
-                both!(
-                    "`touched_at` takes axis commands (machine coordinates, the tool's length added); calibrate a volume that holds the place, or write zero = \"true\" where the offset was found another way",
-                    "`touched_at` — команды осей (координаты станка с прибавленной длиной инструмента); калибруйте объём, в котором лежит это место, или напишите zero = \"true\", если нуль найден иначе"
-                ),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "{} of {name} was touched at X{x} Y{y} Z{z}, outside the calibrated volume",
+                "{} нуля {name} касались в X{x} Y{y} Z{z}, вне калиброванного объёма", ["X", "Y", "Z"][axis];
+                "`touched_at` takes axis commands (machine coordinates, the tool's length added); calibrate a volume that holds the place, or write zero = \"true\" where the offset was found another way",
+                "`touched_at` — команды осей (координаты станка с прибавленной длиной инструмента); калибруйте объём, в котором лежит это место, или напишите zero = \"true\", если нуль найден иначе"
+            )));
         }
         let tool = match tool {
             None => None,
@@ -203,16 +189,12 @@ fn touches(
             Some(TouchedBy::Length(number)) => match setup.tools.iter().find(|(own, _)| own == number) {
                 Some((_, length_mm)) => Some(touch_tool(setup, *length_mm)),
                 None => {
-                    return Err(Failure::option(
-                        both!(
-                            "{name} was touched with H{number}, whose length is not given",
-                            "{name} касались инструментом H{number}, длина которого не задана"
-                        ),
-                        both!(
-                            "add H{number} to `lengths_mm` under `[tool]`, or give the probe's length in mm: tool = 80.0",
-                            "добавьте H{number} в `lengths_mm` раздела `[tool]` или задайте длину щупа в мм: tool = 80.0"
-                        ),
-                    ));
+                    return Err(Failure::usage(notice!(OPTION;
+                        "{name} was touched with H{number}, whose length is not given",
+                        "{name} касались инструментом H{number}, длина которого не задана";
+                        "add H{number} to `lengths_mm` under `[tool]`, or give the probe's length in mm: tool = 80.0",
+                        "добавьте H{number} в `lengths_mm` раздела `[tool]` или задайте длину щупа в мм: tool = 80.0"
+                    )));
                 }
             },
         };

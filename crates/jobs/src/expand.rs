@@ -6,7 +6,7 @@ use std::io;
 use diagnostic::Diagnostic;
 use nc_expand::{Environment, Expanded};
 use nc_program::{Evidence, Finding};
-use rewrite::{Corrected, Job};
+use rewrite::{Corrected, Job, Manner};
 use serde::{Deserialize, Serialize};
 
 use crate::flow::Flow;
@@ -98,17 +98,17 @@ pub fn correct(
     text: &[u8],
     name: &str,
     settings: &Settings,
-    force: bool,
+    manner: Manner,
     mut progress: impl FnMut(f64) -> Result<(), Failure>,
 ) -> Result<Done, Failure> {
     nc_syntax::looks_like_program(text)
         .map_err(|diagnostic| Failure::refused(name, text, vec![diagnostic]))?;
     // The mark of an earlier correction may stand where the flat program does not come by.
-    if let (Some(diagnostic), false) = (rewrite::corrected_before(text), force) {
+    if let (Some(diagnostic), false) = (rewrite::corrected_before(text), manner.force) {
         return Err(Failure::refused(name, text, vec![diagnostic]));
     }
-    let done = match correct_plain(text, name, settings, force, &mut progress) {
-        Ok(None) => correct_expanded(text, name, settings, force, progress),
+    let done = match correct_plain(text, name, settings, manner, &mut progress) {
+        Ok(None) => correct_expanded(text, name, settings, progress),
         Ok(Some(done)) => Ok(done),
         Err(failure) => Err(failure),
     };
@@ -136,7 +136,6 @@ fn correct_expanded(
     text: &[u8],
     name: &str,
     settings: &Settings,
-    force: bool,
     mut progress: impl FnMut(f64) -> Result<(), Failure>,
 ) -> Result<Done, Failure> {
     // Of the text as it was written: a loop counts once, and what is computed says nothing of how lengths are written.
@@ -155,7 +154,7 @@ fn correct_expanded(
         provenance.push_str(expanded.what());
     }
     // Looked for above, in the text as it was given.
-    let job = Job { force: true, ..settings.job(force, &provenance)? };
+    let job = Job { force: true, ..settings.job(&provenance)? };
     let total = expanded.text().len().max(1) as f64;
     let source_line = |line| expanded.source_line(line).1;
     let result = rewrite::correct(expanded.text(), &job, source_line, |done| {
@@ -199,11 +198,11 @@ fn correct_plain(
     text: &[u8],
     name: &str,
     settings: &Settings,
-    force: bool,
+    manner: Manner,
     mut progress: impl FnMut(f64) -> Result<(), Failure>,
 ) -> Result<Option<Done>, Failure> {
     let provenance = settings.provenance();
-    let job = settings.job(force, &provenance)?;
+    let job = Job { force: manner.force, ..settings.job(&provenance)? };
     let total = text.len().max(1) as f64;
     let result =
         rewrite::correct_plain(text, &job, |done| progress(done as f64 / total).map_err(PipelineEnd::Failed));

@@ -13,6 +13,14 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
+/// A number with at most so many decimals, without zeros at its end and without minus zero.
+#[must_use]
+pub fn short(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
 /// Micrometres with two decimals.
 #[must_use]
 pub fn um(mm: f64) -> String {

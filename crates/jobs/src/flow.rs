@@ -3,10 +3,9 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use diagnostic::both;
 use nc_expand::{Limits, Preset};
 
-use crate::message::Failure;
+use crate::message::{Failure, OPTION, notice};
 use crate::options::JobOptions;
 
 /// A subprogram's file is no larger.
@@ -29,13 +28,10 @@ impl Flow {
     pub fn load(options: &JobOptions) -> Result<Self, Failure> {
         for folder in &options.include {
             if !folder.is_dir() {
-                return Err(Failure::option(
-                    both!("`--include {}` is no folder", "`--include {}` — не папка", folder.display()),
-                    both!(
-                        "give the folder that holds the subprograms",
-                        "дайте папку, где лежат подпрограммы"
-                    ),
-                ));
+                return Err(Failure::usage(notice!(OPTION;
+                    "`--include {}` is no folder", "`--include {}` — не папка", folder.display();
+                    "give the folder that holds the subprograms", "дайте папку, где лежат подпрограммы"
+                )));
             }
         }
         let presets = options.set.iter().map(|given| (**given).clone()).collect();

@@ -4,6 +4,7 @@
 //! that the profile names, and the folders of subprograms; programs, points and measurements come as bytes, and nothing
 //! is written or printed: messages are values that [`message::Wording`] makes text of.
 
+pub mod budget;
 pub mod causes;
 pub mod check;
 pub mod conditions;
@@ -11,6 +12,7 @@ pub mod correct;
 pub mod datums;
 pub mod diagnose;
 pub mod expand;
+pub mod export;
 pub mod figures;
 pub mod flow;
 pub mod lines;
@@ -26,4 +28,5 @@ pub mod shown;
 pub mod solve;
 mod stored;
 pub mod summary;
+pub mod turned;
 pub mod values;

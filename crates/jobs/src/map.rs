@@ -1,12 +1,19 @@
 //! The error over the volume: where it is asked for, and what it is there.
 
-use diagnostic::{Diagnostic, Speaks, Text, both};
+pub mod asked;
+pub mod curves;
+pub mod deformation;
+pub mod dominant;
+pub mod second_order;
+pub mod study;
+
+use diagnostic::{Speaks, Text, both};
 use error_map::{ErrorMap, Grid, Nodes};
 use machine_model::{Command, Engine, PathModel, Range, SolveError, Vector, Volume};
 use machine_profile::Profile;
 use rayon::prelude::*;
 
-use crate::message::{Failure, Report};
+use crate::message::{Failure, OPTION, Report, notice};
 use crate::options::{JobOptions, Outside};
 use crate::predict::{POINT_OUTSIDE, other_tool};
 use crate::values::{Given, Lattice, Rotary, ToolVector};
@@ -17,17 +24,12 @@ use crate::values::{Given, Lattice, Rotary, ToolVector};
 /// It only solves.
 pub fn model(engine: &dyn Engine) -> Result<&dyn PathModel, Failure> {
     engine.path_model().ok_or_else(|| {
-        Failure::option(
-            both!(
-                "engine `{}` has no forward model: it reproduces a publication",
-                "у метода `{}` нет прямой модели: он воспроизводит публикацию",
-                engine.id()
-            ),
-            both!(
-                "leave `--engine` out, or take one of the engines without `-published`",
-                "уберите `--engine` или возьмите метод без `-published`"
-            ),
-        )
+        Failure::usage(notice!(OPTION;
+            "engine `{}` has no forward model: it reproduces a publication",
+            "у метода `{}` нет прямой модели: он воспроизводит публикацию", engine.id();
+            "leave `--engine` out, or take one of the engines without `-published`",
+            "уберите `--engine` или возьмите метод без `-published`"
+        ))
     })
 }
 
@@ -36,14 +38,7 @@ pub fn model(engine: &dyn Engine) -> Result<&dyn PathModel, Failure> {
 /// # Errors
 /// Which it knows.
 pub fn require_tool(model: &dyn PathModel, tool_mm: Vector) -> Result<(), Failure> {
-    let rotary_rad = Vector::zeros();
-    match model.knows(&Command {
-        linear_mm: rotary_rad,
-        rotary_rad,
-        tool_mm,
-        direction: [0; 3],
-        ..Default::default()
-    }) {
+    match model.knows(&Command { tool_mm, ..Command::default() }) {
         Err(error @ SolveError::OtherTool { .. }) => {
             let help = both!(
                 "give the tool vector of the measured vectors with `--tool-vector X,Y,Z`, or write it as default_mm",
@@ -81,18 +76,17 @@ pub fn outside(
                 known.high
             );
             if options.outside != Some(Outside::Clamp) {
-                let help = both!(
+                return Err(Failure::usage(notice!(POINT_OUTSIDE;
+                    message;
                     "stay inside, or take the nearest point's error with `--outside clamp`",
                     "оставайтесь внутри или возьмите погрешность ближайшей точки: `--outside clamp`"
-                );
-                return Err(Failure::usage(Diagnostic::error(POINT_OUTSIDE, message).help(help)));
+                )));
             }
-            let help = both!(
+            warnings.push(Report::warning(notice!(POINT_OUTSIDE;
+                message;
                 "the nodes outside have the error of the volume's nearest point",
                 "у узлов снаружи погрешность ближайшей точки объёма"
-            );
-            let diagnostic = Diagnostic::warning(POINT_OUTSIDE, message).help(help);
-            warnings.push(Report { source: None, diagnostics: vec![diagnostic] });
+            )));
         }
     }
     Ok(warnings)
@@ -112,13 +106,11 @@ pub fn evaluated(grid: Grid, error_mm: impl Fn(&Vector) -> Vector + Sync) -> Err
 /// Nodes that cannot be.
 pub fn grid(given: &Given<Lattice>, volume: Volume) -> Result<Grid, Failure> {
     let refuse = |why: Text| {
-        Failure::option(
-            both!("`--grid {given}`: {why}", "`--grid {given}`: {why:#}"),
-            both!(
-                "write numbers of nodes as in `--grid 22x22x21`, or from:to:step in mm as in `--grid 40:880:40,30:450:20,5:505:25`",
-                "напишите числа узлов, например `--grid 22x22x21`, или от:до:шаг в мм, например `--grid 40:880:40,30:450:20,5:505:25`"
-            ),
-        )
+        Failure::usage(notice!(OPTION;
+            "`--grid {given}`: {why}", "`--grid {given}`: {why:#}";
+            "write numbers of nodes as in `--grid 22x22x21`, or from:to:step in mm as in `--grid 40:880:40,30:450:20,5:505:25`",
+            "напишите числа узлов, например `--grid 22x22x21`, или от:до:шаг в мм, например `--grid 40:880:40,30:450:20,5:505:25`"
+        ))
     };
     let axis = |k: usize| match **given {
         Lattice::Counts(counts) => Nodes::over(volume.0[k], counts[k]),
@@ -148,13 +140,11 @@ pub fn tool(
                 Vector::new(0.0, 0.0, profile.gauge_point_mm.unwrap_or(0.0)) - Vector::from(*length)
             })
             .ok_or_else(|| {
-                Failure::option(
-                    both!(
-                        "`--tool-vector H{number}`: neither the profile nor `--tool` has an H{number}",
-                        "`--tool-vector H{number}`: H{number} нет ни в профиле, ни в `--tool`"
-                    ),
-                    both!("add `--tool H{number}=120`", "добавьте `--tool H{number}=120`"),
-                )
+                Failure::usage(notice!(OPTION;
+                    "`--tool-vector H{number}`: neither the profile nor `--tool` has an H{number}",
+                    "`--tool-vector H{number}`: H{number} нет ни в профиле, ни в `--tool`";
+                    "add `--tool H{number}=120`", "добавьте `--tool H{number}=120`"
+                ))
             }),
     }
 }
@@ -167,32 +157,21 @@ pub fn rotary(given: Option<&Given<Rotary>>, profile: &Profile) -> Result<Vector
     let Some(given) = given else { return Ok(Vector::zeros()) };
     for (axis, angle) in given.0.iter().enumerate() {
         if angle.is_some() && !profile.has_rotary()[axis] {
-            return Err(Failure::option(
-                both!(
-                    "`--rotary {given}`: the profile's chain has no such axis",
-                    "`--rotary {given}`: такой оси в цепи профиля нет"
-                ),
-                both!("the chain is {}", "цепь — {}", profile.chain()),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "`--rotary {given}`: the profile's chain has no such axis",
+                "`--rotary {given}`: такой оси в цепи профиля нет";
+                "the chain is {}", "цепь — {}", profile.chain()
+            )));
         }
     }
     let rotary_rad = Vector::from(given.0.map(|angle| angle.unwrap_or(0.0).to_radians()));
-    let turned = Command {
-        linear_mm: Vector::zeros(),
-        rotary_rad,
-        tool_mm: Vector::zeros(),
-        direction: [0; 3],
-        ..Default::default()
-    };
+    let turned = Command { rotary_rad, ..Command::default() };
     profile.rigid_body_without_effects().rotary_inside(&turned).map_err(|error| {
         let error = error.text();
-        Failure::option(
-            both!("`--rotary {given}`: {error}", "`--rotary {given}`: {error:#}"),
-            both!(
-                "give angles inside its travel and its table",
-                "дайте углы в пределах её хода и её таблицы"
-            ),
-        )
+        Failure::usage(notice!(OPTION;
+            "`--rotary {given}`: {error}", "`--rotary {given}`: {error:#}";
+            "give angles inside its travel and its table", "дайте углы в пределах её хода и её таблицы"
+        ))
     })?;
     Ok(rotary_rad)
 }

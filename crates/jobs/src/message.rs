@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use diagnostic::{Code, Diagnostic, Language, Severity, Text, both, of_system};
+use measurement_files::Row;
 
 use crate::shown::{is_obeyed, shown};
 
@@ -49,6 +50,29 @@ impl Source {
     }
 }
 
+/// An error without a place: its number, what is wrong, and what to type, both as [`both!`](diagnostic::both) has them.
+///
+/// ```
+/// use jobs::message::{OPTION, notice};
+///
+/// let refused = notice!(OPTION; "`--step {}` is none", "`--step {}` — не шаг", 0; "write `--step 50`", "напишите `--step 50`");
+/// assert_eq!(refused.to_string(), "error[VP0002]: `--step 0` is none");
+/// ```
+#[macro_export]
+macro_rules! notice {
+    ($code:expr; $english:literal, $russian:literal $(, $value:expr)*; $help:literal, $help_in_russian:literal $(, $help_value:expr)*) => {
+        $crate::notice!($code; $english, $russian $(, $value)*; ::diagnostic::both!($help, $help_in_russian $(, $help_value)*))
+    };
+    ($code:expr; $english:literal, $russian:literal $(, $value:expr)*; $help:expr) => {
+        ::diagnostic::Diagnostic::error($code, ::diagnostic::both!($english, $russian, $($value),*)).help($help)
+    };
+    ($code:expr; $message:expr; $help:literal, $help_in_russian:literal $(, $help_value:expr)*) => {
+        ::diagnostic::Diagnostic::error($code, $message)
+            .help(::diagnostic::both!($help, $help_in_russian, $($help_value),*))
+    };
+}
+pub use notice;
+
 /// Diagnostics and the text they are about.
 #[derive(Debug, Clone)]
 pub struct Report {
@@ -56,6 +80,14 @@ pub struct Report {
     pub source: Option<Source>,
     /// The diagnostics.
     pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Report {
+    /// What is said as a warning about no text.
+    #[must_use]
+    pub fn warning(said: Diagnostic) -> Self {
+        Self { source: None, diagnostics: vec![Diagnostic { severity: Severity::Warning, ..said }] }
+    }
 }
 
 /// Why the command ends without having done its work.
@@ -103,9 +135,28 @@ impl Failure {
 
     /// What was measured, or a program, is refused, and there is no text to point at.
     #[must_use]
+    pub fn unfit(diagnostic: Diagnostic) -> Self {
+        Self::Refused(vec![Report { source: None, diagnostics: vec![diagnostic] }])
+    }
+
+    /// The same of its parts.
+    #[must_use]
     pub fn alone(code: Code, message: Text, help: Text) -> Self {
-        let diagnostics = vec![Diagnostic::error(code, message).help(help)];
-        Self::Refused(vec![Report { source: None, diagnostics }])
+        Self::unfit(Diagnostic::error(code, message).help(help))
+    }
+
+    /// What is refused of a cell in a table of measurements.
+    pub fn at_cell(row: &Row<'_>, key: &str) -> impl FnOnce(Diagnostic) -> Self {
+        |Diagnostic { code, message, help, .. }| {
+            row.refuse(code, key, message, help.unwrap_or(Text::EMPTY)).into()
+        }
+    }
+
+    /// What is refused of a whole row of such a table.
+    pub fn at_row(row: &Row<'_>) -> impl FnOnce(Diagnostic) -> Self {
+        |Diagnostic { code, message, help, .. }| {
+            row.refuse_row(code, message, both!("this row", "эта строка"), help.unwrap_or(Text::EMPTY)).into()
+        }
     }
 
     /// A question that only the user can answer, or a slip of theirs.

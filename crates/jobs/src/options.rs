@@ -9,7 +9,7 @@ use machine_model::EngineId;
 use nc_expand::Preset;
 use serde::{Deserialize, Serialize};
 
-use crate::message::Failure;
+use crate::message::{Failure, OPTION, notice};
 use crate::values::{Conditions, Given, Start, ToolLength, Unread, WorkOffset};
 
 /// What decides the output of a job besides the program; a manifest keeps it.
@@ -200,13 +200,10 @@ impl JobOptions {
             unread(&error).unwrap_or_else(|| {
                 let text = error.to_string();
                 let first = text.lines().next().unwrap_or_default();
-                Failure::option(
-                    Text::english_only(first.trim_start_matches("error: ")),
-                    both!(
-                        "see docs/reference.md for what it takes",
-                        "что он принимает, сказано в docs/reference.md"
-                    ),
-                )
+                Failure::usage(notice!(OPTION;
+                    Text::english_only(first.trim_start_matches("error: "));
+                    "see docs/reference.md for what it takes", "что он принимает, сказано в docs/reference.md"
+                ))
             })
         })
     }
@@ -304,10 +301,10 @@ pub fn unread(error: &clap::Error) -> Option<Failure> {
     let why = std::error::Error::source(error)?;
     Some(match why.downcast_ref::<Unread>() {
         Some(unread) => Failure::option(unread.message(option, given), unread.help(option)),
-        None => Failure::option(
-            both!("`{option} {given}`: {why}", "`{option} {given}`: {why}"),
-            both!("see `--help` for what the option takes", "что принимает ключ, скажет `--help`"),
-        ),
+        None => Failure::usage(notice!(OPTION;
+            "`{option} {given}`: {why}", "`{option} {given}`: {why}";
+            "see `--help` for what the option takes", "что принимает ключ, скажет `--help`"
+        )),
     })
 }
 

@@ -8,7 +8,7 @@ use machine_profile::Profile;
 use rewrite::OTHER_TOOL;
 
 use crate::conditions::{self, conditions, engine, failure};
-use crate::message::{Failure, Report};
+use crate::message::{Failure, OPTION, Report, notice};
 use crate::options::{JobOptions, Outside};
 
 /// Points outside the calibrated volume.
@@ -66,14 +66,11 @@ impl<'p> Predictor<'p> {
         let other = Some(id).filter(|id| *id != EngineId::RigidBody);
         let engine = other.map(|id| engine(profile, id, options)).transpose()?;
         if let Some(engine) = engine.as_ref().filter(|engine| engine.path_model().is_none()) {
-            return Err(Failure::option(
-                both!(
-                    "engine `{}` has no forward model: it reproduces a publication",
-                    "у метода `{}` нет прямой модели: он воспроизводит публикацию",
-                    engine.id()
-                ),
-                both!("use it with `vpost solve`", "используйте его с `vpost solve`"),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "engine `{}` has no forward model: it reproduces a publication",
+                "у метода `{}` нет прямой модели: он воспроизводит публикацию", engine.id();
+                "use it with `vpost solve`", "используйте его с `vpost solve`"
+            )));
         }
         Ok(Self { profile, machine, engine, frame })
     }
@@ -199,14 +196,11 @@ impl PointsOutside {
             self.of
         );
         if options.outside == Some(Outside::Refuse) {
-            return Diagnostic::error(
-                POINT_OUTSIDE,
-                both!("{message}, the first is point {first}", "{message:#}, первая — точка {first}"),
-            )
-            .help(both!(
+            return notice!(POINT_OUTSIDE;
+                "{message}, the first is point {first}", "{message:#}, первая — точка {first}";
                 "leave them out, or drop `--outside refuse` to take the nearest point's error",
                 "исключите их или уберите `--outside refuse`, чтобы взять погрешность ближайшей точки"
-            ));
+            );
         }
         Diagnostic::warning(POINT_OUTSIDE, message).help(both!(
             "point {first} is the first; each has the error of the volume's nearest point",

@@ -6,7 +6,7 @@ use diagnostic::{Code, Diagnostic, both};
 use machine_profile::{Profile, ProfileError};
 
 use crate::lines;
-use crate::message::{Failure, Report, Source};
+use crate::message::{Failure, OPTION, Report, Source, notice};
 
 /// A profile and the bytes it was made from.
 pub struct Loaded {
@@ -26,18 +26,12 @@ pub fn load_mill(path: &Path) -> Result<Loaded, Failure> {
     let loaded = load(path)?;
     match &loaded.profile.lathe {
         None => Ok(loaded),
-        Some(lathe) => Err(Failure::option(
-            both!(
-                "{} is the profile of a lathe, {}",
-                "{} — профиль токарного станка, {}",
-                lines::name(path),
-                lathe.chain
-            ),
-            both!(
-                "of lathes `vpost correct`, `batch`, `check`, `predict --lathe PROGRAM`, `calibrate turning`, `diagnose` and `profile export` know",
-                "токарные станки знают `vpost correct`, `batch`, `check`, `predict --lathe PROGRAM`, `calibrate turning`, `diagnose` и `profile export`"
-            ),
-        )),
+        Some(lathe) => Err(Failure::usage(notice!(OPTION;
+            "{} is the profile of a lathe, {}",
+            "{} — профиль токарного станка, {}", lines::name(path), lathe.chain;
+            "of lathes `vpost correct`, `batch`, `check`, `predict --lathe PROGRAM`, `calibrate turning`, `diagnose` and `profile export` know",
+            "токарные станки знают `vpost correct`, `batch`, `check`, `predict --lathe PROGRAM`, `calibrate turning`, `diagnose` и `profile export`"
+        ))),
     }
 }
 
@@ -112,11 +106,10 @@ const MOST_TOLD: usize = 20;
 fn some_of(mut errors: Vec<ProfileError>) -> Vec<ProfileError> {
     if let Some(next) = errors.get(MOST_TOLD) {
         let more = errors.len() - MOST_TOLD;
-        let diagnostic = Diagnostic::error(
-            next.diagnostic.code,
-            both!("and {more} more errors of this profile", "и ещё ошибки этого профиля: {more}"),
-        )
-        .help(both!("mend those above first", "исправьте сначала те, что выше"));
+        let diagnostic = notice!(next.diagnostic.code;
+            "and {more} more errors of this profile", "и ещё ошибки этого профиля: {more}";
+            "mend those above first", "исправьте сначала те, что выше"
+        );
         errors.truncate(MOST_TOLD);
         errors.push(ProfileError { file: None, diagnostic });
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use correction::{Options, Orientation, Outside};
 use diagnostic::{Code, Diagnostic, Text, both};
-use machine_model::{Command, Engine, EngineId, Models, PathModel, TipControl, Vector};
+use machine_model::{Command, Engine, EngineId, Models, PathModel, TipControl};
 use machine_profile::{BareLengths, Profile, TurningRules};
 use nc_program::{Questions, Setup};
 use nc_syntax::Dialect;
@@ -15,7 +15,7 @@ use nc_syntax::dialect::{
 use rewrite::{Datums, Guards, Job};
 
 use crate::flow::Flow;
-use crate::message::{Failure, OPTION, Report, Source};
+use crate::message::{Failure, OPTION, Report, Source, notice};
 use crate::options::{self, JobOptions};
 pub use crate::setup::tools;
 use crate::setup::{setup, start_anywhere};
@@ -101,19 +101,7 @@ impl Settings {
             dialect.output.arc_radius_tolerance_mm = mm;
             dialect.output.arc_radius_tolerance_inch = None;
         }
-        let tolerance_um = options.tolerance.unwrap_or(profile.correction.tolerance_um);
-        if !(tolerance_um > 0.0 && tolerance_um.is_finite()) {
-            return Err(Failure::option(
-                both!(
-                    "a tolerance of {tolerance_um} um cannot be kept",
-                    "допуск {tolerance_um} мкм выдержать нельзя"
-                ),
-                both!(
-                    "give micrometres above zero: `--tolerance 1`",
-                    "дайте микрометры больше нуля: `--tolerance 1`"
-                ),
-            ));
-        }
+        let tolerance_um = tolerance_um(options, &profile)?;
         let datums = datums::of(options, &profile, &setup, engine.as_ref())?;
         let engine = datums::counted_from(&datums, engine);
         let orientation = orientation(&profile, options, engine.as_ref())?;
@@ -123,15 +111,11 @@ impl Settings {
         }
         let warning = conditions::temperature(&profile, options, tolerance_um)?;
         let doubts = conditions::doubts(&profile, engine_id);
-        let outside = match (options.outside, profile.correction.outside) {
-            (Some(options::Outside::Refuse), _) | (None, machine_profile::Outside::Refuse) => Outside::Refuse,
-            (Some(options::Outside::Clamp), _) | (None, machine_profile::Outside::Clamp) => Outside::Clamp,
-        };
         let limits = Options {
             tolerance_mm: tolerance_um * 1e-3,
             accept_mm: 1e-3
                 * options.accept.or(profile.correction.accept_um).unwrap_or(ACCEPTED * tolerance_um),
-            outside,
+            outside: outside(options, &profile),
             minimum_segment_mm: profile.correction.minimum_segment_mm,
             orientation_rad: profile.correction.orientation_urad * 1e-6,
             orientation,
@@ -170,17 +154,13 @@ impl Settings {
     pub fn path_model(&self) -> Result<&dyn machine_model::PathModel, Failure> {
         self.engine.path_model().ok_or_else(|| {
             let name = self.engine.id().name();
-            Failure::option(
-                both!(
-                    "engine `{name}` reproduces a publication and corrects no programs",
-                    "метод `{name}` воспроизводит публикацию и программ не исправляет"
-                ),
-                both!(
-                    "use `--engine {}`, or `vpost solve` for single points",
-                    "возьмите `--engine {}` или, для отдельных точек, `vpost solve`",
-                    name.trim_end_matches("-published")
-                ),
-            )
+            Failure::usage(notice!(OPTION;
+                "engine `{name}` reproduces a publication and corrects no programs",
+                "метод `{name}` воспроизводит публикацию и программ не исправляет";
+                "use `--engine {}`, or `vpost solve` for single points",
+                "возьмите `--engine {}` или, для отдельных точек, `vpost solve`",
+                name.trim_end_matches("-published")
+            ))
         })
     }
 
@@ -201,7 +181,7 @@ impl Settings {
     ///
     /// # Errors
     /// The engine corrects no programs.
-    pub fn job<'a>(&'a self, force: bool, provenance: &'a str) -> Result<Job<'a>, Failure> {
+    pub fn job<'a>(&'a self, provenance: &'a str) -> Result<Job<'a>, Failure> {
         Ok(Job {
             dialect: &self.dialect,
             setup: &self.setup,
@@ -213,11 +193,33 @@ impl Settings {
             options: self.options,
             decimals_mm: self.decimals_mm(),
             rotary_steps: self.profile.resolution_deg.map(decimal_steps),
-            force,
+            force: false,
             provenance,
             guards: self.guards,
             blending_mm: self.profile.blending_mm,
         })
+    }
+}
+
+/// What correction keeps to, µm.
+fn tolerance_um(options: &JobOptions, profile: &Profile) -> Result<f64, Failure> {
+    let tolerance_um = options.tolerance.unwrap_or(profile.correction.tolerance_um);
+    if !(tolerance_um > 0.0 && tolerance_um.is_finite()) {
+        return Err(Failure::usage(notice!(OPTION;
+            "a tolerance of {tolerance_um} um cannot be kept",
+            "допуск {tolerance_um} мкм выдержать нельзя";
+            "give micrometres above zero: `--tolerance 1`",
+            "дайте микрометры больше нуля: `--tolerance 1`"
+        )));
+    }
+    Ok(tolerance_um)
+}
+
+/// What becomes of motions outside the calibrated volume.
+fn outside(options: &JobOptions, profile: &Profile) -> Outside {
+    match (options.outside, profile.correction.outside) {
+        (Some(options::Outside::Refuse), _) | (None, machine_profile::Outside::Refuse) => Outside::Refuse,
+        (Some(options::Outside::Clamp), _) | (None, machine_profile::Outside::Clamp) => Outside::Clamp,
     }
 }
 
@@ -228,17 +230,12 @@ fn guards(options: &JobOptions, dialect: &Dialect) -> Result<Guards, Failure> {
     }
     // Whether a lathe keeps X as a diameter its parameters say.
     if dialect.flow.macros == Macros::None || dialect.turning.is_some() {
-        return Err(Failure::option(
-            both!(
-                "no way is known to ask dialect {} for its work offsets",
-                "как спросить у диалекта {} его смещения нуля, неизвестно",
-                dialect.name
-            ),
-            both!(
-                "correct without `--guard`, and compare the offsets by hand",
-                "исправляйте без `--guard` и сравните смещения вручную"
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "no way is known to ask dialect {} for its work offsets",
+            "как спросить у диалекта {} его смещения нуля, неизвестно", dialect.name;
+            "correct without `--guard`, and compare the offsets by hand",
+            "исправляйте без `--guard` и сравните смещения вручную"
+        )));
     }
     Ok(Guards::Put)
 }
@@ -249,55 +246,38 @@ fn turning_dialect(dialect: Dialect, profile: &Profile) -> Result<Dialect, Failu
     let Some(turning) = &dialect.turning else {
         return match &profile.lathe {
             None => Ok(dialect),
-            Some(lathe) => Err(Failure::option(
-                both!(
-                    "dialect {name} is of mills, and {} is a lathe",
-                    "диалект {name} — фрезерный, а {} — токарный станок",
-                    lathe.chain
-                ),
-                both!("use a dialect of lathes: {}", "возьмите токарный диалект: {}", lathe_dialects()),
-            )),
+            Some(lathe) => Err(Failure::usage(notice!(OPTION;
+                "dialect {name} is of mills, and {} is a lathe",
+                "диалект {name} — фрезерный, а {} — токарный станок", lathe.chain;
+                "use a dialect of lathes: {}", "возьмите токарный диалект: {}", lathe_dialects()
+            ))),
         };
     };
     let Some(lathe) = &profile.lathe else {
-        return Err(Failure::option(
-            both!(
-                "dialect {name} is of lathes, and {} has no spindle",
-                "диалект {name} — токарный, а в {} нет шпинделя",
-                profile.chain()
-            ),
-            both!(
-                "write the chain of the lathe into the profile, like \"[w S b Z X t]\", or use a mill's dialect",
-                "впишите в профиль цепь токарного станка, например \"[w S b Z X t]\", или возьмите фрезерный диалект"
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "dialect {name} is of lathes, and {} has no spindle",
+            "диалект {name} — токарный, а в {} нет шпинделя", profile.chain();
+            "write the chain of the lathe into the profile, like \"[w S b Z X t]\", or use a mill's dialect",
+            "впишите в профиль цепь токарного станка, например \"[w S b Z X t]\", или возьмите фрезерный диалект"
+        )));
     };
     if turning.systems.is_empty() {
         return Ok(dialect);
     }
     let systems: Vec<&str> = turning.systems.iter().map(|system| system.name.as_str()).collect();
     let Some(system) = &profile.program.g_code_system else {
-        return Err(Failure::option(
-            both!(
-                "which G-code system? the profile of {} does not say",
-                "какая система G-кодов? в профиле {} не сказано",
-                lathe.chain
-            ),
-            both!(
-                "write `g_code_system = \"A\"` under `[program]`, one of: {}",
-                "впишите `g_code_system = \"A\"` в раздел `[program]`, одно из: {}",
-                systems.join(", ")
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "which G-code system? the profile of {} does not say",
+            "какая система G-кодов? в профиле {} не сказано", lathe.chain;
+            "write `g_code_system = \"A\"` under `[program]`, one of: {}",
+            "впишите `g_code_system = \"A\"` в раздел `[program]`, одно из: {}", systems.join(", ")
+        )));
     };
     dialect.in_system(system).ok_or_else(|| {
-        Failure::option(
-            both!(
-                "dialect {name} has no G-code system {system}",
-                "в диалекте {name} нет системы G-кодов {system}"
-            ),
-            both!("one of: {}", "одно из: {}", systems.join(", ")),
-        )
+        Failure::usage(notice!(OPTION;
+            "dialect {name} has no G-code system {system}", "в диалекте {name} нет системы G-кодов {system}";
+            "one of: {}", "одно из: {}", systems.join(", ")
+        ))
     })
 }
 
@@ -374,17 +354,12 @@ fn settle_lengths(options: &JobOptions, profile: &Profile, dialect: &mut Dialect
         None => return Ok(false),
         Some(BareLengths::Millimetres) => *point_free = PointFree::Unit,
         Some(BareLengths::Increments) if *point_free == PointFree::Unit => {
-            return Err(Failure::option(
-                both!(
-                    "dialect {} reads a length without a point as Z10 = Z10., not as increments",
-                    "диалект {} читает размер без точки как Z10 = Z10., а не в дискретах",
-                    dialect.name
-                ),
-                both!(
-                    "give the dialect of the control, or change `numbers.without_point` in a copy of the grammar where its manual says so",
-                    "дайте диалект этой стойки или, если так сказано в её руководстве, измените `numbers.without_point` в копии таблицы"
-                ),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "dialect {} reads a length without a point as Z10 = Z10., not as increments",
+                "диалект {} читает размер без точки как Z10 = Z10., а не в дискретах", dialect.name;
+                "give the dialect of the control, or change `numbers.without_point` in a copy of the grammar where its manual says so",
+                "дайте диалект этой стойки или, если так сказано в её руководстве, измените `numbers.without_point` в копии таблицы"
+            )));
         }
         Some(BareLengths::Increments) => {}
     }
@@ -416,16 +391,12 @@ fn declare_calls(profile: &Profile, dialect: &mut Dialect) -> Result<(), Failure
             }
         };
         if taken {
-            return Err(Failure::option(
-                both!(
-                    "the profile leaves {}{} to the control, which the table of dialect {} knows as something else",
-                    "профиль оставляет {}{} стойке, а в таблице диалекта {} это другое",
-                    call.letter,
-                    tenths / 10,
-                    dialect.name
-                ),
-                both!("remove it from `[calls]` in the profile", "уберите её из раздела `[calls]` профиля"),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "the profile leaves {}{} to the control, which the table of dialect {} knows as something else",
+                "профиль оставляет {}{} стойке, а в таблице диалекта {} это другое", call.letter, tenths / 10,
+                dialect.name;
+                "remove it from `[calls]` in the profile", "уберите её из раздела `[calls]` профиля"
+            )));
         }
         let unknown = call.unknown;
         dialect.calls.push(ControlCall { letter, tenths, program: call.program, unknown });
@@ -445,17 +416,13 @@ fn declare_harmless(profile: &Profile, dialect: &mut Dialect) -> Result<(), Fail
                 let acts =
                     row.ends_program || row.calls || row.refuse.is_some() || row.loses_position != [false; 3];
                 if acts {
-                    return Err(Failure::option(
-                        both!(
-                            "the profile calls M{number} harmless, which the table of dialect {} knows as something else",
-                            "профиль называет M{number} безобидной, а в таблице диалекта {} она значит другое",
-                            dialect.name
-                        ),
-                        both!(
-                            "remove \"M{number}\" from `harmless` under `[m_codes]`; where a tool change leaves the axes is said with `tool_change` under `[program]`",
-                            "уберите \"M{number}\" из `harmless` раздела `[m_codes]`; где оставляет оси смена инструмента, говорит `tool_change` в разделе `[program]`"
-                        ),
-                    ));
+                    return Err(Failure::usage(notice!(OPTION;
+                        "the profile calls M{number} harmless, which the table of dialect {} knows as something else",
+                        "профиль называет M{number} безобидной, а в таблице диалекта {} она значит другое",
+                        dialect.name;
+                        "remove \"M{number}\" from `harmless` under `[m_codes]`; where a tool change leaves the axes is said with `tool_change` under `[program]`",
+                        "уберите \"M{number}\" из `harmless` раздела `[m_codes]`; где оставляет оси смена инструмента, говорит `tool_change` в разделе `[program]`"
+                    )));
                 }
             }
         }
@@ -480,36 +447,25 @@ fn orientation(profile: &Profile, options: &JobOptions, engine: &dyn Engine) -> 
         both!("correct the tip alone: `--orientation xyz`", "исправляйте только вершину: `--orientation xyz`")
     };
     if profile.has_rotary().iter().filter(|has| **has).count() != 2 {
-        return Err(Failure::option(
-            both!(
-                "directions cannot be corrected on a machine with other than two rotary axes: {}",
-                "направления нельзя исправлять на станке, у которого не две поворотные оси: {}",
-                profile.chain()
-            ),
-            help(),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "directions cannot be corrected on a machine with other than two rotary axes: {}",
+            "направления нельзя исправлять на станке, у которого не две поворотные оси: {}", profile.chain();
+            help()
+        )));
     }
     let proven = engine.path_model().is_some_and(|model| {
-        let at = Command {
-            linear_mm: Vector::zeros(),
-            rotary_rad: Vector::zeros(),
-            tool_mm: Vector::zeros(),
-            direction: [0; 3],
-            ..Default::default()
-        };
+        let at = Command::default();
         model.tool_directions(&at, &at.rotary_rad).is_some()
             && model.follows_turns()
             && !model.depends_on_direction()
             && !model.has_rotary_play()
     });
     if !proven {
-        return Err(Failure::option(
-            both!(
-                "directions are corrected by engine `rigid-body` alone, without [[effect]] entries and lost motion of axes",
-                "направления исправляет только метод `rigid-body`, без разделов [[effect]] и без люфта осей"
-            ),
-            help(),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "directions are corrected by engine `rigid-body` alone, without [[effect]] entries and lost motion of axes",
+            "направления исправляет только метод `rigid-body`, без разделов [[effect]] и без люфта осей";
+            help()
+        )));
     }
     Ok(Orientation::Full(profile.correction.singularity))
 }
@@ -537,13 +493,11 @@ fn declare_switches(profile: &Profile, dialect: &mut Dialect) {
 /// None was given.
 pub fn machine(options: &JobOptions) -> Result<&Path, Failure> {
     options.machine.as_deref().ok_or_else(|| {
-        Failure::option(
-            both!("which machine? no profile was given", "какой станок? профиль не задан"),
-            both!(
-                "add `-m PROFILE.toml`, for example `-m machine-profiles/stan_s500.toml`",
-                "добавьте `-m PROFILE.toml`, например `-m machine-profiles/stan_s500.toml`"
-            ),
-        )
+        Failure::usage(notice!(OPTION;
+            "which machine? no profile was given", "какой станок? профиль не задан";
+            "add `-m PROFILE.toml`, for example `-m machine-profiles/stan_s500.toml`",
+            "добавьте `-m PROFILE.toml`, например `-m machine-profiles/stan_s500.toml`"
+        ))
     })
 }
 
@@ -555,17 +509,12 @@ pub fn setup_tool(profile: &Profile) -> [f64; 3] {
 
 fn dialect(options: &JobOptions, profile: &Profile) -> Result<Dialect, Failure> {
     let Some(name) = options.dialect.as_deref().or(profile.control.as_deref()) else {
-        return Err(Failure::option(
-            both!(
-                "which dialect? neither the profile's `control` nor `--dialect` says",
-                "какой диалект? не говорят ни `control` профиля, ни `--dialect`"
-            ),
-            both!(
-                "add `--dialect D`, one of: {}",
-                "добавьте `--dialect D`, одно из: {}",
-                nc_dialect::builtin_names().join(", ")
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "which dialect? neither the profile's `control` nor `--dialect` says",
+            "какой диалект? не говорят ни `control` профиля, ни `--dialect`";
+            "add `--dialect D`, one of: {}",
+            "добавьте `--dialect D`, одно из: {}", nc_dialect::builtin_names().join(", ")
+        )));
     };
     load_dialect(name)
 }
@@ -598,7 +547,7 @@ fn no_dialect(code: Code, name: &str) -> Diagnostic {
         "одно из: {}; или путь к файлу таблицы, который кончается на .toml",
         names.join(", ")
     ));
-    Diagnostic::error(code, both!("there is no dialect `{name}`", "диалекта `{name}` нет")).help(help)
+    notice!(code; "there is no dialect `{name}`", "диалекта `{name}` нет"; help)
 }
 
 /// Checks that there is the dialect which a profile names.

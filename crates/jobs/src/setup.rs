@@ -1,11 +1,10 @@
 //! Against what programs are read: zeros, tools, and where axes stand.
 
-use diagnostic::both;
 use machine_model::Engine;
 use machine_profile::Profile;
 use nc_program::{AfterChange, BetweenVectors, Setup};
 
-use crate::message::Failure;
+use crate::message::{Failure, OPTION, notice};
 use crate::options::JobOptions;
 use crate::stored::Stored;
 
@@ -54,29 +53,21 @@ pub(crate) fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) ->
     }
     if let Some(start) = &options.start_at {
         if setup.tip_at_start && start.linear_mm.iter().any(Option::is_some) {
-            return Err(Failure::option(
-                both!(
-                    "`--start-at` gives axis commands, and the profile says that programs begin under tool centre point control",
-                    "`--start-at` задаёт команды осей, а по профилю программы начинаются при управлении по вершине инструмента"
-                ),
-                both!(
-                    "give rotary axes alone, as in `--start-at A=0,C=0`: the first rapid that names X, Y and Z says where the tip is",
-                    "задайте только поворотные оси, например `--start-at A=0,C=0`: где вершина, скажет первый быстрый ход, в котором названы X, Y и Z"
-                ),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "`--start-at` gives axis commands, and the profile says that programs begin under tool centre point control",
+                "`--start-at` задаёт команды осей, а по профилю программы начинаются при управлении по вершине инструмента";
+                "give rotary axes alone, as in `--start-at A=0,C=0`: the first rapid that names X, Y and Z says where the tip is",
+                "задайте только поворотные оси, например `--start-at A=0,C=0`: где вершина, скажет первый быстрый ход, в котором названы X, Y и Z"
+            )));
         }
         if let Some(axis) = (0..3).find(|i| start.rotary_deg[*i].is_some() && !setup.has_rotary[*i]) {
             let name = ["A", "B", "C"][axis];
-            return Err(Failure::option(
-                both!(
-                    "`--start-at` says where {name} stands, and the machine has no such axis",
-                    "`--start-at` говорит, где стоит {name}, а такой оси у станка нет"
-                ),
-                both!(
-                    "leave it out, or name {name} in `chain` of the profile",
-                    "уберите её или назовите {name} в `chain` профиля"
-                ),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "`--start-at` says where {name} stands, and the machine has no such axis",
+                "`--start-at` говорит, где стоит {name}, а такой оси у станка нет";
+                "leave it out, or name {name} in `chain` of the profile",
+                "уберите её или назовите {name} в `chain` профиля"
+            )));
         }
         setup.start_mm = start.linear_mm;
         setup.start_deg = [0, 1, 2].map(|axis| start.rotary_deg[axis].or(setup.start_deg[axis]));

@@ -8,7 +8,7 @@ use machine_profile::{EngineError, Profile};
 use rewrite::OUTSIDE;
 
 use crate::conditions;
-use crate::message::{Failure, Report};
+use crate::message::{Failure, OPTION, Report, notice};
 use crate::options::JobOptions;
 use crate::predict::other_tool;
 
@@ -47,16 +47,12 @@ impl Solver {
         }
         if options.engine() != Some(EngineId::KmtppPublished) {
             let option = if gain.is_some() { "--gain" } else { "--step" };
-            return Err(Failure::option(
-                both!(
-                    "`{option}` is of the astatic law that `kmtpp-published` follows",
-                    "`{option}` относится к астатическому закону, которому следует `kmtpp-published`"
-                ),
-                both!(
-                    "add `--engine kmtpp-published`; the answers of the other engines depend on no such number",
-                    "добавьте `--engine kmtpp-published`; ответы других методов от этого числа не зависят"
-                ),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "`{option}` is of the astatic law that `kmtpp-published` follows",
+                "`{option}` относится к астатическому закону, которому следует `kmtpp-published`";
+                "add `--engine kmtpp-published`; the answers of the other engines depend on no such number",
+                "добавьте `--engine kmtpp-published`; ответы других методов от этого числа не зависят"
+            )));
         }
         // Says what the profile lacks.
         Self::new(profile, options)?;
@@ -90,10 +86,11 @@ impl Solver {
                     "give tool_x_mm, tool_y_mm and tool_z_mm of the vectors, or measure a field with this tool",
                     "задайте tool_x_mm, tool_y_mm и tool_z_mm измеренных векторов или измерьте поле этим инструментом"
                 )),
-                _ => Diagnostic::error(OUTSIDE, message).help(both!(
+                _ => notice!(OUTSIDE;
+                    message;
                     "leave the point out, or choose another engine with `--engine`",
                     "исключите точку или выберите другой метод ключом `--engine`"
-                )),
+                ),
             }
         })
     }

@@ -3,13 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use control_files::{Ini, Length};
-use diagnostic::both;
 use machine_profile::Profile;
 use nc_syntax::Dialect;
 use nc_syntax::dialect::Macros;
 
 use crate::lines;
-use crate::message::Failure;
+use crate::message::{Failure, OPTION, notice};
 use crate::options::JobOptions;
 
 /// What files say of lengths and zeros; where they do, the profile's do not count.
@@ -30,17 +29,11 @@ impl Stored {
     /// Files of LinuxCNC for another control; a file cannot be read; what is wrong with it.
     pub(crate) fn load(options: &JobOptions, profile: &Profile, dialect: &Dialect) -> Result<Self, Failure> {
         if options.linuxcnc_ini.is_some() && dialect.flow.macros != Macros::LinuxCnc {
-            return Err(Failure::option(
-                both!(
-                    "`--linuxcnc-ini` says what LinuxCNC keeps, and the dialect is {}",
-                    "`--linuxcnc-ini` говорит, что хранит LinuxCNC, а диалект — {}",
-                    dialect.name
-                ),
-                both!(
-                    "leave it out, or give `--dialect linuxcnc`",
-                    "уберите его или дайте `--dialect linuxcnc`"
-                ),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "`--linuxcnc-ini` says what LinuxCNC keeps, and the dialect is {}",
+                "`--linuxcnc-ini` говорит, что хранит LinuxCNC, а диалект — {}", dialect.name;
+                "leave it out, or give `--dialect linuxcnc`", "уберите его или дайте `--dialect linuxcnc`"
+            )));
         }
         let mut stored = Self::default();
         let ini = match &options.linuxcnc_ini {

@@ -1,10 +1,10 @@
 //! What a message means, from the page that explains them all.
 
 use clap::Args;
-use diagnostic::{Language, both};
+use diagnostic::Language;
 
 use crate::file;
-use crate::message::Failure;
+use crate::message::{Failure, OPTION, notice};
 
 /// `docs/diagnostics.md`: an entry for each number.
 const PAGE: &str = include_str!(env!("DIAGNOSTICS_PAGE"));
@@ -26,13 +26,11 @@ pub(crate) fn run(arguments: &Explain, language: Language) -> Result<(), Failure
     let digits = code.strip_prefix("VP").or_else(|| code.strip_prefix("vp")).unwrap_or(code);
     let entry = digits.parse::<u16>().ok().and_then(|number| entry(page(language), number));
     let Some(entry) = entry else {
-        return Err(Failure::option(
-            both!("there is no message `{code}`", "сообщения `{code}` нет"),
-            both!(
-                "give the number that stands in brackets behind `error` or `warning`, like VP0509",
-                "дайте номер, который стоит в скобках после слова «ошибка» или «предупреждение», например VP0509"
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "there is no message `{code}`", "сообщения `{code}` нет";
+            "give the number that stands in brackets behind `error` or `warning`, like VP0509",
+            "дайте номер, который стоит в скобках после слова «ошибка» или «предупреждение», например VP0509"
+        )));
     };
     file::print(format!("{entry}\n").as_bytes())
 }

@@ -17,6 +17,11 @@ pub(crate) fn without_folders(name: &str) -> &str {
     name.rsplit(['/', '\\']).next().unwrap_or(name)
 }
 
+/// What to say where something cannot be done with a file.
+pub(crate) fn fails(path: &Path, deed: Deed) -> impl Fn(std::io::Error) -> Failure {
+    move |error| Failure::file(&name(path), deed, &error)
+}
+
 /// Reads a file, or standard input for `-`.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     let result = if path.as_os_str() == "-" {
@@ -25,7 +30,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     } else {
         std::fs::read(path)
     };
-    result.map_err(|error| Failure::file(&name(path), Deed::Read, &error))
+    result.map_err(fails(path, Deed::Read))
 }
 
 /// Reads a program. Gives up at the first megabyte that holds text and no line end, whatever follows; refuses a file that
@@ -220,7 +225,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 /// A file that is written and not shown yet.
 pub(crate) fn written(path: &Path, bytes: &[u8]) -> Result<Output, Failure> {
     let mut output = Output::new(Some(path))?;
-    output.write_all(bytes).map_err(|error| Failure::file(&name(path), Deed::Write, &error))?;
+    output.write_all(bytes).map_err(fails(path, Deed::Write))?;
     Ok(output)
 }
 

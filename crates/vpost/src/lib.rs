@@ -22,7 +22,6 @@ pub mod language;
 pub mod manual;
 pub mod map;
 mod message;
-mod number;
 mod origin;
 mod predict;
 mod profile_command;
@@ -44,7 +43,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 pub use jobs::values;
-use jobs::{conditions, expand, figures, points, profile, summary};
+use jobs::{conditions, expand, figures, profile, summary};
 
 use diagnostic::Language;
 

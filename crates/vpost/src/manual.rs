@@ -123,8 +123,7 @@ pub(crate) fn run(arguments: &Manual, language: Language) -> Result<(), Failure>
     let Some(folder) = &arguments.folder else {
         return pages.first().map_or(Ok(()), |page| file::print(&page.text));
     };
-    std::fs::create_dir_all(folder)
-        .map_err(|error| Failure::file(&file::name(folder), Deed::Make, &error))?;
+    std::fs::create_dir_all(folder).map_err(file::fails(folder, Deed::Make))?;
     pages.iter().try_for_each(|page| file::write(&folder.join(&page.file), &page.text))
 }
 

@@ -47,12 +47,14 @@ impl Messages {
         }
     }
 
-    /// Prints a warning about no text, where the user wants warnings.
+    /// Prints what is said as a warning about no text, where the user wants warnings.
+    pub(crate) fn warning(&self, said: Diagnostic) {
+        self.report(&Report::warning(said));
+    }
+
+    /// The same of its parts.
     pub(crate) fn warn(&self, code: Code, message: Text, help: Text) {
-        self.report(&Report {
-            source: None,
-            diagnostics: vec![Diagnostic::warning(code, message).help(help)],
-        });
+        self.warning(Diagnostic::error(code, message).help(help));
     }
 
     /// Prints a line about progress or result, unless quiet.

@@ -5,7 +5,7 @@ use machine_profile::{Calibrated, Profile};
 use report::body::Fact;
 use report::numbers::figures;
 
-use crate::number::short;
+use crate::figures::short;
 
 /// When, how warm and with what a machine was measured, and how sure its model is.
 #[derive(Clone, Debug, Default)]

@@ -4,7 +4,6 @@ use diagnostic::Severity;
 use jobs::datums::FromZero;
 use jobs::figures::fixed;
 use jobs::points::{self, DIRECTION_COLUMNS, direction_fields};
-pub(crate) use jobs::predict::POINT_OUTSIDE;
 use jobs::predict::{Frame, PointsOutside, Prediction, Predictor};
 
 use crate::arguments::{Predict, Shared};

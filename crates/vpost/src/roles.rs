@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Code, Text};
 
 use crate::file;
-use crate::message::Failure;
+use crate::message::{Failure, notice};
 
 /// A file is named in two roles.
 const TWO_ROLES: Code = Code(4);
@@ -57,15 +57,11 @@ impl<'a> Roles<'a> {
         for (option, path) in &self.written {
             let Some(identity) = Identity::of(path) else { continue };
             if let Some((_, role)) = taken.iter().find(|(other, _)| *other == identity) {
-                let message = both!(
+                return Err(Failure::usage(notice!(TWO_ROLES;
                     "{} would be written by `{option}` and is {role}",
-                    "{} записал бы ключ `{option}`, но это {role:#}",
-                    file::name(path)
-                );
-                return Err(Failure::usage(Diagnostic::error(TWO_ROLES, message).help(both!(
-                    "give each output a file of its own",
-                    "дайте каждому выходному файлу своё имя"
-                ))));
+                    "{} записал бы ключ `{option}`, но это {role:#}", file::name(path);
+                    "give each output a file of its own", "дайте каждому выходному файлу своё имя"
+                )));
             }
             taken.push((identity, Text::same(*option)));
         }

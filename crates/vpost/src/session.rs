@@ -4,7 +4,7 @@
 
 use diagnostic::Language;
 use nc_expand::Limits;
-use rewrite::Corrected;
+use rewrite::{Corrected, Manner};
 
 use crate::arguments::Color;
 use crate::command_line::Arguments;
@@ -50,7 +50,8 @@ impl Session {
     /// # Errors
     /// The messages of the first block that cannot be corrected with certainty.
     pub fn correct(&self, text: &[u8]) -> Result<Corrected, Refusal> {
-        expand::correct(text, "program", &self.settings, false, |_| Ok(()))
+        let manner = Manner { force: false, threads: 1, hashes: false };
+        expand::correct(text, "program", &self.settings, manner, |_| Ok(()))
             .map(|done| done.corrected)
             .map_err(|failure| self.refusal(&failure))
     }

@@ -6,9 +6,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::SystemTime;
 
-use diagnostic::{Code, Diagnostic, both};
+use diagnostic::Code;
 
-use crate::message::{Failure, Report};
+use crate::message::{Failure, Report, notice};
 
 /// A file changed while it was read.
 const CHANGED: Code = Code(3);
@@ -78,14 +78,11 @@ impl Still {
 }
 
 fn changed(name: &str) -> Failure {
-    let diagnostic = Diagnostic::error(
-        CHANGED,
-        both!("{name} changed while it was read", "{name} изменился во время чтения"),
-    )
-    .help(both!(
+    let diagnostic = notice!(CHANGED;
+        "{name} changed while it was read", "{name} изменился во время чтения";
         "let whoever writes it finish (a post processor, a copy over the network), then run vpost again",
         "дайте закончить тому, кто его пишет (постпроцессору, копированию по сети), и запустите vpost снова"
-    ));
+    );
     Failure::File(Report { source: None, diagnostics: vec![diagnostic] })
 }
 

@@ -5,11 +5,11 @@
 
 use std::io;
 
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Code, Text};
 
 pub(crate) use jobs::shown::{is_obeyed, shown};
 
-use crate::message::{Deed, Failure, Report};
+use crate::message::{Deed, Failure, Report, notice};
 
 /// A program would give orders to the terminal.
 const OBEYED: Code = Code(5);
@@ -25,13 +25,12 @@ pub(crate) fn obeys_nothing_of(program: &mut impl io::Read) -> Result<(), Failur
     for chunk in text.utf8_chunks() {
         for c in chunk.valid().chars() {
             if is_obeyed(c) {
-                let message = both!(
+                let diagnostic = notice!(OBEYED;
                     "line {line} of the corrected program has U+{:04X}, which a terminal obeys",
                     "в строке {line} исправленной программы стоит U+{:04X}, и терминал его исполнит",
-                    u32::from(c)
+                    u32::from(c);
+                    "write to a file: `-o OUT.nc`", "запишите в файл: `-o OUT.nc`"
                 );
-                let diagnostic = Diagnostic::error(OBEYED, message)
-                    .help(both!("write to a file: `-o OUT.nc`", "запишите в файл: `-o OUT.nc`"));
                 return Err(Failure::File(Report { source: None, diagnostics: vec![diagnostic] }));
             }
             line += usize::from(c == '\n');

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use diagnostic::{Code, Text, both};
+use diagnostic::{Code, Text};
 use jobs::causes::Causes;
 use report::viewer::scene::{BEFORE, CAUSES, Cause, Displacement, Place, Scene};
 use report::viewer::thinning::TooLarge;
 
 use crate::file;
-use crate::message::Failure;
+use crate::message::{Failure, notice};
 
 /// Even thinned the path is too large for a page.
 const TOO_LARGE: Code = Code(1201);
@@ -22,27 +22,22 @@ const LONGEST: usize = 160;
 
 /// What is refused where a path cannot be drawn truly.
 pub(crate) fn too_large(name: &str, refused: &TooLarge) -> Failure {
-    let message = both!(
+    Failure::usage(notice!(TOO_LARGE;
         "{name}: the path is too large for `--viewer`: left out what lies within {:.0} um, {} of its places remain, and a page holds {}",
         "{name}: траектория слишком велика для `--viewer`: если пропустить всё, что ближе {:.0} мкм, точек остаётся {}, а страница вмещает {}",
-        refused.path_bound_um,
-        refused.left,
-        refused.most
-    );
-    let help = both!(
+        refused.path_bound_um, refused.left, refused.most;
         "draw a part of the program: cut it where it positions, or leave `--viewer` out",
         "покажите часть программы, разделив её на позиционировании, или обойдитесь без `--viewer`"
-    );
-    Failure::asks(TOO_LARGE, message, help)
+    ))
 }
 
 /// What is refused where there is nothing to draw.
 pub(crate) fn no_path(name: &str, what: &Text, help: Text) -> Failure {
-    let message = both!(
+    Failure::usage(notice!(NO_PATH;
         "{name}: {what}: there is nothing for `--viewer` to draw",
-        "{name}: {what:#}: для `--viewer` рисовать нечего"
-    );
-    Failure::asks(NO_PATH, message, help)
+        "{name}: {what:#}: для `--viewer` рисовать нечего";
+        help
+    ))
 }
 
 /// Causes as the page knows them.

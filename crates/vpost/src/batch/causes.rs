@@ -53,7 +53,7 @@ impl<'r> Cause<'r> {
 }
 
 /// What programs were refused for, the causes of most programs first, each with what settles it.
-pub(crate) fn causes(title: &Text, records: &[Record]) -> Text {
+pub(crate) fn causes(records: &[Record]) -> Text {
     let causes = gathered(records);
     if causes.is_empty() {
         return Text::EMPTY;
@@ -68,9 +68,10 @@ pub(crate) fn causes(title: &Text, records: &[Record]) -> Text {
     let programs =
         |ways: &[&Cause<'_>]| ways.iter().flat_map(|way| way.programs.iter()).collect::<BTreeSet<_>>().len();
     lines.sort_by_key(|ways| std::cmp::Reverse(programs(ways)));
-    let mut text = both!("{title}:\n", "{title:#}:\n");
+    let mut text = both!("refused or failed:\n", "не приняты или не удались:\n");
     for ways in &lines {
-        text.push(&line(ways[0], programs(ways)));
+        let Cause { fault, message, first, .. } = ways[0];
+        text.push(&line(programs(ways), &fault.code, message, first));
         for way in ways.iter().take(MOST_WAYS) {
             text.push(&settled(way, ways.len() > 1));
         }
@@ -108,8 +109,7 @@ fn gathered(records: &[Record]) -> Vec<Cause<'_>> {
 }
 
 /// `       7  VP0215  tool length H1 is not given: op10/lid.nc, …`
-fn line(cause: &Cause<'_>, count: usize) -> Text {
-    let (code, message, first) = (&cause.fault.code, cause.message, cause.first);
+pub(super) fn line(count: usize, code: &str, message: &str, first: &str) -> Text {
     let more = if count > 1 { ", …" } else { "" };
     // Records are English; what a number means stands in the page that explains it.
     let russian = explain::title(code, Language::Russian).unwrap_or(message);

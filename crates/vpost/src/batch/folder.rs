@@ -17,11 +17,11 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use blake3::{Hash, Hasher};
-use diagnostic::{Code, Diagnostic, both};
+use diagnostic::{Code, both};
 
 use crate::file::{self, Place};
 use crate::growing::{GrowingFile, Nursery};
-use crate::message::{Deed, Failure, Report};
+use crate::message::{Deed, Failure, Report, notice};
 use crate::to_disk;
 
 /// Someone else works in the output folder.
@@ -65,10 +65,8 @@ impl OutputFolder {
     pub(crate) fn open(root: &Path, company: Company) -> Result<Self, Failure> {
         let own = root.join(OWN);
         // Made whole here, it is not made whole for each file.
-        let temporaries = std::path::absolute(own.join("tmp"))
-            .map_err(|error| Failure::file(&file::name(root), Deed::WriteTo, &error))?;
-        std::fs::create_dir_all(root)
-            .map_err(|error| Failure::file(&file::name(root), Deed::WriteTo, &error))?;
+        let temporaries = std::path::absolute(own.join("tmp")).map_err(file::fails(root, Deed::WriteTo))?;
+        std::fs::create_dir_all(root).map_err(file::fails(root, Deed::WriteTo))?;
         for (path, kind) in [
             (&own, Kind::Folder),
             (&own.join("tmp"), Kind::Folder),
@@ -83,7 +81,7 @@ impl OutputFolder {
         let lock = std::fs::create_dir_all(&temporaries)
             .and_then(|()| std::fs::create_dir_all(own.join("journal")))
             .and_then(|()| File::options().create(true).append(true).open(own.join("lock")))
-            .map_err(|error| Failure::file(&file::name(root), Deed::WriteTo, &error))?;
+            .map_err(file::fails(root, Deed::WriteTo))?;
         let temporaries = Nursery::new(temporaries);
         let alone = match lock.try_lock() {
             Ok(()) => true,
@@ -95,7 +93,7 @@ impl OutputFolder {
         };
         if alone {
             let folder = temporaries.path();
-            sweep(folder).map_err(|error| Failure::file(&file::name(folder), Deed::Empty, &error))?;
+            sweep(folder).map_err(file::fails(folder, Deed::Empty))?;
         }
         let held = match company {
             Company::Alone => alone,
@@ -233,11 +231,11 @@ impl Kind {
         } else {
             both!("not what vpost makes there", "не то, что создаёт там vpost")
         };
-        let message = both!("{} is {what}", "{} — {what:#}", file::name(path));
-        Err(Failure::usage(Diagnostic::error(NOT_OURS, message).help(both!(
+        Err(Failure::usage(notice!(NOT_OURS;
+            "{} is {what}", "{} — {what:#}", file::name(path);
             "remove it, or give another output folder with `-O`",
             "уберите или дайте другую выходную папку ключом `-O`"
-        ))))
+        )))
     }
 }
 
@@ -274,14 +272,11 @@ fn share(lock: &File) -> bool {
 
 /// Someone else works there.
 fn busy(root: &Path) -> Failure {
-    let diagnostic = Diagnostic::error(
-        BUSY,
-        both!("another vpost batch is at work in {}", "в {} работает другой vpost batch", root.display()),
-    )
-    .help(both!(
+    let diagnostic = notice!(BUSY;
+        "another vpost batch is at work in {}", "в {} работает другой vpost batch", root.display();
         "let it end, or give a folder of its own with `-O`",
         "дождитесь конца или дайте отдельную папку ключом `-O`"
-    ));
+    );
     Failure::Later(Report { source: None, diagnostics: vec![diagnostic] })
 }
 

@@ -5,13 +5,13 @@ use std::ffi::OsStr;
 use std::fs::DirEntry;
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Code, Diagnostic, both};
+use diagnostic::Code;
 use glob::{MatchOptions, Pattern};
 
 use super::arguments::Programs;
 use super::folder;
 use crate::file;
-use crate::message::{Deed, Failure};
+use crate::message::{Deed, Failure, OPTION, notice};
 
 /// No program was found.
 const NONE_FOUND: Code = Code(1001);
@@ -69,8 +69,7 @@ pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure>
     for input in &programs.inputs {
         let data = input.metadata().map_err(|error| Failure::unread(&file::name(input), &error))?;
         if data.is_dir() {
-            let entries =
-                entries_of(input).map_err(|error| Failure::file(&file::name(input), Deed::Read, &error))?;
+            let entries = entries_of(input).map_err(file::fails(input, Deed::Read))?;
             search.folder(entries, Path::new(""), &mut found)?;
         } else {
             let name = input.file_name().map(Path::new).unwrap_or(input);
@@ -79,20 +78,13 @@ pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure>
     }
     if found.items.is_empty() {
         let others = found.others.len();
-        return Err(Failure::usage(
-            Diagnostic::error(
-                NONE_FOUND,
-                both!(
-                    "no program was found; {others} other files were",
-                    "программ не найдено, а прочих файлов: {others}"
-                ),
-            )
-            .help(both!(
-                "programs are files that end in .{}; others: `--pattern \"*.txt\"`, or name the files",
-                "программы — файлы с расширением .{}; другие: `--pattern \"*.txt\"` или назовите файлы",
-                ENDINGS.join(" .")
-            )),
-        ));
+        return Err(Failure::usage(notice!(NONE_FOUND;
+            "no program was found; {others} other files were",
+            "программ не найдено, а прочих файлов: {others}";
+            "programs are files that end in .{}; others: `--pattern \"*.txt\"`, or name the files",
+            "программы — файлы с расширением .{}; другие: `--pattern \"*.txt\"` или назовите файлы",
+            ENDINGS.join(" .")
+        )));
     }
     found.items.sort_by(|a, b| a.output.cmp(&b.output).then_with(|| a.input.cmp(&b.input)));
     found.items.dedup();
@@ -119,8 +111,7 @@ impl Search {
             if name.as_encoded_bytes().starts_with(b".") || matches(&self.exclude, &below) {
                 continue;
             }
-            let kind =
-                entry.file_type().map_err(|error| Failure::file(&file::name(&path), Deed::Read, &error))?;
+            let kind = entry.file_type().map_err(file::fails(&path, Deed::Read))?;
             if kind.is_dir() {
                 if self.output.is_some() && path.canonicalize().ok() == self.output {
                     continue;
@@ -184,11 +175,11 @@ fn matches(patterns: &[Pattern], below: &Path) -> bool {
 fn patterns(option: &str, given: &[String]) -> Result<Vec<Pattern>, Failure> {
     let parse = |text: &String| {
         Pattern::new(text).map_err(|error| {
-            Failure::option(
-                both!("`{option} {text}` is no pattern: {}", "`{option} {text}` — не шаблон: {}", error.msg),
-                both!("write as for the shell, in quotes: `{option} \"*.nc\"`, `{option} \"fixtures/**/*.nc\"`", "пишите как для оболочки, в кавычках: `{option} \"*.nc\"`, `{option} \"fixtures/**/*.nc\"`"
-                ),
-            )
+            Failure::usage(notice!(OPTION;
+                "`{option} {text}` is no pattern: {}", "`{option} {text}` — не шаблон: {}", error.msg;
+                "write as for the shell, in quotes: `{option} \"*.nc\"`, `{option} \"fixtures/**/*.nc\"`",
+                "пишите как для оболочки, в кавычках: `{option} \"*.nc\"`, `{option} \"fixtures/**/*.nc\"`"
+            ))
         })
     };
     given.iter().map(parse).collect()
@@ -212,11 +203,12 @@ impl Item {
         }
         // Shown as it is, one such name looks like another.
         let read = measurement_files::utf8_or_1251(self.input.as_os_str().as_encoded_bytes());
-        Err(Failure::usage(
-            Diagnostic::error(NAME, both!("a name is not UTF-8; as Windows-1251 it reads {read}", "имя не в UTF-8; в Windows-1251 оно читается как {read}")).help(
-                both!("results are listed by name: rename it, for example with `convmv -f cp1251 -t utf8 --notest`", "результаты перечисляются по именам: переименуйте, например командой `convmv -f cp1251 -t utf8 --notest`"),
-            ),
-        ))
+        Err(Failure::usage(notice!(NAME;
+            "a name is not UTF-8; as Windows-1251 it reads {read}",
+            "имя не в UTF-8; в Windows-1251 оно читается как {read}";
+            "results are listed by name: rename it, for example with `convmv -f cp1251 -t utf8 --notest`",
+            "результаты перечисляются по именам: переименуйте, например командой `convmv -f cp1251 -t utf8 --notest`"
+        )))
     }
 }
 
@@ -245,41 +237,22 @@ fn check_places(items: &[Item], output: &Path) -> Result<(), Failure> {
     for item in named() {
         let place = output.join(&item.output);
         if let Some(input) = file::identity(&place).and_then(|place| inputs.get(&place)) {
-            return Err(Failure::usage(
-                Diagnostic::error(
-                    ONTO_INPUT,
-                    both!(
-                        "the correction of {} would be written over {}",
-                        "исправление {} легло бы поверх {}",
-                        item.input.display(),
-                        input.input.display()
-                    ),
-                )
-                .help(both!(
-                    "give a folder of its own: `-O corrected`",
-                    "дайте отдельную папку: `-O corrected`"
-                )),
-            ));
+            return Err(Failure::usage(notice!(ONTO_INPUT;
+                "the correction of {} would be written over {}",
+                "исправление {} легло бы поверх {}", item.input.display(), input.input.display();
+                "give a folder of its own: `-O corrected`", "дайте отдельную папку: `-O corrected`"
+            )));
         }
     }
     Ok(())
 }
 
 fn collision(a: &Item, b: &Item, output: &Path) -> Failure {
-    Failure::usage(
-        Diagnostic::error(
-            COLLISION,
-            both!(
-                "{} and {} would both be written to {}",
-                "{} и {} попали бы в одно место: {}",
-                a.input.display(),
-                b.input.display(),
-                output.join(&a.output).display()
-            ),
-        )
-        .help(both!(
-            "name the folder above both instead of the files, or run vpost once for each `-O`",
-            "вместо файлов назовите папку над обоими или запустите vpost для каждого со своим `-O`"
-        )),
-    )
+    Failure::usage(notice!(COLLISION;
+        "{} and {} would both be written to {}",
+        "{} и {} попали бы в одно место: {}", a.input.display(), b.input.display(),
+        output.join(&a.output).display();
+        "name the folder above both instead of the files, or run vpost once for each `-O`",
+        "вместо файлов назовите папку над обоими или запустите vpost для каждого со своим `-O`"
+    ))
 }

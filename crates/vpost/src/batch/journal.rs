@@ -43,7 +43,7 @@ impl<'f> Journal<'f> {
         let (file, live) = for_everybody(&mut builder)
             .tempfile_in(&own)
             .and_then(|file| file.keep().map_err(|error| error.error))
-            .map_err(|error| Failure::file(&file::name(&own), Deed::WriteTo, &error))?;
+            .map_err(file::fails(&own, Deed::WriteTo))?;
         Ok(Self { folder, name: name.to_owned(), live, file, torn: false })
     }
 
@@ -67,7 +67,7 @@ impl<'f> Journal<'f> {
         all.extend(records.iter().map(|record| (record.output.as_str(), std::slice::from_ref(record))));
         self.folder
             .put_journal(&name, &record::lines(all.into_values().flatten()))
-            .map_err(|error| Failure::file(&file::name(&place), Deed::Write, &error))?;
+            .map_err(file::fails(&place, Deed::Write))?;
         for path in stale.iter().chain([&self.live]).filter(|path| **path != place) {
             // What cannot be removed is read again and says nothing new.
             let _ = std::fs::remove_file(path);

@@ -3,9 +3,10 @@
 //! JSON Lines. The first line says how ([`Header`]), each further one names a program with its hash, in the order of
 //! the outputs. The header holds the hash of the lines below it, so a manifest that was cut or edited is none.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Code, Text, both};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +16,7 @@ use super::inputs::Item;
 use super::job::Job;
 use crate::arguments::{JobOptions, Shared};
 use crate::file;
-use crate::message::{Deed, Failure, Messages};
+use crate::message::{Deed, Failure, Messages, notice};
 
 /// The manifest cannot be used.
 const MANIFEST: Code = Code(1010);
@@ -67,8 +68,7 @@ pub(crate) fn text(items: &[Item], output: &Path, job: &Job, shared: &Shared) ->
     let hashed: Vec<Result<Program, Failure>> = items
         .par_iter()
         .map(|item| {
-            let (bytes, hash) = folder::hash(&item.input)
-                .map_err(|error| Failure::file(&file::name(&item.input), Deed::Read, &error))?;
+            let (bytes, hash) = folder::hash(&item.input).map_err(file::fails(&item.input, Deed::Read))?;
             let blake3 = hash.to_hex().to_string();
             Ok(Program { output: item.output.clone(), input: item.input.clone(), bytes, blake3 })
         })
@@ -104,10 +104,10 @@ pub(crate) fn text(items: &[Item], output: &Path, job: &Job, shared: &Shared) ->
 fn line(text: &mut Vec<u8>, value: &impl Serialize) -> Result<(), Failure> {
     // Only the name of a file or folder can be what JSON does not hold.
     serde_json::to_writer(&mut *text, value).map_err(|error| {
-        unusable(
-            both!("the plan cannot be written: {error}", "план не записать: {error}"),
-            both!("give files and folders names that are UTF-8", "дайте файлам и папкам имена в UTF-8"),
-        )
+        Failure::usage(notice!(MANIFEST;
+            "the plan cannot be written: {error}", "план не записать: {error}";
+            "give files and folders names that are UTF-8", "дайте файлам и папкам имена в UTF-8"
+        ))
     })?;
     text.push(b'\n');
     Ok(())
@@ -120,11 +120,9 @@ fn include_hash(folders: &[PathBuf]) -> Result<Option<String>, Failure> {
     }
     let mut hasher = blake3::Hasher::new();
     for folder in folders {
-        let fail = |error: std::io::Error| Failure::file(&file::name(folder), Deed::Read, &error);
-        let mut paths = Vec::new();
-        for entry in std::fs::read_dir(folder).map_err(fail)? {
-            paths.push(entry.map_err(fail)?.path());
-        }
+        let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<std::io::Result<Vec<_>>>);
+        let entries = entries.map_err(file::fails(folder, Deed::Read))?;
+        let mut paths: Vec<PathBuf> = entries.iter().map(std::fs::DirEntry::path).collect();
         paths.sort();
         hasher.update(b"\0folder\0");
         for path in paths.iter().filter(|path| path.is_file()) {
@@ -140,17 +138,12 @@ fn include_hash(folders: &[PathBuf]) -> Result<Option<String>, Failure> {
 pub(crate) fn write(path: &Path, text: &[u8]) -> Result<(), Failure> {
     match std::fs::read(path) {
         Ok(present) if present == text => Ok(()),
-        Ok(_) => Err(unusable(
-            both!(
-                "{} is there already, and a manifest does not change",
-                "{} уже есть, а задание не меняется",
-                path.display()
-            ),
-            both!(
-                "give another name, or delete it if no shard of it will run again",
-                "дайте другое имя или удалите его, если его части больше не пойдут"
-            ),
-        )),
+        Ok(_) => Err(Failure::usage(notice!(MANIFEST;
+            "{} is there already, and a manifest does not change",
+            "{} уже есть, а задание не меняется", path.display();
+            "give another name, or delete it if no shard of it will run again",
+            "дайте другое имя или удалите его, если его части больше не пойдут"
+        ))),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => file::write(path, text),
         Err(error) => Err(Failure::file(&file::name(path), Deed::Read, &error)),
     }
@@ -164,17 +157,12 @@ impl Manifest {
             _ => Failure::file(&file::name(path), Deed::Read, &error),
         })?;
         let damaged = |what: Text| {
-            unusable(
-                both!(
-                    "{} is no manifest as `vpost batch plan` wrote it: {what}",
-                    "{} — не задание в том виде, как его записал `vpost batch plan`: {what:#}",
-                    path.display()
-                ),
-                both!(
-                    "copy it again, or make a new one with `vpost batch plan`",
-                    "скопируйте его снова или составьте заново: `vpost batch plan`"
-                ),
-            )
+            Failure::usage(notice!(MANIFEST;
+                "{} is no manifest as `vpost batch plan` wrote it: {what}",
+                "{} — не задание в том виде, как его записал `vpost batch plan`: {what:#}", path.display();
+                "copy it again, or make a new one with `vpost batch plan`",
+                "скопируйте его снова или составьте заново: `vpost batch plan`"
+            ))
         };
         let at = text.iter().position(|byte| *byte == b'\n').map_or(text.len(), |at| at + 1);
         let (first, lines) = text.split_at(at);
@@ -188,21 +176,14 @@ impl Manifest {
             )));
         }
         if schema["version"] != env!("CARGO_PKG_VERSION") {
-            return Err(unusable(
-                both!(
-                    "{} was written by vpost {}, this is {}",
-                    "{} записан vpost {:#}, а этот — {}",
-                    path.display(),
-                    schema["version"]
-                        .as_str()
-                        .map_or(Text::pair("of another version", "другой версии"), Text::same),
-                    env!("CARGO_PKG_VERSION")
-                ),
-                both!(
-                    "run one version on all machines; another version may write other bytes",
-                    "запускайте на всех машинах одну версию: другая может записать другие байты"
-                ),
-            ));
+            let other = schema["version"].as_str();
+            let other = other.map_or(Text::pair("of another version", "другой версии"), Text::same);
+            return Err(Failure::usage(notice!(MANIFEST;
+                "{} was written by vpost {}, this is {}",
+                "{} записан vpost {:#}, а этот — {}", path.display(), other, env!("CARGO_PKG_VERSION");
+                "run one version on all machines; another version may write other bytes",
+                "запускайте на всех машинах одну версию: другая может записать другие байты"
+            )));
         }
         let header: Header = serde_json::from_slice(first)
             .map_err(|error| damaged(both!("line 1: {error}", "строка 1: {error}")))?;
@@ -212,28 +193,13 @@ impl Manifest {
                 "строки после первой изменены или обрезаны"
             )));
         }
-        let mut items = Vec::new();
-        let mut outputs = std::collections::BTreeSet::new();
-        for (at, line) in lines.split(|byte| *byte == b'\n').filter(|line| !line.is_empty()).enumerate() {
-            let Program { output, input, bytes, blake3 } = serde_json::from_slice(line)
-                .map_err(|error| damaged(both!("line {}: {error}", "строка {}: {error}", at + 2)))?;
-            if !stays_inside(&output) {
-                return Err(damaged(both!(
-                    "line {}: its output leaves the output folder",
-                    "строка {}: её выходной файл вне выходной папки",
-                    at + 2
-                )));
-            }
-            // As for `plan`: letters' case counts for nothing on the shares that most controls read.
-            if !outputs.insert(output.to_lowercase()) {
-                return Err(damaged(both!(
-                    "line {}: its output is another program's, too",
-                    "строка {}: её выходной файл — ещё и другой программы",
-                    at + 2
-                )));
-            }
-            items.push(Item { input, output, bytes, blake3: Some(blake3) });
-        }
+        let mut outputs = BTreeSet::new();
+        let lines = lines.split(|byte| *byte == b'\n').filter(|line| !line.is_empty());
+        let item = |(line, at): (&[u8], u64)| {
+            let wrong = |what: Text| damaged(both!("line {at}: {what}", "строка {at}: {what:#}"));
+            item(line, &mut outputs).map_err(wrong)
+        };
+        let items = lines.zip(2..).map(item).collect::<Result<Vec<Item>, Failure>>()?;
         if items.iter().try_fold(0_u64, |sum, item: &Item| sum.checked_add(item.bytes)).is_none() {
             return Err(damaged(both!(
                 "its programs are larger than any disk",
@@ -267,19 +233,11 @@ impl Manifest {
         let shared = Shared { job: self.header.options.clone(), messages: own.messages.clone() };
         let job = Job::load(&shared, messages)?;
         let changed = |what: Text| {
-            Failure::usage(
-                Diagnostic::error(
-                    JOB_CHANGED,
-                    both!(
-                        "{what} changed since the plan was made",
-                        "{what:#}: изменилось после составления плана"
-                    ),
-                )
-                .help(both!(
-                    "bring it back, or make a new plan with `vpost batch plan`",
-                    "верните прежнее или составьте план заново: `vpost batch plan`"
-                )),
-            )
+            Failure::usage(notice!(JOB_CHANGED;
+                "{what} changed since the plan was made", "{what:#}: изменилось после составления плана";
+                "bring it back, or make a new plan with `vpost batch plan`",
+                "верните прежнее или составьте план заново: `vpost batch plan`"
+            ))
         };
         if job.hash.to_hex().as_str() != self.header.job_blake3 {
             return Err(changed(both!(
@@ -297,14 +255,27 @@ impl Manifest {
     }
 }
 
+/// A program of the manifest; `outputs`: those before it.
+fn item(line: &[u8], outputs: &mut BTreeSet<String>) -> Result<Item, Text> {
+    let Program { output, input, bytes, blake3 } =
+        serde_json::from_slice(line).map_err(|error| Text::same(error.to_string()))?;
+    if !stays_inside(&output) {
+        return Err(both!("its output leaves the output folder", "её выходной файл вне выходной папки"));
+    }
+    // As for `plan`: letters' case counts for nothing on the shares that most controls read.
+    if !outputs.insert(output.to_lowercase()) {
+        return Err(both!(
+            "its output is another program's, too",
+            "её выходной файл — ещё и другой программы"
+        ));
+    }
+    Ok(Item { input, output, bytes, blake3: Some(blake3) })
+}
+
 /// A name below the output folder, spelled in the one way in which `plan` spells it, and none of vpost's own.
 fn stays_inside(output: &str) -> bool {
     let parts: Vec<&str> = output.split('/').collect();
     let plain =
         |part: &&str| !part.is_empty() && *part != "." && *part != ".." && !part.contains(['\\', '\0']);
     parts.iter().all(plain) && parts.first() != Some(&OWN) && !Path::new(output).has_root()
-}
-
-fn unusable(message: Text, help: Text) -> Failure {
-    Failure::usage(Diagnostic::error(MANIFEST, message).help(help))
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::work::Results;
 use super::{inputs, record, table};
 use crate::file;
-use crate::message::{Failure, Messages};
+use crate::message::{Failure, Messages, OPTION, notice};
 use diagnostic::{Language, Text, both};
 
 /// What a folder held besides programs: a program of an unusual name must not be missed.
@@ -63,13 +63,11 @@ pub(super) fn interrupted(failure: Failure, messages: &Messages) -> Failure {
 pub(super) fn has_place(lines: Option<&Path>) -> Result<(), Failure> {
     let folder = lines.and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
     match folder {
-        Some(folder) if !folder.is_dir() => Err(Failure::option(
-            both!("`--results`: there is no folder {}", "`--results`: папки {} нет", folder.display()),
-            both!(
-                "make it first, or name a file in a folder that is there",
-                "создайте её или назовите файл в существующей папке"
-            ),
-        )),
+        Some(folder) if !folder.is_dir() => Err(Failure::usage(notice!(OPTION;
+            "`--results`: there is no folder {}", "`--results`: папки {} нет", folder.display();
+            "make it first, or name a file in a folder that is there",
+            "создайте её или назовите файл в существующей папке"
+        ))),
         _ => Ok(()),
     }
 }

@@ -1,9 +1,9 @@
 //! Shares of a manifest's programs.
 
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::Code;
 
 use super::arguments::EngineForm;
-use crate::message::Failure;
+use crate::message::{Failure, notice};
 
 /// A share that does not exist.
 const SHARD: Code = Code(1009);
@@ -37,16 +37,12 @@ impl Shard {
             let found = TASK_NUMBERS.iter().find_map(|(name, first)| Some((*name, *first, variable(name)?)));
             let Some((name, first, value)) = found else {
                 let names = TASK_NUMBERS.map(|(name, _)| name).join(", ");
-                return Err(wrong(
-                    both!(
-                        "`--shard {given}` takes its number from the environment, and none of {names} is set",
-                        "`--shard {given}` берёт номер из окружения, а ни одна из переменных {names} не задана"
-                    ),
-                    both!(
-                        "outside of a task array say it yourself: `--shard 1/{of}`",
-                        "вне массива заданий назовите его сами: `--shard 1/{of}`"
-                    ),
-                ));
+                return Err(Failure::usage(notice!(SHARD;
+                    "`--shard {given}` takes its number from the environment, and none of {names} is set",
+                    "`--shard {given}` берёт номер из окружения, а ни одна из переменных {names} не задана";
+                    "outside of a task array say it yourself: `--shard 1/{of}`",
+                    "вне массива заданий назовите его сами: `--shard 1/{of}`"
+                )));
             };
             // Below the first number: shard 0, which is told below.
             let number = whole(&value).map(|value| value.saturating_add(1).saturating_sub(first));
@@ -57,13 +53,11 @@ impl Shard {
         if (1..=of).contains(&number) {
             Ok(Self { number, of })
         } else {
-            Err(wrong(
-                both!("`{said}`: there is no shard {number} of {of}", "`{said}`: части {number} из {of} нет"),
-                both!(
-                    "shards are numbered from 1: submit the array as 1-{of}",
-                    "части нумеруются с 1: отправляйте массив как 1-{of}"
-                ),
-            ))
+            Err(Failure::usage(notice!(SHARD;
+                "`{said}`: there is no shard {number} of {of}", "`{said}`: части {number} из {of} нет";
+                "shards are numbered from 1: submit the array as 1-{of}",
+                "части нумеруются с 1: отправляйте массив как 1-{of}"
+            )))
         }
     }
 
@@ -79,17 +73,11 @@ impl Shard {
 }
 
 fn unreadable(given: &str) -> Failure {
-    wrong(
-        both!("`{given}` is no shard", "`{given}` — не часть"),
-        both!(
-            "write `--shard 3/10` or, in a task array, `--shard auto/10`",
-            "напишите `--shard 3/10` или, в массиве заданий, `--shard auto/10`"
-        ),
-    )
-}
-
-fn wrong(message: Text, help: Text) -> Failure {
-    Failure::usage(Diagnostic::error(SHARD, message).help(help))
+    Failure::usage(notice!(SHARD;
+        "`{given}` is no shard", "`{given}` — не часть";
+        "write `--shard 3/10` or, in a task array, `--shard auto/10`",
+        "напишите `--shard 3/10` или, в массиве заданий, `--shard auto/10`"
+    ))
 }
 
 /// Numbers in the form an engine takes, in ascending order: `1,4-6` or one a line.

@@ -7,14 +7,11 @@ use diagnostic::{Language, Text, both, russian_plural};
 use super::causes;
 use super::record::{Fault, Record, Status};
 use super::work::Results;
-use crate::explain;
 
 static HEADER: Text = Text::pair(
     "            programs      MB in     MB out\n",
     "              программ   МБ вход   МБ выход\n",
 );
-static REFUSED: Text = Text::pair("refused or failed", "не приняты или не удались");
-static WARNINGS: Text = Text::pair("warnings", "предупреждения");
 
 /// The results in a few lines: how many, how far off, and what was refused for which reason.
 pub(crate) fn table(results: &Results, language: Language) -> String {
@@ -72,8 +69,8 @@ pub(crate) fn table(results: &Results, language: Language) -> String {
             "отклонение от траектории не больше {before:.1} мкм до, {after:.2} мкм после\n"
         ));
     }
-    say(&causes::causes(&REFUSED, records));
-    say(&reasons(&WARNINGS, records, |record| &record.warnings));
+    say(&causes::causes(records));
+    say(&warnings(records));
     let older: Vec<&str> =
         records.iter().filter(|record| record.older_output).map(|record| record.output.as_str()).collect();
     if let Some(first) = older.first() {
@@ -91,34 +88,25 @@ pub(crate) fn table(results: &Results, language: Language) -> String {
     text
 }
 
-/// Message numbers with how many programs have them and the first of those.
-fn reasons<'r>(title: &Text, records: &'r [Record], faults: impl Fn(&'r Record) -> &'r Vec<Fault>) -> Text {
-    let mut by_code: BTreeMap<(&str, &str), (usize, &str, &str)> = BTreeMap::new();
+/// Numbers of warnings with how many programs have them and the first of those.
+fn warnings(records: &[Record]) -> Text {
+    let mut by_code: BTreeMap<&str, (usize, &str, &str)> = BTreeMap::new();
     for record in records {
-        let mut codes: Vec<&Fault> = faults(record).iter().collect();
+        let mut codes: Vec<&Fault> = record.warnings.iter().collect();
         // The first of each stays: sorting keeps their order.
         codes.sort_by_key(|fault| &fault.code);
         codes.dedup_by_key(|fault| &fault.code);
         for fault in codes {
-            // Files fail for more than one reason: what the system said stands behind the name.
-            let reason = (record.status == Status::Failed).then(|| fault.message.rsplit_once(": ")).flatten();
-            let reason = reason.map_or("", |(_, reason)| reason);
-            let message = if reason.is_empty() { &fault.message } else { reason };
-            by_code.entry((&fault.code, reason)).or_insert((0, message, &record.output)).0 += 1;
+            by_code.entry(&fault.code).or_insert((0, &fault.message, &record.output)).0 += 1;
         }
     }
-    if by_code.is_empty() {
-        return Text::EMPTY;
-    }
-    let mut text = both!("{title}:\n", "{title:#}:\n");
-    for ((code, _), (count, message, first)) in by_code {
-        let more = if count > 1 { ", …" } else { "" };
-        // Records are English; what a number means stands in the page that explains it.
-        let russian = explain::title(code, Language::Russian).unwrap_or(message);
-        text.push(&both!(
-            "{count:8}  {code}  {message}: {first}{more}\n",
-            "{count:8}  {code}  {russian}: {first}{more}\n"
-        ));
+    let mut text = if by_code.is_empty() {
+        Text::EMPTY
+    } else {
+        both!("warnings:\n", "предупреждения:\n")
+    };
+    for (code, (count, message, first)) in by_code {
+        text.push(&causes::line(count, code, message, first));
     }
     text
 }

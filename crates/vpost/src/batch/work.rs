@@ -21,7 +21,7 @@ use super::record::{Record, Status};
 use super::shelf::Shelf;
 use crate::file;
 use crate::interrupt::Interrupt;
-use crate::message::{Deed, Failure, Messages, Report};
+use crate::message::{Deed, Failure, Messages, OPTION, Report, notice};
 
 /// An output would be written over a file that vpost did not write.
 const FOREIGN: Code = Code(1006);
@@ -81,13 +81,10 @@ impl<'a> Batch<'a> {
         let threads = self.threads;
         let workers = threads.min(items.len()).max(1);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(workers).build().map_err(|error| {
-            Failure::option(
-                both!(
-                    "{threads} threads cannot be had: {error}",
-                    "потоков {threads} получить нельзя: {error}"
-                ),
-                both!("fewer: `--jobs 2`", "меньше: `--jobs 2`"),
-            )
+            Failure::usage(notice!(OPTION;
+                "{threads} threads cannot be had: {error}", "потоков {threads} получить нельзя: {error}";
+                "fewer: `--jobs 2`", "меньше: `--jobs 2`"
+            ))
         })?;
         let next = AtomicUsize::new(0);
         // Each worker has so many outputs in hand, as many again on the way, and those of a group wait for the disk.
@@ -154,14 +151,11 @@ impl<'a> Batch<'a> {
     fn guarded(&self, item: &Item, threads: usize) -> Result<Outcome, Failure> {
         catch_unwind(AssertUnwindSafe(|| self.one(item, threads))).unwrap_or_else(|_| {
             let mut outcome = Outcome::of(self.record(item));
-            let diagnostic = Diagnostic::error(
-                DEFECT,
-                both!("vpost broke down on {}", "сбой vpost на {}", item.input.display()),
-            )
-            .help(both!(
+            let diagnostic = notice!(DEFECT;
+                "vpost broke down on {}", "сбой vpost на {}", item.input.display();
                 "this is a defect of vpost; please report it with the program and the lines above",
                 "это ошибка vpost; сообщите о ней, приложив программу и строки выше"
-            ));
+            );
             outcome.fail(refused(diagnostic));
             Ok(outcome)
         })
@@ -301,37 +295,21 @@ fn refused(diagnostic: Diagnostic) -> Failure {
 }
 
 fn changed(input: &Path, how: &Text) -> Failure {
-    refused(
-        Diagnostic::error(
-            CHANGED,
-            both!(
-                "{} {how}: it changed since the plan was made",
-                "{} {how:#}: изменился после составления плана",
-                input.display()
-            ),
-        )
-        .help(both!(
-            "make a new plan with `vpost batch plan`; what is the same will not be corrected again",
-            "составьте план заново: `vpost batch plan`; то, что не изменилось, второй раз не исправляется"
-        )),
-    )
+    refused(notice!(CHANGED;
+        "{} {how}: it changed since the plan was made",
+        "{} {how:#}: изменился после составления плана", input.display();
+        "make a new plan with `vpost batch plan`; what is the same will not be corrected again",
+        "составьте план заново: `vpost batch plan`; то, что не изменилось, второй раз не исправляется"
+    ))
 }
 
 fn foreign(place: &Path) -> Failure {
-    refused(
-        Diagnostic::error(
-            FOREIGN,
-            both!(
-                "{} is there already and was not written by vpost",
-                "{} уже лежит там, и писал его не vpost",
-                place.display()
-            ),
-        )
-        .help(both!(
-            "give another folder with `-O`, move that file away, or write over it with `--force`",
-            "дайте другую папку ключом `-O`, уберите этот файл или запишите поверх: `--force`"
-        )),
-    )
+    refused(notice!(FOREIGN;
+        "{} is there already and was not written by vpost",
+        "{} уже лежит там, и писал его не vpost", place.display();
+        "give another folder with `-O`, move that file away, or write over it with `--force`",
+        "дайте другую папку ключом `-O`, уберите этот файл или запишите поверх: `--force`"
+    ))
 }
 
 /// Files that may be open at once, outputs that wait for the disk among them: as many as the system lets this process

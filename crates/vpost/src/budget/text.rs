@@ -7,8 +7,8 @@ use error_budget::OneSided;
 use error_budget::mending::Mending;
 use error_budget::tolerances::Tolerances;
 
-use super::study::{Combined, MENDING_OUT_OF_REACH, Study, Target};
 use crate::figures::{fixed, printable, round, triple, um};
+use jobs::budget::study::{Combined, MENDING_OUT_OF_REACH, Study, Target};
 
 /// The page.
 pub(super) fn page(study: &Study) -> Text {

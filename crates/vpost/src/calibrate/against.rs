@@ -8,11 +8,11 @@ use machine_model::{Range, Vector, Volume};
 use machine_profile::Profile;
 use measurement_files::micro;
 
-use crate::message::Failure;
+use crate::message::{Failure, notice};
 use crate::{file, profile};
 
-use super::codes::question;
-use crate::number::short;
+use super::codes::QUESTION;
+use crate::figures::short;
 
 /// Prints the comparison.
 pub(super) fn report(old: &Path, new: &Profile, language: Language) -> Result<(), Failure> {
@@ -31,13 +31,11 @@ pub(super) fn report(old: &Path, new: &Profile, language: Language) -> Result<()
         [known(&old), known(new)],
     )
     .ok_or_else(|| {
-        question(
-            both!(
-                "{name} and the new measurements have no volume in common",
-                "у {name} и новых измерений нет общего объёма"
-            ),
-            both!("compare profiles of one machine", "сравнивайте профили одного станка"),
-        )
+        Failure::usage(notice!(QUESTION;
+            "{name} and the new measurements have no volume in common",
+            "у {name} и новых измерений нет общего объёма";
+            "compare profiles of one machine", "сравнивайте профили одного станка"
+        ))
     })?;
     let at = change.at_mm.iter().map(|v| short(*v, 3)).collect::<Vec<_>>().join(", ");
     let [x, y, z] = <[f64; 3]>::from(change.difference_mm * 1e3);

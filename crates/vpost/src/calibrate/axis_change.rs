@@ -16,14 +16,14 @@ use measurement_files::series::Series;
 
 use crate::arguments::Shared;
 use crate::conditions;
-use crate::message::Failure;
+use crate::message::{Failure, OPTION, notice};
 
-use super::codes::{AXES, failure, question};
+use super::codes::{AXES, QUESTION, failure};
 use super::options::Interferometer;
 use super::output::{Output, SHORTEST_MM};
 use super::sources;
 use super::squareness::Asked;
-use crate::number::short;
+use crate::figures::short;
 
 /// The base as it was read, and where.
 pub(super) struct Session {
@@ -145,13 +145,11 @@ impl Session {
 
     fn machine(&self, description: Description, temperature_c: Option<f64>) -> Result<WithEffects, Failure> {
         let body = RigidBody::new(description).map_err(|error| {
-            Failure::option(
-                error.text(),
-                both!(
-                    "run `vpost profile check` on the base",
-                    "запустите `vpost profile check` для исходного профиля"
-                ),
-            )
+            Failure::usage(notice!(OPTION;
+                error.text();
+                "run `vpost profile check` on the base",
+                "запустите `vpost profile check` для исходного профиля"
+            ))
         })?;
         let mut conditions = self.conditions;
         if let Some(temperature) = temperature_c {
@@ -243,13 +241,11 @@ impl Session {
             nodes.retain(|q| low <= *q && *q <= high);
         }
         if nodes.len() < 2 {
-            return Err(question(
-                both!(
-                    "the functions of {axis} were measured over ranges without a common part",
-                    "функции {axis} измерены на участках без общей части"
-                ),
-                both!("leave one of them out", "уберите одну из них"),
-            ));
+            return Err(Failure::usage(notice!(QUESTION;
+                "the functions of {axis} were measured over ranges without a common part",
+                "функции {axis} измерены на участках без общей части";
+                "leave one of them out", "уберите одну из них"
+            )));
         }
         let two = change.iter().flatten().any(|f| f.directions.is_some());
         let mut made = AxisOnNodes::new(data, k, self.given[k].unwrap_or_default(), nodes, two);
@@ -393,33 +389,23 @@ fn inside_travel(
     if let Some(at) = &arguments.through {
         let place = at.0[k];
         if beyond(place) {
-            return Err(Failure::option(
-                both!(
-                    "`--through {at}`: {axis} does not go to {} mm: {travel}",
-                    "`--through {at}`: {axis} не доходит до {} мм: {travel:#}",
-                    short(place, 3)
-                ),
-                both!(
-                    "give the machine position of the measured lines, in mm, and the base of this machine",
-                    "дайте положение измеренных линий на станке, в мм, и исходный профиль этого станка"
-                ),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "`--through {at}`: {axis} does not go to {} mm: {travel}",
+                "`--through {at}`: {axis} не доходит до {} мм: {travel:#}", short(place, 3);
+                "give the machine position of the measured lines, in mm, and the base of this machine",
+                "дайте положение измеренных линий на станке, в мм, и исходный профиль этого станка"
+            )));
         }
     }
     for series in all.iter().filter(|series| series.axis == axis) {
         if let Some(reading) = series.readings.iter().find(|r| beyond(r.position_mm)) {
-            let message = both!(
+            return Err(Failure::usage(notice!(AXES;
                 "{}: {} has a target at {} mm, but {travel}",
-                "{}: у {} цель в {} мм, но {travel:#}",
-                series.source,
-                series.name(),
-                short(reading.position_mm, 3)
-            );
-            let help = both!(
+                "{}: у {} цель в {} мм, но {travel:#}", series.source, series.name(),
+                short(reading.position_mm, 3);
                 "are these the targets of this axis, in mm and machine coordinates, and is the base that of this machine?",
                 "это цели этой оси, в мм и координатах станка, и исходный профиль — этого станка?"
-            );
-            return Err(Failure::asks(AXES, message, help));
+            )));
         }
     }
     Ok(())

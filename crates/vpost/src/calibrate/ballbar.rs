@@ -6,22 +6,21 @@ use calibration::CalibrationError;
 use calibration::linear_ballbar::{self, CircleCalibration};
 use calibration::rotary_ballbar::{self, RotaryCalibration, Test};
 use clap::Args;
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text};
 use machine_model::effects::{Conditions, EffectTerm};
 use machine_model::{
-    Axis, Chain, Command, Description, Engine, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector,
-    WithEffects,
+    Axis, Chain, Command, Description, Engine, LinearAxis, Range, RotaryAxis, Squareness, Vector, WithEffects,
 };
 use machine_profile::{Profile, ProfileText};
 
 use crate::arguments::Shared;
-use crate::message::{Failure, Messages};
+use crate::message::{Failure, Messages, OPTION, notice};
 use crate::values::{Given, Point3};
 use crate::{conditions, file};
 
 use super::bar_readings::{FAR, Measured, Readings};
 use super::bar_report::{before_and_after, circle_report, rotary_report};
-use super::codes::{AXES, CONTRADICTED, OPEN, OUTLIER, UNSAID, failure, question};
+use super::codes::{AXES, CONTRADICTED, OPEN, OUTLIER, QUESTION, UNSAID, body, failure};
 use super::output::{Output, Target};
 use super::page::{Bars, Shown};
 use super::sources::mean;
@@ -65,23 +64,19 @@ impl Base {
             // Where no rotary axis turns, the order of perfect axes makes no difference.
             let any = if readings.turn_something() { None } else { Some("[w X Y b Z t]") };
             let Some(chain) = arguments.target.chain.as_deref().or(any) else {
-                return Err(question(
-                    both!("which axis of the table carries which?", "какая ось стола несёт какую?"),
-                    both!(
-                        "add `-m PROFILE.toml` of the machine, or `--chain \"[w C A X Y b Z t]\"`: axes from the workpiece on",
-                        "добавьте `-m PROFILE.toml` станка или `--chain \"[w C A X Y b Z t]\"`: оси, начиная от детали"
-                    ),
-                ));
+                return Err(Failure::usage(notice!(QUESTION;
+                    "which axis of the table carries which?", "какая ось стола несёт какую?";
+                    "add `-m PROFILE.toml` of the machine, or `--chain \"[w C A X Y b Z t]\"`: axes from the workpiece on",
+                    "добавьте `-m PROFILE.toml` станка или `--chain \"[w C A X Y b Z t]\"`: оси, начиная от детали"
+                )));
             };
             let chain = Chain::parse(chain).map_err(|error| {
                 let error = error.text();
-                Failure::option(
-                    both!("`--chain {chain}`: {error}", "`--chain {chain}`: {error:#}"),
-                    both!(
-                        "write the axes as in `--chain \"[w C A X Y b Z t]\"`",
-                        "напишите оси так: `--chain \"[w C A X Y b Z t]\"`"
-                    ),
-                )
+                Failure::usage(notice!(OPTION;
+                    "`--chain {chain}`: {error}", "`--chain {chain}`: {error:#}";
+                    "write the axes as in `--chain \"[w C A X Y b Z t]\"`",
+                    "напишите оси так: `--chain \"[w C A X Y b Z t]\"`"
+                ))
             })?;
             let [low, high] = readings.span_mm();
             let linear = [0, 1, 2].map(|i| {
@@ -112,15 +107,12 @@ impl Base {
         };
         let chain = &self.description.chain;
         if let Some(axis) = chain.head().iter().find(|axis| readings.turn(**axis)) {
-            let message = both!(
+            return Err(Failure::usage(notice!(AXES;
                 "{axis} turns the tool on {chain}: a ball bar calibrates axes that turn the table, not those of a head",
-                "{axis} поворачивает на {chain} инструмент: телескопическим измерителем калибруют оси стола, а не головы"
-            );
-            let help = both!(
+                "{axis} поворачивает на {chain} инструмент: телескопическим измерителем калибруют оси стола, а не головы";
                 "leave the runs of {axis} out; location errors known from elsewhere go into [rotary.{axis}] of the profile",
                 "исключите проходы {axis}; известные из других измерений погрешности положения оси впишите в [rotary.{axis}] профиля"
-            );
-            return Err(Failure::asks(AXES, message, help));
+            )));
         }
         for axis in self.description.chain.table().to_vec() {
             let own = &mut self.description.rotary[axis.direction()];
@@ -132,16 +124,13 @@ impl Base {
                     beside[axis.direction()] = 0.0;
                     if beside.norm() > SAME_MM {
                         let [x, y, z] = own.centre_mm.into();
-                        let message = both!(
+                        return Err(Failure::usage(notice!(AXES;
                             "`--crossing {text}` lies {:.3} mm beside the axis of {axis}, which goes through centre_mm = [{x}, {y}, {z}]",
                             "`--crossing {text}` лежит в {:.3} мм от оси {axis}, которая проходит через centre_mm = [{x}, {y}, {z}]",
-                            beside.norm()
-                        );
-                        let help = both!(
+                            beside.norm();
                             "leave `--crossing` out, or correct centre_mm in the profile",
                             "уберите `--crossing` или исправьте centre_mm в профиле"
-                        );
-                        return Err(Failure::asks(AXES, message, help));
+                        )));
                     }
                 }
                 Some((_, at)) => {
@@ -149,33 +138,17 @@ impl Base {
                     self.centred.push(axis);
                 }
                 None if !said && readings.turn(axis) => {
-                    return Err(question(
-                        both!(
-                            "where is the axis of {axis}? its location errors count from there",
-                            "где ось {axis}? её погрешности положения отсчитываются оттуда"
-                        ),
-                        both!(
-                            "add `--crossing X,Y,Z`, or `-m PROFILE` with centre_mm of the axes of the table",
-                            "добавьте `--crossing X,Y,Z` или `-m PROFILE` с centre_mm осей стола"
-                        ),
-                    ));
+                    return Err(Failure::usage(notice!(QUESTION;
+                        "where is the axis of {axis}? its location errors count from there",
+                        "где ось {axis}? её погрешности положения отсчитываются оттуда";
+                        "add `--crossing X,Y,Z`, or `-m PROFILE` with centre_mm of the axes of the table",
+                        "добавьте `--crossing X,Y,Z` или `-m PROFILE` с centre_mm осей стола"
+                    )));
                 }
                 None => {}
             }
         }
         Ok(())
-    }
-
-    fn machine_without_effects(&self) -> Result<RigidBody, Failure> {
-        RigidBody::new(self.description.clone()).map_err(|error| {
-            question(
-                error.text(),
-                both!(
-                    "run `vpost profile check` on the base",
-                    "запустите `vpost profile check` для исходного профиля"
-                ),
-            )
-        })
     }
 
     /// The machine under these conditions.
@@ -184,7 +157,7 @@ impl Base {
             Some(profile) => profile.effect_terms(false).map_err(|error| conditions::failure(&error))?,
             None => Vec::new(),
         };
-        WithEffects::new(self.machine_without_effects()?, effects, conditions)
+        WithEffects::new(body(&self.description)?, effects, conditions)
             .map_err(|error| conditions::failure(&error.into()))
     }
 
@@ -215,17 +188,13 @@ impl Base {
         for (i, axis) in Axis::ALL[..3].iter().enumerate() {
             let (at, range) = (command.linear_mm[i], volume.0[i]);
             if at < range.low - SAME_MM || at > range.high + SAME_MM {
-                let message = both!(
+                return Err(Failure::usage(notice!(AXES;
                     "run `{name}`: {axis} at {at:.3} mm lies outside what the base profile knows, {:.3} to {:.3} mm",
                     "проход `{name}`: {axis} в {at:.3} мм лежит вне того, что знает исходный профиль, от {:.3} до {:.3} мм",
-                    range.low,
-                    range.high
-                );
-                let help = both!(
+                    range.low, range.high;
                     "is `-m` the profile of this machine? x_mm y_mm z_mm are machine coordinates",
                     "в `-m` профиль этого станка? x_mm y_mm z_mm — координаты станка"
-                );
-                return Err(Failure::asks(AXES, message, help));
+                )));
             }
         }
         Ok(())
@@ -240,8 +209,8 @@ struct Table {
 
 impl Table {
     fn new(base: &Base, readings: &Readings, target: &Target, shared: &Shared) -> Result<Self, Failure> {
-        let body = base.machine_without_effects()?;
-        let tests = readings.tests(base.tool_mm, &|command| body.nominal_tool(command));
+        let machine = body(&base.description)?;
+        let tests = readings.tests(base.tool_mm, &|command| machine.nominal_tool(command));
         let machines = base.machines(&tests.temperatures_c, target, shared)?;
         Ok(Self { tests, machines })
     }
@@ -255,16 +224,13 @@ impl Table {
         let read = tests.iter().flat_map(|test| &test.readings);
         for (reading, (expected_mm, (angle, length_mm))) in expected.iter().flatten().zip(read).enumerate() {
             if (length_mm - expected_mm).abs() > FAR * expected_mm {
-                let message = both!(
+                return Err(readings.at(self.tests.place(reading))(notice!(CONTRADICTED;
                     "at {:.1} degrees the balls would be {expected_mm:.3} mm apart on this table, not {length_mm} mm",
                     "при {:.1} градуса шары на этом столе были бы в {expected_mm:.3} мм друг от друга, а не в {length_mm} мм",
-                    angle.to_degrees()
-                );
-                let help = both!(
+                    angle.to_degrees();
                     "which axis turned? check the columns of the angles, centre_mm and the places of both balls",
                     "какая ось вращалась? проверьте столбцы углов, centre_mm и места обоих шаров"
-                );
-                return Err(readings.refuse(CONTRADICTED, self.tests.place(reading), message, help));
+                )));
             }
         }
         rotary_ballbar::calibrate(tests, &self.machines)
@@ -304,7 +270,7 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
     let parts = [rotary.as_ref().map(|r| r.uncertainty_mm), circles.as_ref().map(|(c, _)| c.uncertainty_mm)];
     let found_mm = parts.into_iter().flatten().fold(0.0, units::math::hypot);
     file::print(out.in_language(messages.language()).as_bytes())?;
-    if target.output.is_none() && target.against.is_none() {
+    if !target.writes() {
         // What stays of a base is as uncertain as it says, which is asked where a profile is made.
         return show(base.profile.is_none().then_some(found_mm));
     }
@@ -336,8 +302,8 @@ fn circles(
     target: &Target,
     shared: &Shared,
 ) -> Result<Option<(CircleCalibration, Vec<String>)>, Failure> {
-    let body = base.machine_without_effects()?;
-    let circles = readings.circles(base.tool_mm, &|command| body.nominal_tool(command));
+    let machine = body(&base.description)?;
+    let circles = readings.circles(base.tool_mm, &|command| machine.nominal_tool(command));
     if circles.what.is_empty() {
         return Ok(None);
     }
@@ -357,39 +323,29 @@ fn located(
     place: impl Fn(usize) -> (usize, usize),
 ) -> Failure {
     let CalibrationError::Outlier { point, message } = error else { return refusal(error) };
-    let help = both!(
+    readings.at(place(*point))(notice!(OUTLIER;
+        message.clone();
         "measure it again, or leave it out; readings moved by a row look like this as well",
         "измерьте снова или исключите; так же выглядят показания со сдвигом на строку"
-    );
-    readings.refuse(OUTLIER, place(*point), message.clone(), help)
+    ))
 }
 
 fn refusal(error: &CalibrationError) -> Failure {
-    let (code, help) = match error {
-        CalibrationError::Axes(_) => (
-            AXES,
-            both!(
-                "is `-m` (or `--chain`) the machine that was measured?",
-                "в `-m` (или `--chain`) тот станок, который измеряли?"
-            ),
+    Failure::unfit(match error {
+        CalibrationError::Axes(_) => notice!(AXES; error.text();
+            "is `-m` (or `--chain`) the machine that was measured?",
+            "в `-m` (или `--chain`) тот станок, который измеряли?"
         ),
-        CalibrationError::Unobservable(_) => (
-            OPEN,
-            both!(
-                "add the test that tells them apart: the spindle's turn for eX and eY, the ball 100 mm beside or above for a tilt",
-                "добавьте опыт, который их различит: поворот шпинделя для eX и eY, шар на 100 мм в стороне или выше для наклона"
-            ),
+        CalibrationError::Unobservable(_) => notice!(OPEN; error.text();
+            "add the test that tells them apart: the spindle's turn for eX and eY, the ball 100 mm beside or above for a tilt",
+            "добавьте опыт, который их различит: поворот шпинделя для eX и eY, шар на 100 мм в стороне или выше для наклона"
         ),
-        CalibrationError::Contradicted(_) => (
-            CONTRADICTED,
-            both!(
-                "check the files: columns exchanged, directions the wrong way round, a circle of another day or another bar",
-                "проверьте файлы: переставленные столбцы, направления наоборот, круг другого дня или другого измерителя"
-            ),
+        CalibrationError::Contradicted(_) => notice!(CONTRADICTED; error.text();
+            "check the files: columns exchanged, directions the wrong way round, a circle of another day or another bar",
+            "проверьте файлы: переставленные столбцы, направления наоборот, круг другого дня или другого измерителя"
         ),
         _ => return failure("", &[], error),
-    };
-    Failure::alone(code, error.text(), help)
+    })
 }
 
 fn write_locations(output: &mut Output, found: &RotaryCalibration, base: &Base) {
@@ -398,13 +354,7 @@ fn write_locations(output: &mut Output, found: &RotaryCalibration, base: &Base) 
         output.text.set_triple(&["rotary", &axis.letter().to_string(), "centre_mm"], centre, 6);
     }
     for f in &found.locations {
-        let (unit, scale) = if f.location.is_length { ("um", 1e3) } else { ("urad", 1e6) };
-        let key = format!("{}_{unit}", f.location.name());
-        let axis = f.location.axis.letter().to_string();
-        output.text.set_number(&["rotary", &axis, &key], f.value * scale, 3);
-        if !f.location.is_length {
-            output.text.say_tilt(&axis);
-        }
+        output.location(&f.location, f.value, 3);
     }
 }
 
@@ -436,16 +386,13 @@ fn write_circles(output: &mut Output, found: &CircleCalibration, messages: &Mess
     }
     for (name, term) in super::bar_report::SCALES.into_iter().zip(found.mismatch) {
         if let Some(term) = term.filter(|t| t.value.abs() > t.half_width_95.max(SEEN_RATIO)) {
-            let message = both!(
+            messages.warning(notice!(UNSAID;
                 "scale {name} of {:.1} um/m is not written: a bar does not say which of the two axes it is",
                 "масштаб {name} {:.1} мкм/м не записан: измеритель не говорит, какой из двух осей он",
-                term.value * 1e6
-            );
-            let help = both!(
+                term.value * 1e6;
                 "measure the positioning of both axes with an interferometer",
                 "измерьте позиционирование обеих осей интерферометром"
-            );
-            messages.warn(UNSAID, message, help);
+            ));
         }
     }
 }

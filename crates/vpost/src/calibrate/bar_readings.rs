@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use calibration::linear_ballbar::CircleReading;
 use calibration::rotary_ballbar::{Test, Turning};
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Diagnostic, both};
 use machine_model::{Axis, Command, Vector};
 use measurement_files::{Row, Sheet};
 
-use crate::message::Failure;
+use crate::message::{Failure, notice};
 
 use super::codes::{AXES, UNITS};
 use super::sources;
@@ -163,12 +163,11 @@ impl Readings {
         all
     }
 
-    /// A refusal that points at the length of one reading.
-    pub(super) fn refuse(&self, code: Code, place: (usize, usize), message: Text, help: Text) -> Failure {
-        let (file, number) = place;
-        match self.sheets[file].row(number) {
-            Some(row) => row.refuse(code, row.bar_key(), message, help).into(),
-            None => Failure::usage(Diagnostic::error(code, message).help(help)),
+    /// What is refused of the length of one reading.
+    pub(super) fn at(&self, (file, number): (usize, usize)) -> impl FnOnce(Diagnostic) -> Failure {
+        move |wrong| match self.sheets[file].row(number) {
+            Some(row) => Failure::at_cell(&row, row.bar_key())(wrong),
+            None => Failure::usage(wrong),
         }
     }
 }
@@ -193,15 +192,12 @@ fn line(row: &Row<'_>, place: (usize, usize)) -> Result<Line, Failure> {
     let (length_mm, apart_mm) = (bar.length_mm, (bar.centre_mm - bar.ball_mm).norm());
     // Lengths must be near what the balls' places say.
     if (length_mm - apart_mm).abs() > FAR * apart_mm {
-        let message = both!(
+        return Err(Failure::at_cell(row, row.bar_key())(notice!(UNITS;
             "a length of {length_mm} mm, where the balls are {apart_mm:.3} mm apart",
-            "длина {length_mm} мм, а между шарами {apart_mm:.3} мм"
-        );
-        let help = both!(
+            "длина {length_mm} мм, а между шарами {apart_mm:.3} мм";
             "give the whole length in mm, not its change; and both balls' places at angle 0",
             "дайте всю длину в мм, а не её изменение; и места обоих шаров при угле 0"
-        );
-        return Err(row.refuse(UNITS, row.bar_key(), message, help).into());
+        )));
     }
     let balls = [bar.ball_mm, bar.centre_mm];
     Ok(Line { place, balls, angles_deg, length_mm, direction: bar.direction })
@@ -235,9 +231,10 @@ impl Run {
         let moves = |of: &dyn Fn(&Line) -> f64| self.lines.iter().any(|l| (of(l) - of(first)).abs() > 1e-9);
         let turning: Vec<usize> = (0..4).filter(|&k| moves(&|l| l.angles_deg[k])).collect();
         let linear = (0..3).any(|i| moves(&|l| l.balls[0][i]));
-        let refuse = |code, message: Text, help: Text| {
+        let refuse = |wrong: Diagnostic| {
+            let message = wrong.message;
             let message = both!("{file}, run `{}`: {message}", "{file}, проход `{}`: {message:#}", self.name);
-            Err(Failure::usage(Diagnostic::error(code, message).help(help)))
+            Err(Failure::usage(Diagnostic { message, ..wrong }))
         };
         match (turning.as_slice(), linear) {
             ([], true) => Ok(Moves::Linear),
@@ -247,31 +244,23 @@ impl Run {
                 // A turn or half a turn in radians is no round number of degrees.
                 let turns = [std::f64::consts::TAU, std::f64::consts::PI];
                 if turns.iter().any(|turn| (span - turn).abs() < 1e-3) {
-                    let message = both!(
+                    return refuse(notice!(UNITS;
                         "{} goes over {span:.4}: a turn in radians",
-                        "{} охватывает {span:.4}: оборот в радианах",
-                        ANGLES[*one]
-                    );
-                    return refuse(UNITS, message, both!("give degrees", "дайте градусы"));
+                        "{} охватывает {span:.4}: оборот в радианах", ANGLES[*one];
+                        "give degrees", "дайте градусы"
+                    ));
                 }
                 Ok(Moves::Turning(*one))
             }
-            ([], false) => refuse(
-                AXES,
-                both!("nothing moves", "ничего не движется"),
-                both!("a run turns one axis or moves two", "в проходе вращается одна ось или движутся две"),
-            ),
-            _ => refuse(
-                AXES,
-                both!(
-                    "linear and rotary axes move, or two rotary ones",
-                    "движутся и линейные, и поворотные оси или две поворотные"
-                ),
-                both!(
-                    "turn one axis a run; the others stand",
-                    "вращайте в проходе одну ось, остальные стоят"
-                ),
-            ),
+            ([], false) => refuse(notice!(AXES;
+                "nothing moves", "ничего не движется";
+                "a run turns one axis or moves two", "в проходе вращается одна ось или движутся две"
+            )),
+            _ => refuse(notice!(AXES;
+                "linear and rotary axes move, or two rotary ones",
+                "движутся и линейные, и поворотные оси или две поворотные";
+                "turn one axis a run; the others stand", "вращайте в проходе одну ось, остальные стоят"
+            )),
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Numbers of the messages of `calibrate`.
 
 use calibration::CalibrationError;
-use diagnostic::{Code, Diagnostic, Speaks, Text, both};
+use diagnostic::{Code, Speaks, Text};
 
-use crate::message::Failure;
+use machine_model::{Description, RigidBody};
+
+use crate::message::{Failure, notice};
 
 pub(crate) use measurement_files::codes::{AXES, CELL, OPEN, QUESTION, RUNS};
 
@@ -24,51 +26,48 @@ pub(crate) const CONTRADICTED: Code = Code(1113);
 
 /// What to say of measurements that give no profile, and what to do.
 pub(crate) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Failure {
-    let (code, help) = match error {
-        CalibrationError::Axes(_) => (
-            AXES,
-            both!(
-                "compare axes, signs and order of the columns with what the message says; frames are right-handed",
-                "сравните оси, знаки и порядок столбцов с тем, что сказано в сообщении; системы координат правые"
-            ),
+    let said = match error {
+        CalibrationError::Axes(_) => notice!(AXES; error.text();
+            "compare axes, signs and order of the columns with what the message says; frames are right-handed",
+            "сравните оси, знаки и порядок столбцов с тем, что сказано в сообщении; системы координат правые"
         ),
-        CalibrationError::Units(_) => (
-            UNITS,
-            both!(
-                "the column's name says its unit: convert the numbers or rename the column",
-                "единица названа в имени столбца: пересчитайте числа или переименуйте столбец"
-            ),
+        CalibrationError::Units(_) => notice!(UNITS; error.text();
+            "the column's name says its unit: convert the numbers or rename the column",
+            "единица названа в имени столбца: пересчитайте числа или переименуйте столбец"
         ),
-        CalibrationError::Runs(_) => (
-            RUNS,
-            both!(
-                "every run must pass every target; leave an incomplete run out",
-                "каждый проход проходит все цели; неполный исключите"
-            ),
+        CalibrationError::Runs(_) => notice!(RUNS; error.text();
+            "every run must pass every target; leave an incomplete run out",
+            "каждый проход проходит все цели; неполный исключите"
         ),
-        CalibrationError::TooFew(_) => (OPEN, both!("measure more points", "измерьте больше точек")),
-        CalibrationError::Outlier { .. } => {
-            (OUTLIER, both!("measure it again, or take the row out", "измерьте снова или уберите строку"))
+        CalibrationError::TooFew(_) => {
+            notice!(OPEN; error.text(); "measure more points", "измерьте больше точек")
         }
-        CalibrationError::Contradicted(_) => (
-            CONTRADICTED,
-            both!(
-                "measure again what the message names, or leave it out",
-                "измерьте названное в сообщении снова или исключите"
-            ),
+        CalibrationError::Outlier { .. } => {
+            notice!(OUTLIER; error.text(); "measure it again, or take the row out", "измерьте снова или уберите строку")
+        }
+        CalibrationError::Contradicted(_) => notice!(CONTRADICTED; error.text();
+            "measure again what the message names, or leave it out",
+            "измерьте названное в сообщении снова или исключите"
         ),
-        CalibrationError::Unobservable(_) => (
-            OPEN,
-            both!(
-                "measure where they differ: another tool length, other positions of the other axes",
-                "измеряйте там, где они различаются: с другим вылетом инструмента, с другими положениями остальных осей"
-            ),
+        CalibrationError::Unobservable(_) => notice!(OPEN; error.text();
+            "measure where they differ: another tool length, other positions of the other axes",
+            "измеряйте там, где они различаются: с другим вылетом инструмента, с другими положениями остальных осей"
         ),
     };
     if file.is_empty() {
-        return Failure::alone(code, error.text(), help);
+        return Failure::unfit(said);
     }
-    Failure::refused(file, bytes, vec![Diagnostic::error(code, error.text()).help(help)])
+    Failure::refused(file, bytes, vec![said])
+}
+
+/// The machine that a base describes.
+pub(crate) fn body(description: &Description) -> Result<RigidBody, Failure> {
+    RigidBody::new(description.clone()).map_err(|error| {
+        Failure::usage(notice!(QUESTION;
+            error.text();
+            "run `vpost profile check` on the base", "запустите `vpost profile check` для исходного профиля"
+        ))
+    })
 }
 
 /// A question that stays open.

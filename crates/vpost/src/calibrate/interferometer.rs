@@ -10,29 +10,27 @@ use measurement_files::series::{Origin, Series, Told};
 
 use crate::arguments::Shared;
 use crate::file;
-use crate::message::{Failure, Messages};
+use crate::message::{Failure, Messages, OPTION, notice};
 
 use super::axis_change::Session;
-use super::codes::{UNSAID, failure, question};
+use super::codes::{QUESTION, UNSAID, failure};
 use super::options::{Between, Directions, Interferometer, Reference, Slopes};
-use super::output::Output;
+use super::output::{Output, columns};
 use super::page::{Positions, Read};
 use super::squareness::{Asked, Functions};
 use super::{iso_report, plausibility, sources, squareness};
-use crate::number::short;
+use crate::figures::short;
 
 /// `vpost calibrate interferometer`
 pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let (mut all, angles_read) = read(arguments)?;
-    let writes = arguments.target.output.is_some() || arguments.target.against.is_some();
+    let writes = arguments.target.writes();
     if arguments.refine.is_some() && !writes {
-        return Err(Failure::option(
-            both!(
-                "`--refine` is for tables, and none are written",
-                "`--refine` относится к таблицам, а они не записываются"
-            ),
-            both!("add `-o PROFILE.toml`", "добавьте `-o PROFILE.toml`"),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "`--refine` is for tables, and none are written",
+            "`--refine` относится к таблицам, а они не записываются";
+            "add `-o PROFILE.toml`", "добавьте `-o PROFILE.toml`"
+        )));
     }
     let mut out = Text::EMPTY;
     let mut axes: [Functions; 3] = Default::default();
@@ -181,15 +179,12 @@ fn change(
         }
     }
     if !asked.is_given() && session.is_new() {
-        let message = both!(
+        messages.warning(notice!(UNSAID;
             "readings of single axes say nothing of the angles between them: the measured lines are taken as square",
-            "показания отдельных осей ничего не говорят об углах между ними: измеренные линии приняты перпендикулярными"
-        );
-        let help = both!(
+            "показания отдельных осей ничего не говорят об углах между ними: измеренные линии приняты перпендикулярными";
             "add `--squareness XY=…,ZX=…,YZ=… --squareness-convention …`, or measure it later with -m",
             "добавьте `--squareness XY=…,ZX=…,YZ=… --squareness-convention …` или измерьте позже с -m"
-        );
-        messages.warn(UNSAID, message, help);
+        ));
     }
     Ok(session.field_u95_mm(&changes, arguments.u_um_per_m * 1e-6).map(|own| {
         // What was not measured is as uncertain as the base says.
@@ -206,16 +201,12 @@ fn say_directions(axis: Axis, all: &[Series]) -> Result<(), Failure> {
     if !is_silent {
         return Ok(());
     }
-    Err(Failure::option(
-        both!(
-            "`--directions mean`: no reading of E{axis}{axis} says from which side {axis} came, and its reversal value is made of that",
-            "`--directions mean`: ни один отсчёт E{axis}{axis} не говорит, с какой стороны подошла ось {axis}, а зона нечувствительности находится по этому"
-        ),
-        both!(
-            "add the column dir (1 upwards, -1 downwards), or leave the option out: one table for both directions is written then",
-            "добавьте столбец dir (1 — вверх, -1 — вниз) или уберите ключ: тогда таблица будет одна на оба направления"
-        ),
-    ))
+    Err(Failure::usage(notice!(OPTION;
+        "`--directions mean`: no reading of E{axis}{axis} says from which side {axis} came, and its reversal value is made of that",
+        "`--directions mean`: ни один отсчёт E{axis}{axis} не говорит, с какой стороны подошла ось {axis}, а зона нечувствительности находится по этому";
+        "add the column dir (1 upwards, -1 downwards), or leave the option out: one table for both directions is written then",
+        "добавьте столбец dir (1 — вверх, -1 — вниз) или уберите ключ: тогда таблица будет одна на оба направления"
+    )))
 }
 
 /// What the set-up hides, and what was taken for it.
@@ -270,17 +261,13 @@ fn to_the_line(
     }
     let letters: Vec<String> = concerned.iter().map(ToString::to_string).collect();
     let Some(reference) = arguments.reference else {
-        return Err(question(
-            both!(
-                "{} carry the workpiece and have angles: were their tables defined along the measured line or at the carriage?",
-                "{} несут деталь и имеют углы: их таблицы заданы вдоль измеренной линии или у каретки?",
-                letters.join(", ")
-            ),
-            both!(
-                "add `--reference line` or `--reference carriage`",
-                "добавьте `--reference line` или `--reference carriage`"
-            ),
-        ));
+        return Err(Failure::usage(notice!(QUESTION;
+            "{} carry the workpiece and have angles: were their tables defined along the measured line or at the carriage?",
+            "{} несут деталь и имеют углы: их таблицы заданы вдоль измеренной линии или у каретки?",
+            letters.join(", ");
+            "add `--reference line` or `--reference carriage`",
+            "добавьте `--reference line` или `--reference carriage`"
+        )));
     };
     if reference == Reference::Line {
         return Ok(());
@@ -325,15 +312,14 @@ fn write_axis(
     /// More than any control's table, and small enough for every text.
     const MOST_NODES: f64 = 1e5;
     if arguments.refine.is_some_and(|step| (nodes[nodes.len() - 1] - nodes[0]) / step > MOST_NODES) {
-        let message = both!(
+        return Err(Failure::usage(notice!(OPTION;
             "`--refine` makes more than {MOST_NODES} rows for {axis}",
-            "`--refine` даёт для {axis} больше {MOST_NODES} строк"
-        );
-        return Err(Failure::option(message, both!("use a larger step", "возьмите шаг больше")));
+            "`--refine` даёт для {axis} больше {MOST_NODES} строк";
+            "use a larger step", "возьмите шаг больше"
+        )));
     }
     let put = |output: &mut Output, key: &str, rows: &[Six]| {
-        let column = |k: usize| changed.given[k].then(|| rows.iter().map(|six| six[k]).collect::<Vec<f64>>());
-        let all: [Option<Vec<f64>>; 6] = std::array::from_fn(column);
+        let all = columns(changed.given, rows);
         match arguments.refine {
             None => output.errors(axis, key, nodes, &all),
             Some(step) => {
@@ -374,15 +360,12 @@ fn write_line(
         let others: Vec<(char, f64)> = others.map(|k| (Axis::ALL[k].letter(), line.at_mm[k])).collect();
         output.text.set_measured_at(axis.letter(), &others, line.optics_mm.into());
     } else if change[3..].iter().any(Option::is_some) {
-        let message = both!(
+        messages.warning(notice!(UNSAID;
             "the line along which {axis} was measured is not known: taken through 0 of the other axes, at the gauge point",
-            "линия, вдоль которой измерена {axis}, неизвестна: принята через 0 остальных осей, в базовой точке"
-        );
-        let help = both!(
+            "линия, вдоль которой измерена {axis}, неизвестна: принята через 0 остальных осей, в базовой точке";
             "its angles act from that line on: add `--through X,Y,Z` and `--optics X,Y,Z`",
             "её углы действуют от этой линии: добавьте `--through X,Y,Z` и `--optics X,Y,Z`"
-        );
-        messages.warn(UNSAID, message, help);
+        ));
     }
 }
 

@@ -67,7 +67,7 @@ pub(super) fn lines(title: &str, e: &Evaluation, scale: f64, unit: &Text) -> Tex
         let cell = |a: Option<f64>| a.map_or_else(empty, v);
         let [up, down] = [t.positive, t.negative].map(|a| cell(a.map(|a| a.mean)));
         let [s_up, s_down] = [t.positive, t.negative].map(|a| cell(a.map(|a| a.deviation)));
-        let (at, b, r) = (crate::number::short(t.position, 3), cell(t.reversal), v(t.repeatability));
+        let (at, b, r) = (crate::figures::short(t.position, 3), cell(t.reversal), v(t.repeatability));
         out.push(&Text::same(format!("{at:>8} {up} {down} {b}  {s_up}  {s_down}  {r}\n")));
     }
     for Figure { symbol, name, found } in figures(e) {

@@ -3,19 +3,20 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use calibration::rotary_ballbar::Location;
 use calibration::{Base, ChangedAxis, SetUp};
 use clap::Args;
 use diagnostic::{Speaks, both};
 use machine_model::effects::{Conditions, EffectKind};
-use machine_model::{Axis, Chain, Command, Description, Vector};
+use machine_model::{Axis, Chain, Command, Description, Six, Vector};
 use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
-use crate::message::{Deed, Failure, Messages};
-use crate::number::short;
+use crate::figures::short;
+use crate::message::{Deed, Failure, Messages, OPTION, notice};
 use crate::{file, profile};
 
-use super::codes::{UNSAID, question};
+use super::codes::{QUESTION, UNSAID};
 
 /// An axis that goes less far has none of its own: it stood there while others were measured.
 pub(super) const SHORTEST_MM: f64 = 1e-3;
@@ -56,6 +57,13 @@ pub struct Target {
     pub ignore_column: Vec<String>,
 }
 
+impl Target {
+    /// A profile is made: to be written, or to be compared.
+    pub(super) fn writes(&self) -> bool {
+        self.output.is_some() || self.against.is_some()
+    }
+}
+
 /// A profile in the making.
 pub(super) struct Output {
     /// Its text.
@@ -77,16 +85,12 @@ fn agrees(base: &Profile, target: &Target, shared: &Shared) -> Result<(), Failur
         [("--chain", target.chain.as_deref(), chain), ("--dialect", shared.job.dialect.as_deref(), control)];
     for (option, said, known) in asked {
         if let Some(said) = said.filter(|said| squeezed(said) != squeezed(&known)) {
-            return Err(question(
-                both!(
-                    "`{option} {said}`, and the base profile says `{known}`",
-                    "`{option} {said}`, а в исходном профиле `{known}`"
-                ),
-                both!(
-                    "leave out `{option}`: it is for a new profile, without `-m`",
-                    "уберите `{option}`: этот ключ — для нового профиля, без `-m`"
-                ),
-            ));
+            return Err(Failure::usage(notice!(QUESTION;
+                "`{option} {said}`, and the base profile says `{known}`",
+                "`{option} {said}`, а в исходном профиле `{known}`";
+                "leave out `{option}`: it is for a new profile, without `-m`",
+                "уберите `{option}`: этот ключ — для нового профиля, без `-m`"
+            )));
         }
     }
     Ok(())
@@ -115,10 +119,10 @@ impl Output {
             agrees(&base, target, shared)?;
             let text = String::from_utf8_lossy(&file::read(path)?).into_owned();
             let Some(mut text) = ProfileText::parse(&text) else {
-                return Err(question(
-                    both!("the base profile cannot be edited", "исходный профиль нельзя изменить"),
-                    both!("run `vpost profile check` on it", "запустите для него `vpost profile check`"),
-                ));
+                return Err(Failure::usage(notice!(QUESTION;
+                    "the base profile cannot be edited", "исходный профиль нельзя изменить";
+                    "run `vpost profile check` on it", "запустите для него `vpost profile check`"
+                )));
             };
             let from = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
             let mut tables = Vec::new();
@@ -145,16 +149,11 @@ impl Output {
             return Ok(Self { text, base: Some(base), tables, folder });
         }
         let Some(chain) = &target.chain else {
-            return Err(question(
-                both!(
-                    "which machine? its chain of axes is not known",
-                    "какой станок? цепь его осей неизвестна"
-                ),
-                both!(
-                    "add `-m PROFILE.toml` of the same machine, or `--chain \"[w X Y b Z t]\"`: axes from workpiece (w) by the bed (b) to the tool (t)",
-                    "добавьте `-m PROFILE.toml` того же станка или `--chain \"[w X Y b Z t]\"`: оси от детали (w) через станину (b) к инструменту (t)"
-                ),
-            ));
+            return Err(Failure::usage(notice!(QUESTION;
+                "which machine? its chain of axes is not known", "какой станок? цепь его осей неизвестна";
+                "add `-m PROFILE.toml` of the same machine, or `--chain \"[w X Y b Z t]\"`: axes from workpiece (w) by the bed (b) to the tool (t)",
+                "добавьте `-m PROFILE.toml` того же станка или `--chain \"[w X Y b Z t]\"`: оси от детали (w) через станину (b) к инструменту (t)"
+            )));
         };
         let name = target.name.as_deref().unwrap_or("calibrated machine");
         let text = ProfileText::new(name, chain, shared.job.dialect.as_deref());
@@ -169,13 +168,11 @@ impl Output {
         let text = target.chain.as_deref().unwrap_or_default();
         Chain::parse(text).map_err(|error| {
             let error = error.text();
-            Failure::option(
-                both!("`--chain {text}`: {error}", "`--chain {text}`: {error:#}"),
-                both!(
-                    "write the axes as in `--chain \"[w X Y b Z t]\"`",
-                    "напишите оси так: `--chain \"[w X Y b Z t]\"`"
-                ),
-            )
+            Failure::usage(notice!(OPTION;
+                "`--chain {text}`: {error}", "`--chain {text}`: {error:#}";
+                "write the axes as in `--chain \"[w X Y b Z t]\"`",
+                "напишите оси так: `--chain \"[w X Y b Z t]\"`"
+            ))
         })
     }
 
@@ -209,11 +206,7 @@ impl Output {
         for (axis, own) in axes.iter().enumerate() {
             let name = Axis::ALL[axis];
             let letter = name.letter().to_string();
-            for (key, rows) in [("errors", Some(&own.errors)), ("errors_negative", own.negative.as_ref())] {
-                let Some(rows) = rows else { continue };
-                let column = |f: usize| own.given[f].then(|| rows.iter().map(|row| row[f]).collect());
-                self.errors(name, key, &own.positions_mm, &std::array::from_fn(column));
-            }
+            self.tables(name, &own.positions_mm, own.given, [Some(&own.errors), own.negative.as_ref()]);
             let linear = &machine.linear[axis];
             if linear.backlash_mm != 0.0 {
                 self.text.set_number(&["axis", &letter, "backlash_um"], linear.backlash_mm * 1e3, 4);
@@ -253,15 +246,12 @@ impl Output {
         let Some(base) = &self.base else { return found_mm };
         let stated = base.calibrated.as_ref().and_then(|calibrated| calibrated.uncertainty_um);
         if stated.is_none() {
-            let message = both!(
+            messages.warning(notice!(UNSAID;
                 "the base does not say how well it is known: what was not measured now counts as exact in uncertainty_um",
-                "исходный профиль не говорит, насколько точно он известен: не измеренное сейчас считается в uncertainty_um точным"
-            );
-            let help = both!(
+                "исходный профиль не говорит, насколько точно он известен: не измеренное сейчас считается в uncertainty_um точным";
                 "write `uncertainty_um` into `calibrated` of the base, if it is known",
                 "впишите `uncertainty_um` в `calibrated` исходного профиля, если она известна"
-            );
-            messages.warn(UNSAID, message, help);
+            ));
         }
         units::math::hypot(found_mm, stated.unwrap_or(0.0) * 1e-3)
     }
@@ -271,6 +261,31 @@ impl Output {
         self.tables.retain(|(old, _)| old != name);
         self.tables.push((name.to_owned(), bytes));
         format!("{}/{name}", self.folder)
+    }
+
+    /// Tables of an axis: towards plus, and towards minus where that is another.
+    pub(super) fn tables(
+        &mut self,
+        axis: Axis,
+        positions_mm: &[f64],
+        given: [bool; 6],
+        both_ways: [Option<&Vec<Six>>; 2],
+    ) {
+        for (key, rows) in ["errors", "errors_negative"].into_iter().zip(both_ways) {
+            let Some(rows) = rows else { continue };
+            self.errors(axis, key, positions_mm, &columns(given, rows));
+        }
+    }
+
+    /// A location error of a rotary axis, in its own unit.
+    pub(super) fn location(&mut self, location: &Location, value: f64, decimals: i32) {
+        let (unit, scale) = if location.is_length { ("um", 1e3) } else { ("urad", 1e6) };
+        let axis = location.axis.letter().to_string();
+        let key = format!("{}_{unit}", location.name());
+        self.text.set_number(&["rotary", &axis, &key], value * scale, decimals);
+        if !location.is_length {
+            self.text.say_tilt(&axis);
+        }
     }
 
     /// Error functions of an axis as a table of the profile; `None` for functions that were not measured.
@@ -309,16 +324,13 @@ impl Output {
             }
         }
         if !stood.is_empty() {
-            let message = both!(
+            messages.warning(notice!(UNSAID;
                 "how far {} can go is not known: the profile holds where it stood, and corrects nothing elsewhere",
                 "ход {} неизвестен: профиль верен там, где она стояла, а в других местах ничего не исправляет",
-                stood.join(" and ")
-            );
-            let help = both!(
+                stood.join(" and ");
                 "measure it with -m this profile, or write its travel_mm into the profile",
                 "измерьте её с -m этого профиля или впишите в профиль её travel_mm"
-            );
-            messages.warn(UNSAID, message, help);
+            ));
         }
     }
 
@@ -350,11 +362,11 @@ impl Output {
         .filter_map(|(missing, option)| missing.then_some(option))
         .collect();
         if !missing.is_empty() && target.output.is_some() {
-            let message = both!(
+            messages.warning(notice!(UNSAID;
                 "the profile does not say when, how warm or with what the machine was measured",
-                "профиль не говорит, когда, при какой температуре или каким прибором измерен станок"
-            );
-            messages.warn(UNSAID, message, both!("add {}", "добавьте {}", missing.join(", ")));
+                "профиль не говорит, когда, при какой температуре или каким прибором измерен станок";
+                "add {}", "добавьте {}", missing.join(", ")
+            ));
         }
         self.text.set_calibrated(&calibrated);
     }
@@ -400,8 +412,7 @@ impl Output {
         }
         let Some(path) = &target.output else { return Ok(()) };
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf).join(&self.folder);
-        std::fs::create_dir_all(&folder)
-            .map_err(|error| Failure::file(&file::name(&folder), Deed::Make, &error))?;
+        std::fs::create_dir_all(&folder).map_err(file::fails(&folder, Deed::Make))?;
         for (name, bytes) in &self.tables {
             file::write(&folder.join(name), bytes)?;
         }
@@ -414,6 +425,11 @@ impl Output {
         ));
         Ok(())
     }
+}
+
+/// Functions one by one; `None` for those that are not given.
+pub(super) fn columns(given: [bool; 6], rows: &[Six]) -> [Option<Vec<f64>>; 6] {
+    std::array::from_fn(|f| given[f].then(|| rows.iter().map(|row| row[f]).collect()))
 }
 
 /// Error functions as CSV, µm with four decimals and µrad with four: finer than any instrument reads.

@@ -4,13 +4,13 @@ use calibration::functions::Function;
 use calibration::iso230_2::{self, Runs};
 use diagnostic::{Text, both};
 
-use crate::message::{Failure, Messages};
+use crate::message::{Failure, Messages, notice};
 
 use measurement_files::series::{Origin, Series};
 use measurement_files::{OddSizes, micro};
 
 use super::codes::{AXES, MISSING, RUNS, UNITS};
-use crate::number::short;
+use crate::figures::short;
 
 /// Deviations that are much too small or too large for their unit.
 ///
@@ -34,18 +34,13 @@ pub(super) fn directions(series: &Series, messages: &Messages) {
         series.readings.iter().filter(|r| r.direction == 0).map(|r| r.position_mm).collect();
     let again = unsaid.iter().enumerate().find(|(k, at)| unsaid[..*k].contains(at));
     let Some((_, at_mm)) = again.filter(|_| series.function == series.axis.direction()) else { return };
-    let message = both!(
+    messages.warning(notice!(MISSING;
         "{}: {} was read several times at {} mm, and nothing says from which side: all readings without a direction count as reached towards plus",
         "{}: {} снята в {} мм несколько раз, и не сказано, с какой стороны: все отсчёты без направления считаются подходом в плюс",
-        series.source,
-        series.name(),
-        short(*at_mm, 3)
-    );
-    let help = both!(
+        series.source, series.name(), short(*at_mm, 3);
         "the direction decides what is lost motion and what is scatter: add a column `dir`, 1 where the axis moved towards plus and -1 where towards minus; without it B stays unknown, and the table holds the mean of both sides",
         "направление решает, где мёртвый ход, а где разброс: добавьте столбец `dir`: 1 при движении в плюс, -1 в минус; без него B останется неизвестной, а таблица — средней для обеих сторон"
-    );
-    messages.warn(MISSING, message, help);
+    ));
 }
 
 /// Below this no instrument tells two readings apart, mm and rad.
@@ -80,22 +75,19 @@ pub(super) fn copies(
     let is_length = series.function < 3;
     let (finest, (scale, unit)) = (if is_length { FINEST } else { FINEST_RAD }, micro(is_length));
     if apart > finest {
-        let message = both!(
+        return Err(Failure::usage(notice!(RUNS;
             "{message}, while the difference of the directions wanders by {} {unit} from target to target: was one run written several times?",
             "{message:#}, а разность направлений гуляет от цели к цели на {} {unit:#}: один проход записан несколько раз?",
-            short(apart * scale, 3)
-        );
-        let help = both!(
+            short(apart * scale, 3);
             "give runs that were each measured, or one run alone",
             "дайте проходы, каждый из которых измерен, или один проход"
-        );
-        return Err(Failure::asks(RUNS, message, help));
+        )));
     }
-    let help = both!(
+    messages.warning(notice!(MISSING;
+        message;
         "then they say nothing of the repeatability; the uncertainty counts the instrument's alone",
         "о повторяемости они тогда ничего не говорят; в неопределённости учтена только приборная"
-    );
-    messages.warn(MISSING, message, help);
+    ));
     Ok(())
 }
 
@@ -116,18 +108,13 @@ pub(super) fn reversal(series: &Series, function: &Function) -> Result<(), Failu
     if values.iter().any(|b| *b <= 0.0) || mean <= f64::max(3.0 * uncertainty, LEAST_MM) {
         return Ok(());
     }
-    let message = both!(
+    Err(Failure::usage(notice!(AXES;
         "{}: at every target {} stands further when it comes from below than from above, by {} um on average: lost motion is the other way round",
         "{}: в каждой цели {} при подходе снизу стоит дальше, чем сверху, в среднем на {} мкм: мёртвый ход обратного знака",
-        series.source,
-        series.axis,
-        short(mean * 1e3, 3)
-    );
-    let help = both!(
+        series.source, series.axis, short(mean * 1e3, 3);
         "were up and down exchanged (column dir, order of the runs), or are the deviations target minus actual? a backlash compensation of the control that is set too high does it too: switch it off for the measurement",
         "не переставлены ли направления (столбец dir, порядок проходов), не цель ли минус измеренное в отклонениях? так же действует завышенная компенсация люфта в стойке: на время измерения отключите её"
-    );
-    Err(Failure::asks(AXES, message, help))
+    )))
 }
 
 /// A reversal value below this is none, mm.
@@ -160,15 +147,11 @@ pub(super) fn missing_of_the_standard(found: &iso230_2::Evaluation) -> Vec<Text>
 pub(super) fn conditions_of_the_standard(name: &str, found: &iso230_2::Evaluation, messages: &Messages) {
     let missing = missing_of_the_standard(found);
     if !missing.is_empty() {
-        let message = both!(
+        messages.warning(notice!(MISSING;
             "{name} is evaluated after ISO 230-2 but was not measured so: {}",
-            "{name} оценена по ISO 230-2, а измерена не так: {:#}",
-            Text::join(&missing, "; ")
-        );
-        let help = both!(
+            "{name} оценена по ISO 230-2, а измерена не так: {:#}", Text::join(&missing, "; ");
             "do not quote the figures as those of the standard",
             "не приводите эти числа как полученные по стандарту"
-        );
-        messages.warn(MISSING, message, help);
+        ));
     }
 }

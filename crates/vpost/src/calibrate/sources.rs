@@ -4,15 +4,15 @@ use std::path::Path;
 
 use calibration::CalibrationError;
 use calibration::functions::FunctionReading;
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text};
 use machine_model::Vector;
 use machine_model::effects::Conditions;
 use measurement_files::series::{Content, Series, Told, symbol};
 use measurement_files::{Codes, Kind, Row, Sheet};
 
-use super::codes::{CELL, OUTLIER, failure, question};
+use super::codes::{CELL, OUTLIER, QUESTION, failure};
 use crate::file;
-use crate::message::Failure;
+use crate::message::{Failure, OPTION, notice};
 
 /// Reads a table of one of the instruments.
 pub(crate) fn sheet(path: &Path, columns: &str, expected: Text, ignore: &[String]) -> Result<Sheet, Failure> {
@@ -94,10 +94,14 @@ impl<T> Read<T> {
             CalibrationError::Outlier { point, .. } => self.row(*point),
             _ => None,
         };
-        let help = both!("measure it again, or take the row out", "измерьте снова или уберите строку");
         row.map_or_else(
             || failure("", &[], error),
-            |row| row.refuse(OUTLIER, column, error.text(), help).into(),
+            |row| {
+                Failure::at_cell(&row, column)(notice!(OUTLIER;
+                    error.text();
+                    "measure it again, or take the row out", "измерьте снова или уберите строку"
+                ))
+            },
         )
     }
 }
@@ -107,25 +111,22 @@ pub(crate) fn all_state_or_none(stated: usize, all: usize) -> Result<(), Failure
     if stated == 0 || stated == all {
         return Ok(());
     }
-    Err(question(
-        both!(
-            "{stated} of {all} readings state their uncertainty, the others do not",
-            "неопределённость указана у {stated} показаний из {all}, у остальных нет"
-        ),
-        both!(
-            "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
-            "заполните столбец u_um во всех строках или пропустите его: `--ignore-column u_um`"
-        ),
-    ))
+    Err(Failure::usage(notice!(QUESTION;
+        "{stated} of {all} readings state their uncertainty, the others do not",
+        "неопределённость указана у {stated} показаний из {all}, у остальных нет";
+        "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
+        "заполните столбец u_um во всех строках или пропустите его: `--ignore-column u_um`"
+    )))
 }
 
 /// The standard uncertainty that a row states in a column, mm.
 pub(crate) fn uncertainty_mm(row: &Row<'_>, column: &str) -> Result<Option<f64>, Failure> {
     let stated_um = row.number(column)?;
     if stated_um.is_some_and(|um| um <= 0.0) {
-        let message = both!("an uncertainty is above zero", "неопределённость больше нуля");
-        let help = both!("give the standard uncertainty in um", "дайте стандартную неопределённость в мкм");
-        return Err(row.refuse(CELL, column, message, help).into());
+        return Err(Failure::at_cell(row, column)(notice!(CELL;
+            "an uncertainty is above zero", "неопределённость больше нуля";
+            "give the standard uncertainty in um", "дайте стандартную неопределённость в мкм"
+        )));
     }
     Ok(stated_um.map(|um| um * 1e-3))
 }
@@ -155,16 +156,12 @@ pub(super) fn series<'s>(spec: &'s str, mut told: Told<'s>, ignore: &[String]) -
     if let Some((_, rest)) = spec.rsplit_once('=') {
         let (name, unit) = rest.split_once(':').map_or((rest, None), |(name, unit)| (name, Some(unit)));
         let known = symbol(name).ok_or_else(|| {
-            Failure::option(
-                both!(
-                    "`{name}` is no error function of a linear axis",
-                    "`{name}` — не функция погрешности линейной оси"
-                ),
-                both!(
-                    "write a symbol of ISO 230-1 as in `x.rtl=EXX:um`",
-                    "напишите обозначение по ISO 230-1, например `x.rtl=EXX:um`"
-                ),
-            )
+            Failure::usage(notice!(OPTION;
+                "`{name}` is no error function of a linear axis",
+                "`{name}` — не функция погрешности линейной оси";
+                "write a symbol of ISO 230-1 as in `x.rtl=EXX:um`",
+                "напишите обозначение по ISO 230-1, например `x.rtl=EXX:um`"
+            ))
         })?;
         (told.symbol, told.unit) = (Some(known), unit);
     }

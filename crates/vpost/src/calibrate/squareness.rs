@@ -1,12 +1,11 @@
 //! Squareness as an instrument or a file gave it, and what must be asked of it.
 
 use calibration::functions::{self, Function, SquarenessConvention, straight_line};
-use diagnostic::both;
 use machine_model::{Axis, Squareness};
 
-use crate::message::Failure;
+use crate::message::{Failure, notice};
 
-use super::codes::question;
+use super::codes::QUESTION;
 use super::options::{Convention, Interferometer};
 
 /// Everything read of one axis: its six functions.
@@ -44,31 +43,23 @@ pub(super) fn from_the_user(
         Some(Convention::RightHanded) => SquarenessConvention::RightHanded,
         Some(Convention::LargerThan90) => SquarenessConvention::LargerThan90,
         None => {
-            return Err(question(
-                both!(
-                    "what does a positive squareness mean? instruments disagree",
-                    "что значит положительная перпендикулярность? у приборов по-разному"
-                ),
-                both!(
-                    "add `--squareness-convention right-handed` (ISO 230-1: ZX positive where the angle between +Z and +X is below 90°) or `--squareness-convention larger-than90` (positive above 90° in every plane)",
-                    "добавьте `--squareness-convention right-handed` (ISO 230-1: ZX положительна, если угол между +Z и +X меньше 90°) или `--squareness-convention larger-than90` (положительна при угле больше 90° в каждой плоскости)"
-                ),
-            ));
+            return Err(Failure::usage(notice!(QUESTION;
+                "what does a positive squareness mean? instruments disagree",
+                "что значит положительная перпендикулярность? у приборов по-разному";
+                "add `--squareness-convention right-handed` (ISO 230-1: ZX positive where the angle between +Z and +X is below 90°) or `--squareness-convention larger-than90` (positive above 90° in every plane)",
+                "добавьте `--squareness-convention right-handed` (ISO 230-1: ZX положительна, если угол между +Z и +X меньше 90°) или `--squareness-convention larger-than90` (положительна при угле больше 90° в каждой плоскости)"
+            )));
         }
     };
     if arguments.straightness_slopes.is_none()
         && let Some((name, urad)) = steepest(axes)
     {
-        return Err(question(
-            both!(
-                "{name} has a slope of {urad:.1} urad: is it part of the squareness that was read, or beside it?",
-                "у {name} наклон {urad:.1} мкрад: он входит в измеренную перпендикулярность или дан отдельно от неё?"
-            ),
-            both!(
-                "add `--straightness-slopes remove` where the squareness holds it already, or `--straightness-slopes keep`",
-                "добавьте `--straightness-slopes remove`, если он уже есть в перпендикулярности, или `--straightness-slopes keep`"
-            ),
-        ));
+        return Err(Failure::usage(notice!(QUESTION;
+            "{name} has a slope of {urad:.1} urad: is it part of the squareness that was read, or beside it?",
+            "у {name} наклон {urad:.1} мкрад: он входит в измеренную перпендикулярность или дан отдельно от неё?";
+            "add `--straightness-slopes remove` where the squareness holds it already, or `--straightness-slopes keep`",
+            "добавьте `--straightness-slopes remove`, если он уже есть в перпендикулярности, или `--straightness-slopes keep`"
+        )));
     }
     Ok(Asked { rad: in_the_models_signs(read_rad, convention) })
 }

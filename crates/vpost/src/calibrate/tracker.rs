@@ -2,23 +2,26 @@
 
 use std::path::PathBuf;
 
-use calibration::tracker::{Frame, TrackerCalibration, TrackerMachine, Verdict, calibrate, machine};
+use calibration::tracker::{
+    FarCorner, Frame, TrackerCalibration, TrackerMachine, Verdict, calibrate, machine,
+};
 use calibration::{MeanTraverse, Noise, Point, PointReading, Reading, SetUp};
 use clap::{Args, ValueEnum};
 use diagnostic::{Diagnostic, Text, both};
+use machine_model::effects::Conditions;
 use machine_model::{Axis, Command, Vector};
 use measurement_files::Sheet;
 
 use crate::arguments::Shared;
 use crate::conditions::conditions;
 use crate::file;
-use crate::message::{Failure, Messages, Report};
+use crate::message::{Failure, Messages, Report, notice};
 
-use super::codes::{DOUBTFUL, MISSING, UNFIT, failure, question};
+use super::codes::{DOUBTFUL, MISSING, QUESTION, UNFIT, failure};
 use super::output::{Output, Target};
 use super::sources::{self, span, three};
 use super::volumetric::moved;
-use crate::number::short;
+use crate::figures::short;
 
 /// `vpost calibrate tracker X.csv Y.csv Z.csv -o PROFILE`
 #[derive(Debug, Args)]
@@ -63,11 +66,7 @@ const EXPECTED: Text = Text::pair(
 );
 
 /// Readings of one file, the temperature beside each.
-fn readings(
-    read: &mut sources::Read<(Reading, Option<f64>)>,
-    sheet: Sheet,
-    axis: usize,
-) -> Result<(), Failure> {
+fn readings(read: &mut AllRead, sheet: Sheet, axis: usize) -> Result<(), Failure> {
     let own = sheet.has("commanded_x_mm");
     let (commanded, measured) = if own {
         (
@@ -89,24 +88,16 @@ fn readings(
     })
 }
 
-/// `vpost calibrate tracker`
-pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    if let Some(u) = arguments.u_um.filter(|u| !(*u > 0.0 && u.is_finite())) {
-        return Err(Failure::option(
-            both!("`--u-um {u}` is no uncertainty", "`--u-um {u}` — не неопределённость"),
-            both!("give micrometres above zero", "дайте микрометры больше нуля"),
-        ));
-    }
-    let mut output = if arguments.target.output.is_some()
-        || arguments.target.against.is_some()
-        || shared.job.machine.is_some()
-        || arguments.target.chain.is_some()
-    {
-        Some(Output::start(&arguments.target, shared)?)
-    } else {
-        None
-    };
-    let said = conditions(&shared.job)?;
+/// All that was read, temperatures beside it.
+type AllRead = sources::Read<(Reading, Option<f64>)>;
+
+/// The mean traverses, and, where there is a profile in the making, every reading as a point.
+fn read(
+    arguments: &Tracker,
+    said: Conditions,
+    output: Option<&Output>,
+    messages: &Messages,
+) -> Result<([MeanTraverse; 3], Vec<Point>, AllRead), Failure> {
     let given_mm = arguments.u_um.map(|u| u * 1e-3);
     let (mut traverses, mut points, mut read) = (Vec::new(), Vec::new(), sources::Read::default());
     for (axis, path) in arguments.traverses.iter().enumerate() {
@@ -125,19 +116,14 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
             Some(chord) => mean.thinned(chord),
             None => mean,
         });
-        if let Some(output) = &output {
+        if let Some(output) = output {
             let tool_mm =
                 output.base.as_ref().map_or(Vector::zeros(), |base| Vector::from(base.default_tool_mm));
             for (reading, warm) in rows {
                 let mut direction = [0; 3];
                 direction[axis] = reading.direction;
-                let command = Command {
-                    linear_mm: reading.commanded_mm,
-                    rotary_rad: Vector::zeros(),
-                    tool_mm,
-                    direction,
-                    ..Default::default()
-                };
+                let linear_mm = reading.commanded_mm;
+                let command = Command { linear_mm, tool_mm, direction, ..Command::default() };
                 let mut here = said;
                 here.temp_c = here.temp_c.map(|known| warm.or(arguments.target.temperature).or(known));
                 points.push(Point {
@@ -150,12 +136,16 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
             }
         }
     }
-    let Ok(traverses) = <[MeanTraverse; 3]>::try_from(traverses) else {
-        return Err(Failure::option(
-            both!("three traverses are needed", "нужны три прохода"),
-            both!("give X.csv Y.csv Z.csv", "дайте X.csv Y.csv Z.csv"),
-        ));
-    };
+    let Ok(traverses) = <[MeanTraverse; 3]>::try_from(traverses) else { unreachable!("three files") };
+    Ok((traverses, points, read))
+}
+
+/// `vpost calibrate tracker`
+pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let Target { chain, .. } = &arguments.target;
+    let is_known = arguments.target.writes() || shared.job.machine.is_some() || chain.is_some();
+    let mut output = is_known.then(|| Output::start(&arguments.target, shared)).transpose()?;
+    let (traverses, points, read) = read(arguments, conditions(&shared.job)?, output.as_ref(), messages)?;
     let frame = match arguments.frame {
         FrameName::AsMeasured => Frame::AsMeasured,
         FrameName::Fit => Frame::Fitted,
@@ -171,7 +161,7 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
     file::print(text.in_language(messages.language()).as_bytes())?;
     judge(&changed, base.is_known, messages)?;
     judge_chords(&found, shared, messages)?;
-    if arguments.target.output.is_none() && arguments.target.against.is_none() {
+    if !arguments.target.writes() {
         return Ok(());
     }
     write_profile(output, &found, arguments.as_published);
@@ -183,37 +173,26 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
 }
 
 fn warn_of_gaps(name: &str, mean: &MeanTraverse, messages: &Messages) {
-    let source = || Some(crate::message::Source::whole(name, []));
-    let say = |message: Text, help: Text| {
-        let diagnostics = vec![Diagnostic::warning(MISSING, message).help(help)];
-        messages.report(&Report { source: source(), diagnostics });
+    let say = |said: Diagnostic| {
+        let source = Some(crate::message::Source::whole(name, []));
+        messages.report(&Report { source, ..Report::warning(said) });
     };
     if let Some((at, found, usual)) = mean.short_of_runs.first() {
-        let message = both!(
+        say(notice!(MISSING;
             "{} of {} nodes lack readings: {at} mm has {found}, others {usual}",
             "не хватает показаний в узлах: {} из {}; в {at} мм их {found}, в остальных {usual}",
-            mean.short_of_runs.len(),
-            mean.nodes.len()
-        );
-        say(
-            message,
-            both!(
-                "their means count as less certain; measure them again, or leave the incomplete run out",
-                "их средние считаются менее точными; измерьте снова или исключите неполный проход"
-            ),
-        );
+            mean.short_of_runs.len(), mean.nodes.len();
+            "their means count as less certain; measure them again, or leave the incomplete run out",
+            "их средние считаются менее точными; измерьте снова или исключите неполный проход"
+        ));
     }
     if let Some((from, to, usual)) = mean.gaps.first() {
-        say(
-            both!(
-                "no node between {from} and {to} mm, where the step is {usual} mm elsewhere",
-                "между {from} и {to} мм нет узла, а в других местах шаг {usual} мм"
-            ),
-            both!(
-                "errors between them are taken as a straight line; measure the missing targets if they matter",
-                "погрешности между ними приняты по прямой; если это важно, измерьте пропущенные цели"
-            ),
-        );
+        say(notice!(MISSING;
+            "no node between {from} and {to} mm, where the step is {usual} mm elsewhere",
+            "между {from} и {to} мм нет узла, а в других местах шаг {usual} мм";
+            "errors between them are taken as a straight line; measure the missing targets if they matter",
+            "погрешности между ними приняты по прямой; если это важно, измерьте пропущенные цели"
+        ));
     }
 }
 
@@ -227,11 +206,10 @@ fn judge(changed: &TrackerMachine, has_base: bool, messages: &Messages) -> Resul
     let help = both!("measure each node more often", "измеряйте каждый узел больше раз");
     // A base corrects whatever it did before; without one a correction has to be better than none.
     if !has_base && changed.field_u95_mm > changed.field_p95_mm {
-        let message = both!(
-            "these traverses cannot carry a correction: {field}",
-            "эти проходы не дают поправки: {field:#}"
-        );
-        return Err(Failure::alone(UNFIT, message, help));
+        return Err(Failure::unfit(notice!(UNFIT;
+            "these traverses cannot carry a correction: {field}", "эти проходы не дают поправки: {field:#}";
+            help
+        )));
     }
     if !has_base && changed.field_u95_mm > 0.5 * changed.field_p95_mm {
         messages.warn(DOUBTFUL, field, help);
@@ -264,11 +242,11 @@ fn judge_chords(found: &TrackerCalibration, shared: &Shared, messages: &Messages
         messages.warn(DOUBTFUL, message, help);
         return Ok(());
     }
-    let message = both!(
+    Err(Failure::unfit(notice!(UNFIT;
         "these traverses cannot carry a correction by chords: {message}",
-        "эти проходы не дают поправки по хордам: {message:#}"
-    );
-    Err(Failure::alone(UNFIT, message, help))
+        "эти проходы не дают поправки по хордам: {message:#}";
+        help
+    )))
 }
 
 /// The interval tables: directions of every interval with their standard uncertainties.
@@ -314,13 +292,11 @@ fn report(
 ) -> Result<Text, Failure> {
     let k = arguments.interval;
     let (Some(g), Some(r01)) = (found.directions(k), found.offset_mm(k)) else {
-        return Err(question(
-            both!("the traverses have no interval {k}", "интервала {k} в проходах нет"),
-            both!(
-                "intervals are counted from 0; give one that all three have",
-                "интервалы считаются от 0; дайте такой, какой есть во всех трёх"
-            ),
-        ));
+        return Err(Failure::usage(notice!(QUESTION;
+            "the traverses have no interval {k}", "интервала {k} в проходах нет";
+            "intervals are counted from 0; give one that all three have",
+            "интервалы считаются от 0; дайте такой, какой есть во всех трёх"
+        )));
     };
     let mut out = Text::EMPTY;
     for (axis, traverse) in found.traverses.iter().enumerate() {
@@ -371,13 +347,17 @@ fn report(
         "  not seen   EA., EB., EC. of every axis: a tracker follows a point, not a carriage\n",
         "  не видны   EA., EB., EC. каждой оси: трекер следит за точкой, а не за кареткой\n",
     ));
-    let far = &found.far_corner;
+    out.push(&of_far_corner(&found.far_corner));
+    Ok(out)
+}
+
+fn of_far_corner(far: &FarCorner) -> Text {
     let corner = far.corner_mm.iter().map(|v| short(*v, 3)).collect::<Vec<_>>().join(", ");
-    out.push(&both!(
+    let mut out = both!(
         "\nfar corner ({corner}) mm: deviation {:.1} um\n",
         "\nдальний угол ({corner}) мм: отклонение {:.1} мкм\n",
         far.deviation_mm * 1e3
-    ));
+    );
     out.push(&both!(
         "  known to ±{:.1} um where positions add (engines rigid-body, tracker)\n",
         "  известно с точностью ±{:.1} мкм, если складывать положения (методы rigid-body, tracker)\n",
@@ -389,7 +369,7 @@ fn report(
         far.chord_u95_mm * 1e3,
         short(far.chord_mm, 3)
     ));
-    Ok(out)
+    out
 }
 
 fn of_traverse(axis: usize, traverse: &MeanTraverse) -> Text {

@@ -15,14 +15,14 @@ use machine_model::{Axis, Command, PathModel, Vector};
 use machine_profile::{LatheParts, Profile};
 use measurement_files::{Row, numbered};
 
-use super::codes::{AXES, CELL, UNFIT, UNITS, failure, question};
+use super::codes::{AXES, CELL, QUESTION, UNFIT, UNITS, failure};
 use super::output::{Output, Target};
 use super::page::Shown;
 use super::sources;
 use crate::arguments::Shared;
 use crate::conditions::conditions;
 use crate::file;
-use crate::message::{Failure, Messages};
+use crate::message::{Failure, Messages, OPTION, notice};
 
 use shown::Pieces;
 
@@ -108,12 +108,11 @@ pub(crate) fn vector_mm(profile: &Profile, tool: &str) -> Result<Vector, Text> {
 pub(crate) fn part_name<'s>(row: &Row<'s>) -> Result<std::borrow::Cow<'s, str>, Failure> {
     let name = row.text("part");
     if name.is_empty() {
-        let help = both!(
+        return Err(Failure::at_cell(row, "part")(notice!(CELL;
+            "a reading of no part", "показание без образца";
             "name the clamping and finishing cut, like P1",
             "назовите установку и чистовой проход, например P1"
-        );
-        let message = both!("a reading of no part", "показание без образца");
-        return Err(row.refuse(CELL, "part", message, help).into());
+        )));
     }
     Ok(name)
 }
@@ -129,15 +128,12 @@ pub(crate) fn stood_at(
     let centre_mm = profile.lathe.as_ref().map_or(0.0, |lathe| lathe.spindle.centre_mm.x);
     let linear_mm = Vector::new(centre_mm + 0.5 * diameter_mm, tool_mm.y, z_mm) - tool_mm;
     if (profile.volume().nearest(&linear_mm) - linear_mm).amax() > 1e-9 {
-        let message = both!(
+        return Err(Failure::at_cell(row, "z_mm")(notice!(AXES;
             "the tool stands outside the travel or the tables of the profile there",
-            "инструмент стоит там вне хода или таблиц профиля"
-        );
-        let help = both!(
+            "инструмент стоит там вне хода или таблиц профиля";
             "z_mm is the machine's Z, diameter_mm twice the machine's X from the spindle's axis",
             "z_mm — Z станка, diameter_mm — удвоенный X станка от оси шпинделя"
-        );
-        return Err(row.refuse(AXES, "z_mm", message, help).into());
+        )));
     }
     Ok(Command { linear_mm, tool_mm, ..Command::default() })
 }
@@ -157,39 +153,41 @@ impl Names {
             "" | "diameter" | "диаметр" => Feature::Diameter,
             "face" | "торец" => Feature::Face,
             other => {
-                let message =
-                    both!("`{other}` is no feature of a test piece", "`{other}` — не элемент образца");
-                let help = both!("write diameter or face", "напишите diameter или face");
-                return Err(row.refuse(CELL, "feature", message, help).into());
+                return Err(Failure::at_cell(row, "feature")(notice!(CELL;
+                    "`{other}` is no feature of a test piece", "`{other}` — не элемент образца";
+                    "write diameter or face", "напишите diameter или face"
+                )));
             }
         };
         let name = part_name(row)?;
         let (part, tool) = (numbered(&mut self.parts, &name), row.text("tool"));
         let tool_mm = vector_mm(profile, &tool).map_err(|help| {
-            let message = both!(
-                "which tool of the profile is `{tool}`? It says where the carriage stood",
-                "какой это инструмент профиля — `{tool}`? По нему видно, где стояла каретка"
-            );
-            row.refuse(CELL, "tool", message, help)
+            row.refuse(
+                CELL,
+                "tool",
+                both!(
+                    "which tool of the profile is `{tool}`? It says where the carriage stood",
+                    "какой это инструмент профиля — `{tool}`? По нему видно, где стояла каретка"
+                ),
+                help,
+            )
         })?;
         let tool = (!tool.is_empty()).then(|| numbered(&mut self.tools, &tool));
         let (z_mm, diameter_mm) = (row.needed("z_mm")?, row.needed("diameter_mm")?);
         let d_um = row.needed("d_um")?;
         if d_um.abs() > MOST_UM {
-            let message = both!(
+            return Err(Failure::at_cell(row, "d_um")(notice!(UNITS;
                 "a deviation of {d_um} um is no error of a lathe",
-                "отклонение {d_um} мкм — не погрешность токарного станка"
-            );
-            let help = both!(
+                "отклонение {d_um} мкм — не погрешность токарного станка";
                 "d_um is measured minus commanded, in um: look for another column or unit",
                 "d_um — измеренное минус заданное, в мкм: ищите другой столбец или единицу"
-            );
-            return Err(row.refuse(UNITS, "d_um", message, help).into());
+            )));
         }
         if diameter_mm <= 0.0 && feature == Feature::Diameter {
-            let message = both!("a diameter is above 0", "диаметр больше 0");
-            let help = both!("give the commanded diameter", "дайте заданный диаметр");
-            return Err(row.refuse(CELL, "diameter_mm", message, help).into());
+            return Err(Failure::at_cell(row, "diameter_mm")(notice!(CELL;
+                "a diameter is above 0", "диаметр больше 0";
+                "give the commanded diameter", "дайте заданный диаметр"
+            )));
         }
         let command = stood_at(row, profile, tool_mm, z_mm, diameter_mm)?;
         let uncertainty_mm = sources::uncertainty_mm(row, "u_um")?;
@@ -225,26 +223,21 @@ fn named(term: Term, base: &TurningBase) -> (&'static str, f64, f64) {
 /// `vpost calibrate turning`
 pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let unknown = || {
-        question(
-            both!("which lathe? its profile is not known", "какой токарный станок? его профиль неизвестен"),
-            both!("add `-m LATHE.toml`", "добавьте `-m LATHE.toml`"),
-        )
+        Failure::usage(notice!(QUESTION;
+            "which lathe? its profile is not known", "какой токарный станок? его профиль неизвестен";
+            "add `-m LATHE.toml`", "добавьте `-m LATHE.toml`"
+        ))
     };
     shared.job.machine.as_ref().ok_or_else(unknown)?;
     let mut output = Output::start_any(&arguments.target, shared)?;
     let profile = output.base.clone().ok_or_else(unknown)?;
     let Some(lathe) = profile.lathe.clone() else {
-        return Err(Failure::option(
-            both!(
-                "test pieces are turned on a lathe, and {} has no spindle in its chain",
-                "образцы точат на токарном станке, а в цепи {} нет шпинделя",
-                profile.chain()
-            ),
-            both!(
-                "give the profile of the lathe, with a chain like \"[w S b Z X t]\"",
-                "дайте профиль токарного станка с цепью вроде \"[w S b Z X t]\""
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "test pieces are turned on a lathe, and {} has no spindle in its chain",
+            "образцы точат на токарном станке, а в цепи {} нет шпинделя", profile.chain();
+            "give the profile of the lathe, with a chain like \"[w S b Z X t]\"",
+            "дайте профиль токарного станка с цепью вроде \"[w S b Z X t]\""
+        )));
     };
     let base = base_of(&profile, &lathe);
     let ignore = &arguments.target.ignore_column;
@@ -281,18 +274,13 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
     };
     if let Some(judged) = refuted {
         page(&Target { output: None, ..arguments.target.clone() }, None)?;
-        let message = both!(
+        return Err(Failure::unfit(notice!(UNFIT;
             "{} held-out diameters get worse: {:.2} um RMS before, {:.2} um after",
             "контрольных диаметров {}, и они становятся хуже: {:.2} мкм до, {:.2} мкм после (среднеквадратичное)",
-            judged.rows,
-            judged.rms_before_mm * 1e3,
-            judged.rms_after_mm * 1e3
-        );
-        let help = both!(
+            judged.rows, judged.rms_before_mm * 1e3, judged.rms_after_mm * 1e3;
             "look for a sign, or for parts of another machine or clamping; nothing was written",
             "ищите ошибку в знаке или образцы другого станка или установки; ничего не записано"
-        );
-        return Err(Failure::alone(UNFIT, message, help));
+        )));
     }
     write(&mut output, &found, &base);
     let uncertainty_mm = output.with_base_mm(found.field_u95_mm, messages);
@@ -328,10 +316,10 @@ pub(crate) fn by_effects(
     let stretch = calibration::turning::Stretch { low_mm: 0.0, high_mm: 1.0 };
     let bare =
         base.predicted_mm(&calibration::turning::Change::default(), stretch, rows).map_err(|error| {
-            question(
-                error.text(),
-                both!("run `vpost profile check` on it", "запустите для него `vpost profile check`"),
-            )
+            Failure::usage(notice!(QUESTION;
+                error.text();
+                "run `vpost profile check` on it", "запустите для него `vpost profile check`"
+            ))
         })?;
     let Some(whole) = whole else { return Ok(()) };
     for (row, bare) in rows.iter_mut().zip(bare) {
@@ -364,11 +352,8 @@ fn write(output: &mut Output, found: &TurningCalibration, base: &TurningBase) {
         output.text.set_number(&["squareness", "EB0Z_urad"], urad, 4);
     }
     if let Some(tables) = base.z_tables(change, found.stretch) {
-        for (key, rows) in [("errors", Some(&tables.errors)), ("errors_negative", tables.negative.as_ref())] {
-            let Some(rows) = rows else { continue };
-            let column = |f: usize| tables.given[f].then(|| rows.iter().map(|row| row[f]).collect());
-            output.errors(Axis::Z, key, &tables.positions_mm, &std::array::from_fn(column));
-        }
+        let both_ways = [Some(&tables.errors), tables.negative.as_ref()];
+        output.tables(Axis::Z, &tables.positions_mm, tables.given, both_ways);
     }
 }
 

@@ -13,9 +13,9 @@ use measurement_files::{Row, micro, numbered};
 use crate::arguments::Shared;
 use crate::conditions::conditions;
 use crate::file;
-use crate::message::{Failure, Messages};
+use crate::message::{Failure, Messages, notice};
 
-use super::codes::{DOUBTFUL, UNFIT, question};
+use super::codes::{DOUBTFUL, QUESTION, UNFIT};
 use super::output::{Output, Target};
 use super::sources::{self, span, three};
 
@@ -61,13 +61,11 @@ fn read(
             ),
         )?;
         if !["dx_um", "dy_um", "dz_um", "xm_mm", "length_mm"].iter().any(|c| sheet.has(c)) {
-            return Err(question(
-                both!("{} has no reading", "в {} нет показаний", sheet.name()),
-                both!(
-                    "give dx_um,dy_um,dz_um, or xm_mm,ym_mm,zm_mm, or length_mm with bx_mm,by_mm,bz_mm",
-                    "дайте dx_um,dy_um,dz_um, или xm_mm,ym_mm,zm_mm, или length_mm с bx_mm,by_mm,bz_mm"
-                ),
-            ));
+            return Err(Failure::usage(notice!(QUESTION;
+                "{} has no reading", "в {} нет показаний", sheet.name();
+                "give dx_um,dy_um,dz_um, or xm_mm,ym_mm,zm_mm, or length_mm with bx_mm,by_mm,bz_mm",
+                "дайте dx_um,dy_um,dz_um, или xm_mm,ym_mm,zm_mm, или length_mm с bx_mm,by_mm,bz_mm"
+            )));
         }
         if sheet.has("length_mm") {
             sheet.need(
@@ -135,39 +133,29 @@ fn judge(found: &VolumetricCalibration, messages: &Messages) -> Result<(), Failu
     if let Some(([before, after], count)) = found.holdout
         && found.refuted
     {
-        let message = both!(
+        return Err(Failure::unfit(notice!(UNFIT;
             "{count} points that the fit did not see get no better by it: {:.2} um RMS before, {:.2} um after",
             "точки, оставленные для проверки ({count}), лучше не становятся: {:.2} мкм до, {:.2} мкм после (среднеквадратичное)",
-            before * 1e3,
-            after * 1e3
-        );
-        let help = both!(
+            before * 1e3, after * 1e3;
             "measure more points, or fit less: `--nodes 3`",
             "измерьте больше точек или определяйте меньше: `--nodes 3`"
-        );
-        return Err(Failure::alone(UNFIT, message, help));
+        )));
     }
     if stated && misfit > CONTRADICTION {
-        let message = both!(
+        return Err(Failure::unfit(notice!(UNFIT;
             "the readings contradict every machine of this chain: the best one leaves {misfit:.1} times what `u_um` states",
-            "показания противоречат любому станку с такой цепью: лучший оставляет в {misfit:.1} раза больше, чем говорит `u_um`"
-        );
-        let help = both!(
+            "показания противоречат любому станку с такой цепью: лучший оставляет в {misfit:.1} раза больше, чем говорит `u_um`";
             "look for exchanged or shifted columns; if the machine is that rough, give more `--nodes` or a larger u_um",
             "ищите переставленные или сдвинутые столбцы; если станок так неровен, дайте больше `--nodes` или больший u_um"
-        );
-        return Err(Failure::alone(UNFIT, message, help));
+        )));
     }
     if stated && misfit > ROUGH {
-        let message = both!(
+        messages.warning(notice!(DOUBTFUL;
             "the best machine leaves {misfit:.1} times what `u_um` states: uncertainties are widened by as much",
-            "лучший станок оставляет в {misfit:.1} раза больше, чем говорит `u_um`: неопределённости увеличены во столько же раз"
-        );
-        let help = both!(
+            "лучший станок оставляет в {misfit:.1} раза больше, чем говорит `u_um`: неопределённости увеличены во столько же раз";
             "give more `--nodes`, or state what the readings really scatter",
             "дайте больше `--nodes` или укажите действительный разброс показаний"
-        );
-        messages.warn(DOUBTFUL, message, help);
+        ));
     }
     Ok(())
 }
@@ -213,50 +201,12 @@ fn report(found: &VolumetricCalibration, runs: &[String]) -> Text {
             ));
         }
     }
-    for (term, rivals) in &found.open {
-        out.push(&if rivals.is_empty() {
-            both!(
-                "{term:<6} open: the points say nothing of it; as in the base\n",
-                "{term:<#6} открыто: точки ничего об этом не говорят; как в исходном профиле\n"
-            )
-        } else {
-            both!(
-                "{term:<6} open in part, which these points cannot tell from {rivals}: that stays as in the base\n",
-                "{term:<#6} открыто в той части, которую эти точки не различают ({rivals:#}): она остаётся как в исходном профиле\n"
-            )
-        });
-    }
-    if found.open.iter().any(|(term, _)| matches!(term.english().chars().nth(1), Some('A' | 'B' | 'C'))) {
-        out.push(&Text::pair(
-            "       angles need other tool vectors in one run, or other positions of the axes behind, to be seen\n",
-            "       чтобы увидеть углы, нужны другие векторы инструмента в одной серии или другие положения следующих осей\n",
-        ));
-    }
+    open(found, &mut out);
     out.push(&Text::pair(
         "gauge  X along its line, Y in its plane (EYX, EZX, EZY change by no slope); changes of positioning, straightness and of\n       the angles of the two axes next to the workpiece are 0 in the mean; slopes of EXY, EXZ, EYZ are squareness\n",
         "отсчёт X вдоль своей линии, Y в своей плоскости (у EYX, EZX, EZY нет наклона); изменения позиционирования, прямолинейности\n       и углов двух ближних к детали осей в среднем равны 0; наклоны EXY, EXZ, EYZ — это отклонения от перпендикулярности\n",
     ));
-    for (run, setup) in runs.iter().zip(&found.setups) {
-        out.push(&match setup {
-            Some(SetUp::Frame(motion)) => {
-                let moved = moved(motion);
-                both!("set-up {run}: {moved}\n", "установка {run}: {moved:#}\n")
-            }
-            Some(SetUp::Station { place_mm, zero_mm }) => both!(
-                "station {run}: {} mm, zero {zero_mm:.4} mm\n",
-                "станция {run}: {} мм, нуль {zero_mm:.4} мм\n",
-                three(place_mm, 4)
-            ),
-            None => Text::EMPTY,
-        });
-    }
-    if found.setups.len() > 1 {
-        out.push(&both!(
-            "       [setup] of a profile is one: of these {} none is written, and `predict --include-setup` adds none\n",
-            "       раздел [setup] в профиле один: из этих {} не записана ни одна, и `predict --include-setup` ничего не прибавит\n",
-            found.setups.len()
-        ));
-    }
+    set_ups(found, runs, &mut out);
     if found.left_out > 0 {
         out.push(&both!(
             "{} points lie outside the base's volume and were left out\n",
@@ -283,4 +233,52 @@ fn report(found: &VolumetricCalibration, runs: &[String]) -> Text {
         found.field_u95_mm * 1e3
     ));
     out
+}
+
+/// What the points do not tell.
+fn open(found: &VolumetricCalibration, out: &mut Text) {
+    for (term, rivals) in &found.open {
+        out.push(&if rivals.is_empty() {
+            both!(
+                "{term:<6} open: the points say nothing of it; as in the base\n",
+                "{term:<#6} открыто: точки ничего об этом не говорят; как в исходном профиле\n"
+            )
+        } else {
+            both!(
+                "{term:<6} open in part, which these points cannot tell from {rivals}: that stays as in the base\n",
+                "{term:<#6} открыто в той части, которую эти точки не различают ({rivals:#}): она остаётся как в исходном профиле\n"
+            )
+        });
+    }
+    if found.open.iter().any(|(term, _)| matches!(term.english().chars().nth(1), Some('A' | 'B' | 'C'))) {
+        out.push(&Text::pair(
+            "       angles need other tool vectors in one run, or other positions of the axes behind, to be seen\n",
+            "       чтобы увидеть углы, нужны другие векторы инструмента в одной серии или другие положения следующих осей\n",
+        ));
+    }
+}
+
+/// How the instrument stood in each run.
+fn set_ups(found: &VolumetricCalibration, runs: &[String], out: &mut Text) {
+    for (run, setup) in runs.iter().zip(&found.setups) {
+        out.push(&match setup {
+            Some(SetUp::Frame(motion)) => {
+                let moved = moved(motion);
+                both!("set-up {run}: {moved}\n", "установка {run}: {moved:#}\n")
+            }
+            Some(SetUp::Station { place_mm, zero_mm }) => both!(
+                "station {run}: {} mm, zero {zero_mm:.4} mm\n",
+                "станция {run}: {} мм, нуль {zero_mm:.4} мм\n",
+                three(place_mm, 4)
+            ),
+            None => Text::EMPTY,
+        });
+    }
+    if found.setups.len() > 1 {
+        out.push(&both!(
+            "       [setup] of a profile is one: of these {} none is written, and `predict --include-setup` adds none\n",
+            "       раздел [setup] в профиле один: из этих {} не записана ни одна, и `predict --include-setup` ничего не прибавит\n",
+            found.setups.len()
+        ));
+    }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use jobs::correct::{self, Program};
-use rewrite::{Large, LargeEnd, Manner, Part};
+use rewrite::{Job, Large, LargeEnd, Manner, Part};
 
 use crate::file;
 use crate::growing::Growing;
@@ -118,7 +118,7 @@ impl Text<'_> {
             None => Kept::spool(&head, self.rest).map_err(|error| unread(&error))?,
         };
         let provenance = settings.provenance();
-        let job = settings.job(manner.force, &provenance)?;
+        let job = Job { force: manner.force, ..settings.job(&provenance)? };
         let source = rewrite::Source { head: &head, open: || kept.reading(), job: &job, manner };
         let report = |part: Part| {
             let Part { bytes, offset, first_line, diagnostics } = part;

@@ -2,7 +2,7 @@
 
 use machine_model::Vector;
 
-use super::study::{Kind, Study, ZeroPoint};
+use jobs::map::study::Study;
 
 /// Classes of the histogram.
 const CLASSES: usize = 40;
@@ -16,8 +16,8 @@ pub(super) struct Classes {
 }
 
 pub(super) fn classes(study: &Study) -> Classes {
-    let shift = median(study).shift_mm;
-    let largest = study.parts[0].figures.magnitude_mm.high.max(median(study).figures.magnitude_mm.high);
+    let median = study.parts[0].median();
+    let largest = study.parts[0].figures.magnitude_mm.high.max(median.figures.magnitude_mm.high);
     let width_mm = report::scale::nice(largest.max(1e-9) / CLASSES as f64);
     let count = ((largest / width_mm).floor() as usize + 1).min(10 * CLASSES);
     let of = |shift: &Vector| {
@@ -27,11 +27,5 @@ pub(super) fn classes(study: &Study) -> Classes {
         }
         counts
     };
-    Classes { width_mm, before: of(&Vector::zeros()), after: of(&shift) }
-}
-
-/// The answer that most work wants.
-pub(super) fn median(study: &Study) -> &ZeroPoint {
-    let all = &study.parts[0].zero_points;
-    all.iter().find(|zero| zero.kind == Kind::Median).expect("every part has all four answers")
+    Classes { width_mm, before: of(&Vector::zeros()), after: of(&median.shift_mm) }
 }

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::deformation;
-use super::study::{Kind, Study};
 use crate::figures::fixed;
+use jobs::map::deformation;
+use jobs::map::study::Study;
 
 /// Decimals of a micrometre.
 const DECIMALS: usize = 6;
@@ -61,8 +61,7 @@ pub(super) fn vtk(study: &Study) -> Vec<u8> {
         out.push('\n');
     }
     let _ = writeln!(out, "POINT_DATA {}", grid.len());
-    let median = study.parts[0].zero_points.iter().find(|z| z.kind == Kind::Median);
-    let shift = median.map(|z| z.shift_mm).unwrap_or_default();
+    let shift = study.parts[0].median().shift_mm;
     for (name, shift) in [("error", shift * 0.0), ("error_after_shift", shift)] {
         let _ = writeln!(out, "VECTORS {name}_um double");
         for error in study.map.errors_mm() {

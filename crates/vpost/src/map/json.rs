@@ -1,14 +1,13 @@
 //! All figures as JSON, `vpost.map/1`.
 
 use error_map::Statistics;
+use jobs::map::deformation;
+use jobs::map::second_order::SecondOrder;
+use jobs::map::study::{Part, Proof, Study, ZeroPoint, freedom_name};
 use machine_model::{Range, Vector};
 use serde_json::{Value, json};
 
-use super::deformation;
 use super::drawn::classes;
-use super::second_order::SecondOrder;
-use super::study::{Part, Proof, Study, ZeroPoint};
-use super::text::freedom_name;
 use crate::figures::{millimetres, round, rounded_um as um};
 
 /// The file's bytes.
@@ -19,9 +18,9 @@ pub(super) fn bytes(study: &Study) -> Vec<u8> {
         "schema": "vpost.map/1",
         "machine": study.machine,
         "engine": study.engine.name(),
-        "tool_mm": millimetres(&study.tool_mm),
-        "rotary_deg": millimetres(&study.rotary_rad.map(f64::to_degrees)),
-        "within_um": um(study.within_mm),
+        "tool_mm": millimetres(&study.asked.tool_mm),
+        "rotary_deg": millimetres(&study.asked.rotary_rad.map(f64::to_degrees)),
+        "within_um": um(study.asked.within_mm),
         "nodes": grid.len(),
         "nodes_mm": grid.axes().each_ref().map(|n| n.places_mm().iter().map(|v| round(*v, 9)).collect::<Vec<_>>()),
         "parts": study.parts.iter().map(|p| part(study, p)).collect::<Vec<_>>(),

@@ -1,24 +1,22 @@
 //! `vpost map`: what the machine does wrong over its volume, and where to put the zero point.
 
 mod arguments;
-mod curves;
-mod deformation;
 mod dominant;
 mod drawn;
 mod export;
 mod json;
-pub(crate) mod options;
 mod page;
-mod second_order;
-mod study;
 mod text;
 mod viewer;
 
 pub use arguments::Map;
 
 use diagnostic::both;
-use jobs::map::model;
-use machine_model::{Range, Volume};
+use jobs::map::asked::Asked;
+use jobs::map::study::Study;
+use jobs::map::{dominant as deviations, grid, model, rotary, tool};
+use machine_model::{Range, Vector, Volume};
+use machine_profile::Profile;
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
@@ -42,15 +40,13 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
     let id = profile.forward_engine(shared.job.engine());
     let engine = profile.engine(id, &under).map_err(|error| conditions::failure(&error))?;
     let model = model(engine.as_ref())?;
-    let asked = options::read(arguments, shared, &profile, model.volume())?;
+    let asked = asked(arguments, shared, &profile, model.volume())?;
     jobs::map::require_tool(model, asked.tool_mm)?;
     conditions::doubts(&profile, id).iter().for_each(|report| messages.report(report));
     let grid_mm = asked.grid.axes().each_ref().map(|nodes| nodes.range_mm());
     outside(asked.part_box_mm.into_iter().chain([grid_mm]), model.volume(), shared, messages)?;
-    let found = jobs::datums::of_offsets(&shared.job, &profile, engine.as_ref())?;
-    let offset = |(name, zero_mm, touched_mm)| study::WorkOffset { name, zero_mm, touched_mm };
-    let offsets = found.into_iter().map(offset).collect();
-    let study = study::Study::new(&profile, id, model, offsets, &asked)?;
+    let offsets = jobs::datums::of_offsets(&shared.job, &profile, engine.as_ref())?;
+    let study = Study::new(&profile, id, model, offsets, asked)?;
     if let Some(path) = &arguments.csv {
         file::write(path, &export::csv(&study))?;
     }
@@ -60,7 +56,7 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
     if let Some(path) = &arguments.json {
         file::write(path, &json::bytes(&study))?;
     }
-    let dominant = dominant::dominant(&profile, id, &under, &asked);
+    let dominant = deviations::dominant(&profile, id, &under, &study.asked);
     let doubts = conditions::doubts(&profile, id).into_iter().flat_map(|report| report.diagnostics);
     let facts = page::Facts {
         dominant,
@@ -68,7 +64,7 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
         ..facts(arguments, shared, &profile, machine(&shared.job)?, &loaded.hash)
     };
     if let Some(path) = &arguments.viewer {
-        viewer::write(path, &profile, model, (&study, &asked), &facts, (shared, messages))?;
+        viewer::write(path, &profile, model, &study, &facts, (shared, messages))?;
     }
     if let Some(path) = &arguments.html {
         let json = String::from_utf8(json::bytes(&study)).expect("JSON is UTF-8");
@@ -77,11 +73,26 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
     file::print(text::page(&study).in_language(messages.language()).as_bytes())
 }
 
+/// Reads the options.
+fn asked(arguments: &Map, shared: &Shared, profile: &Profile, volume: Volume) -> Result<Asked, Failure> {
+    Ok(Asked {
+        grid: grid(&arguments.grid, volume)?,
+        tool_mm: tool(arguments.tool_vector.as_ref(), &shared.job, profile)?,
+        rotary_rad: rotary(arguments.rotary.as_ref(), profile)?,
+        within_mm: arguments.within * 1e-3,
+        regions: arguments.region.iter().map(|given| (given.name.clone(), given.ranges_mm)).collect(),
+        planes: arguments.plane.iter().map(|given| (given.plane, given.at_mm)).collect(),
+        part_box_mm: arguments.part_box.as_ref().map(|given| given.0),
+        clamp_mm: arguments.clamp.as_ref().map(|given| Vector::from(given.0)),
+        second_order: arguments.second_order,
+    })
+}
+
 /// What was asked, as it was typed.
 fn facts(
     arguments: &Map,
     shared: &Shared,
-    profile: &machine_profile::Profile,
+    profile: &Profile,
     path: &std::path::Path,
     hash: &blake3::Hash,
 ) -> page::Facts {

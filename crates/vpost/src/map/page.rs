@@ -11,12 +11,13 @@ use report::page::Page;
 use report::scale::nice;
 use report::text::{MICROMETRES, opening};
 
-use super::deformation;
-use super::dominant::{self, Dominant};
-use super::drawn::{classes, median};
-use super::study::{Kind, Part, Study};
-use super::text::{freedom_name, proof, second_order_lines};
+use super::dominant;
+use super::drawn::classes;
+use super::text::{proof, second_order_lines};
 use crate::origin::{MACHINE, MODEL, Origin, PROFILE};
+use jobs::map::deformation;
+use jobs::map::dominant::Dominant;
+use jobs::map::study::{Part, Study, freedom_name};
 
 /// Nodes drawn along an axis of the volume, at most: thinned in the drawing, not in the numbers.
 const SPOTS: usize = 11;
@@ -69,7 +70,7 @@ pub(super) fn html(study: &Study, facts: &Facts, json: &str, language: Language)
 }
 
 fn head(out: &mut Body, study: &Study, facts: &Facts) {
-    let (before, after) = (&study.parts[0].figures, &median(study).figures);
+    let (before, after) = (&study.parts[0].figures, &study.parts[0].median().figures);
     let [largest, largest_after] = [before, after].map(|f| um(f.magnitude_mm.high));
     let [rms, rms_after] = [before, after].map(|f| um(f.rms_mm));
     let [share, share_after] = [before, after].map(|f| percent2(f.share_within()));
@@ -96,13 +97,13 @@ fn head(out: &mut Body, study: &Study, facts: &Facts) {
 /// What to do, and what it will bring.
 fn next_step(study: &Study, facts: &Facts) -> Text {
     let tolerance = number(facts.tolerance_um);
-    if study.parts[0].figures.magnitude_mm.high <= study.within_mm {
+    if study.parts[0].figures.magnitude_mm.high <= study.asked.within_mm {
         return both!(
             "All of it is within what is asked: programs may stay as they are.",
             "Всё в пределах заданного: программы можно не исправлять."
         );
     }
-    let [x, y, z] = <[f64; 3]>::from(median(study).shift_mm).map(|mm| number(mm * 1e3));
+    let [x, y, z] = <[f64; 3]>::from(study.parts[0].median().shift_mm).map(|mm| number(mm * 1e3));
     both!(
         "What to do: correct programs with this profile. Their paths then stay within {tolerance} \u{b5}m of what is programmed, as far as the model knows the machine. Without correction: the machine is off by X {x}, Y {y}, Z {z} \u{b5}m on the average, and a moved zero point takes that away.",
         "Что делать: исправлять программы по этому профилю. Траектория будет в пределах {tolerance:#} мкм от заданной — насколько модель знает станок. Без исправления: станок в среднем отходит на X {x:#}, Y {y:#}, Z {z:#} мкм, и сдвиг нулевой точки это снимает."
@@ -150,7 +151,7 @@ fn deformations(out: &mut Body, study: &Study) {
 /// Colours by the tolerance: what is within it, and how far the rest goes.
 fn amounts<'a>(study: &Study, within: &'a Text) -> Amounts<'a> {
     let largest = study.parts[0].figures.magnitude_mm.high * 1e3;
-    Amounts { largest, within: Some((study.within_mm * 1e3, within)) }
+    Amounts { largest, within: Some((study.asked.within_mm * 1e3, within)) }
 }
 
 /// Every so many nodes of an axis, ends included.
@@ -193,7 +194,7 @@ fn volume(out: &mut Body, study: &Study) {
                 "Error over the volume, zero point moved",
                 "Погрешность в рабочем объёме, нулевая точка сдвинута"
             ),
-            median(study).shift_mm,
+            study.parts[0].median().shift_mm,
             both!(
                 "The same with the zero point moved by the geometric median, in the same colours.",
                 "То же со сдвигом нулевой точки на геометрическую медиану, в тех же цветах."
@@ -211,7 +212,7 @@ fn volume(out: &mut Body, study: &Study) {
 }
 
 fn vectors(out: &mut Body, study: &Study) {
-    let shift = median(study).shift_mm;
+    let shift = study.parts[0].median().shift_mm;
     let size = solid(study).ranges.map(|(low, high)| high - low).into_iter().fold(0.0, f64::max);
     let largest = study.parts[0].figures.magnitude_mm.high;
     // The longest arrow is an eighth of the volume; the magnification is a round number below that.
@@ -330,7 +331,7 @@ fn sizes(out: &mut Body, study: &Study) {
     let within = both!("within", "в пределах");
     let labels =
         [&both!("length of the error, \u{b5}m", "длина вектора погрешности, мкм"), &both!("nodes", "узлов")];
-    let limit = Some((study.within_mm * 1e3, &within));
+    let limit = Some((study.asked.within_mm * 1e3, &within));
     out.figure_of(
         &histogram(out.language(), &title, &drawn, limit, labels),
         &both!(
@@ -423,8 +424,8 @@ fn zero_points_of(out: &mut Body, study: &Study, part: &Part) {
     out.table(&table);
     let proofs: Vec<Text> = part.zero_points.iter().map(|zero| prose(&proof(zero, part))).collect();
     out.details(&both!("How good these answers are", "Насколько хороши эти ответы"), |out| out.list(&proofs));
-    let chosen = part.zero_points.iter().find(|zero| zero.kind == Kind::Median);
-    if let Some(zero) = chosen.filter(|_| !study.work_offsets.is_empty()) {
+    if !study.work_offsets.is_empty() {
+        let zero = part.median();
         out.p(&both!("To enter for the geometric median:", "Ввести для геометрической медианы:"));
         out.facts(study.work_offsets.iter().map(|offset| {
             let (name, how, to) = (&offset.name, offset.how(), offset.to_enter_mm(zero, study));
@@ -486,8 +487,8 @@ fn provenance(study: &Study, facts: &Facts) -> Vec<Fact> {
         )
     };
     let grid: Vec<Text> = AXES.into_iter().zip(study.map.grid().axes()).map(axis).collect();
-    let (machine, chain, tool) = (&study.machine, &facts.chain, vector(&study.tool_mm));
-    let angles = vector(&study.rotary_rad.map(f64::to_degrees));
+    let (machine, chain, tool) = (&study.machine, &facts.chain, vector(&study.asked.tool_mm));
+    let angles = vector(&study.asked.rotary_rad.map(f64::to_degrees));
     let mut all = vec![
         Fact::new(MACHINE, &both!("{machine}, chain {chain}", "{machine}, цепь {chain}")),
         Fact::file(PROFILE, &facts.profile, Some(facts.profile_hash.clone())),
@@ -507,7 +508,7 @@ fn um(mm: f64) -> Text {
 
 /// The tolerance as it was typed.
 fn within(study: &Study) -> Text {
-    written(format!("{}", (study.within_mm * 1e6).round() * 1e-3))
+    written(format!("{}", (study.asked.within_mm * 1e6).round() * 1e-3))
 }
 
 fn within_said(study: &Study) -> Text {

@@ -2,13 +2,12 @@
 
 use diagnostic::{Text, both};
 use error_map::Statistics;
-use error_map::placement::Freedom;
 use machine_model::Vector;
 
-use super::deformation;
-use super::second_order::SecondOrder;
-use super::study::{Kind, Part, Proof, Study, ZeroPoint};
 use crate::figures::{fixed, printable, triple, um};
+use jobs::map::deformation;
+use jobs::map::second_order::SecondOrder;
+use jobs::map::study::{Part, Proof, Study, ZeroPoint, freedom_name};
 
 /// The page.
 pub(super) fn page(study: &Study) -> Text {
@@ -42,7 +41,8 @@ fn head(study: &Study) -> Text {
     });
     let axes = Text::join(&axes.collect::<Vec<_>>(), ", ");
     let (machine, nodes, engine) = (printable(&study.machine), grid.len(), study.engine);
-    let (tool, rotary) = (triple(&study.tool_mm, 3), triple(&study.rotary_rad.map(f64::to_degrees), 3));
+    let (tool, rotary) =
+        (triple(&study.asked.tool_mm, 3), triple(&study.asked.rotary_rad.map(f64::to_degrees), 3));
     both!(
         "{machine}: {nodes} nodes, {axes}\nengine {engine}, tool vector {tool}, rotary axes {rotary}\n",
         "{machine}: узлов {nodes}, {axes:#}\nметод {engine}, вектор инструмента {tool}, поворотные оси {rotary}\n"
@@ -68,7 +68,7 @@ fn deformations(study: &Study, out: &mut Text) {
 }
 
 fn figures(study: &Study, out: &mut Text) {
-    let within = fixed(study.within_mm * 1e3, 0);
+    let within = fixed(study.asked.within_mm * 1e3, 0);
     out.push(&both!(
         "\nvolumetric error, um      nodes  range X  range Y  range Z      rms     95 %      max   <= {within} um\n",
         "\nпогрешность, мкм          узлов размах X размах Y размах Z      СКЗ     95 %    наиб.   <= {within} мкм\n"
@@ -102,7 +102,7 @@ fn diagonals(study: &Study, out: &mut Text) {
 }
 
 fn zero_points(study: &Study, part: &Part, out: &mut Text) {
-    let (name, within, now) = (shown(&part.name), fixed(study.within_mm * 1e3, 0), row(&part.figures));
+    let (name, within, now) = (shown(&part.name), fixed(study.asked.within_mm * 1e3, 0), row(&part.figures));
     out.push(&both!(
         "\nzero point, {name:<16} add to work offset, mm          rms     95 %      max   <= {within} um\n  {:<18} {:>29}  {now}\n",
         "\nнулевая точка, {name:<#13} прибавить к смещению нуля, мм   СКЗ     95 %    наиб.   <= {within} мкм\n  {:<#18} {:>29}  {now}\n",
@@ -118,7 +118,7 @@ fn zero_points(study: &Study, part: &Part, out: &mut Text) {
         let proof = proof(zero, part);
         out.push(&both!("  {proof}\n", "  {proof:#}\n"));
     }
-    let Some(median) = part.zero_points.iter().find(|zero| zero.kind == Kind::Median) else { return };
+    let median = part.median();
     let add = median.to_enter_mm(study);
     let (x, y, z) = (add.x, add.y, add.z);
     out.push(&both!(
@@ -176,7 +176,7 @@ fn places(study: &Study, out: &mut Text) {
     if study.places.is_empty() {
         return;
     }
-    let within = fixed(study.within_mm * 1e3, 0);
+    let within = fixed(study.asked.within_mm * 1e3, 0);
     out.push(&both!(
         "\nwhere to clamp, if the set-up can       box, mm                                       rms     95 %      max   <= {within} um\n",
         "\nгде закрепить, если можно               габарит, мм                                   СКЗ     95 %    наиб.   <= {within} мкм\n"
@@ -232,38 +232,6 @@ pub(super) fn second_order_lines(found: &SecondOrder) -> [Text; 3] {
             "девять поворотов вектора инструмента {tool} мм в любом порядке, в {place} мм: первый порядок {first} мкм, все с плюсом {plus}, все с минусом {minus}, точно от {low} до {high} (порядков {orders})"
         ),
     ]
-}
-
-impl ZeroPoint {
-    /// What to add to a work offset: minus the error, in whole output steps. Equation (41).
-    pub(super) fn to_enter_mm(&self, study: &Study) -> Vector {
-        study.rounded(&-self.shift_mm)
-    }
-}
-
-impl Study {
-    /// In whole output steps.
-    pub(super) fn rounded(&self, mm: &Vector) -> Vector {
-        // A negative zero would be printed as one.
-        Vector::from_fn(|axis, _| {
-            (mm[axis] / self.resolution_mm[axis]).round() * self.resolution_mm[axis] + 0.0
-        })
-    }
-
-    /// Decimals that show the finest output step.
-    pub(super) fn decimals(&self) -> usize {
-        let finest = self.resolution_mm.iter().copied().fold(f64::INFINITY, f64::min);
-        (3..6).find(|d| finest * 10f64.powi(*d) >= 1.0 - 1e-9).map_or(6, |d| d as usize)
-    }
-}
-
-/// What the set-up can do, in words.
-pub(super) fn freedom_name(freedom: Freedom) -> Text {
-    match freedom {
-        Freedom::Shift => Text::pair("shift the zero point", "сдвинуть нулевую точку"),
-        Freedom::ShiftAndTurn => Text::pair("shift, and turn about Z", "сдвинуть и повернуть вокруг Z"),
-        Freedom::Rigid => Text::pair("shift, and turn about X, Y and Z", "сдвинуть и повернуть вокруг XYZ"),
-    }
 }
 
 /// RMS, 95 %, largest, share within.

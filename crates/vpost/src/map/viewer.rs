@@ -12,14 +12,12 @@ use report::numbers::digits;
 use report::viewer::scene::{Place, Scene};
 use report::viewer::{Figures, Kind, Viewer};
 
-use super::drawn::median;
-use super::options::{Asked, command};
 use super::page::Facts;
-use super::study::Study;
 use crate::arguments::Shared;
 use crate::conditions::conditions;
 use crate::message::{Failure, Messages};
 use crate::viewer;
+use jobs::map::study::Study;
 
 /// Lines of the lattice across each axis, and places along a line, at most.
 const LINES: usize = 5;
@@ -30,19 +28,19 @@ pub(super) fn write(
     path: &Path,
     profile: &Profile,
     model: &dyn PathModel,
-    (study, asked): (&Study, &Asked),
+    study: &Study,
     facts: &Facts,
     (shared, messages): (&Shared, &Messages),
 ) -> Result<(), Failure> {
     let causes = Causes::of(profile, study.engine, &conditions(&shared.job)?)?;
     let without: Vec<Models<'_>> = causes.as_ref().map_or_else(Vec::new, Causes::without);
-    let shift_mm = median(study).shift_mm;
+    let shift_mm = study.parts[0].median().shift_mm;
     let axes = study.map.grid().axes();
     let mut scene = Scene { causes: viewer::causes(causes.as_ref()), ..Scene::default() };
     for places in lattice(axes) {
         let last = places.len() - 1;
         for (k, at_mm) in places.into_iter().enumerate() {
-            let here = command(asked, at_mm, [0; 3]);
+            let here = study.asked.command(at_mm, [0; 3]);
             let whole_mm = model.error_mm(&here);
             let others: Vec<[f64; 3]> =
                 without.iter().map(|models| models.axes.error_mm(&here).into()).collect();
@@ -73,7 +71,7 @@ pub(super) fn write(
     let count = scene.of.to_string();
     let language = messages.language();
     let said = |text: &Text| text.in_language(language).to_owned();
-    let tool = Text::join(&study.tool_mm.iter().map(|mm| digits(*mm, 3)).collect::<Vec<_>>(), " ");
+    let tool = Text::join(&study.asked.tool_mm.iter().map(|mm| digits(*mm, 3)).collect::<Vec<_>>(), " ");
     let grid = axes.iter().zip(["X", "Y", "Z"]).map(|(nodes, axis)| {
         let [low, high] = [nodes.range_mm().low, nodes.range_mm().high].map(|mm| digits(mm, 3));
         both!("{axis} {low} \u{2026} {high} mm", "{axis} {low:#} \u{2026} {high:#} мм")
@@ -89,7 +87,7 @@ pub(super) fn write(
             names: vec![("machine", &study.machine), ("drawn", &count), ("of", &count)],
             numbers: vec![
                 ("before", study.parts[0].figures.magnitude_mm.high * 1e3),
-                ("after", median(study).figures.magnitude_mm.high * 1e3),
+                ("after", study.parts[0].median().figures.magnitude_mm.high * 1e3),
                 ("remainder", scene.remainder_um),
             ],
         },

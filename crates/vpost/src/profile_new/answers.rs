@@ -7,7 +7,7 @@ use diagnostic::{Speaks, Text, both};
 use machine_model::{Axis, Chain, Range, Vector};
 use machine_profile::plus_turns;
 
-use crate::message::{Failure, Messages};
+use crate::message::{Failure, Messages, OPTION, notice};
 use crate::profile_new::New;
 use crate::profile_new::questions::Questions;
 use crate::settings::load_dialect;
@@ -36,18 +36,7 @@ pub(super) struct Answers {
 pub(super) fn complete(arguments: &New, said: Machine, messages: &Messages) -> Result<Answers, Failure> {
     let name = arguments.name.clone().or(said.name);
     let control = arguments.control.clone().or(said.control.map(str::to_owned));
-    let mut travels_mm = said
-        .travels_mm
-        .map(|ends| ends.map(|[low, high]| Range { low, high }).filter(|range| range.low < range.high));
-    for (travel_mm, axis) in travels_mm.iter_mut().zip([Axis::X, Axis::Y, Axis::Z]) {
-        let mut given = arguments.travel.iter().filter(|travel| travel.axis == axis);
-        if let Some(travel) = given.next() {
-            *travel_mm = Some(travel.range_mm);
-        }
-        if given.next().is_some() {
-            return Err(not_once(axis));
-        }
-    }
+    let travels_mm = travels_mm(arguments, said.travels_mm)?;
     let is_whole = name.is_some() && control.is_some() && travels_mm.iter().all(Option::is_some);
     let questions = if is_whole { None } else { Questions::at_a_terminal(messages) };
     let ask = questions.as_ref();
@@ -56,11 +45,10 @@ pub(super) fn complete(arguments: &New, said: Machine, messages: &Messages) -> R
         Some(name) => name,
         None => asked(ask, &both!("1. What is the machine called?", "1. Как называется станок?"), not_empty)?
             .ok_or_else(|| {
-                let help = both!(
-                    "`--name NAME`, as people call the machine",
-                    "`--name ИМЯ`, как зовут станок в цехе"
-                );
-                Failure::option(both!("--name is not given", "--name не задан"), help)
+                Failure::usage(notice!(OPTION;
+                    "--name is not given", "--name не задан";
+                    "`--name NAME`, as people call the machine", "`--name ИМЯ`, как зовут станок в цехе"
+                ))
             })?,
     };
     let control = match control {
@@ -73,8 +61,10 @@ pub(super) fn complete(arguments: &New, said: Machine, messages: &Messages) -> R
                 Err(_) => Err(both!("one of these: {names}", "одно из: {names}")),
             };
             asked(ask, &question, known)?.ok_or_else(|| {
-                let help = both!("`--control fanuc`; one of: {names}", "`--control fanuc`; одно из: {names}");
-                Failure::option(both!("--control is not given", "--control не задан"), help)
+                Failure::usage(notice!(OPTION;
+                    "--control is not given", "--control не задан";
+                    "`--control fanuc`; one of: {names}", "`--control fanuc`; одно из: {names}"
+                ))
             })?
         }
     };
@@ -116,6 +106,22 @@ pub(super) fn complete(arguments: &New, said: Machine, messages: &Messages) -> R
     Ok(Answers { name, control, chain, travels_mm: ranges, rotary, output })
 }
 
+/// The travels that options give, else those of the control's files.
+fn travels_mm(arguments: &New, said: [Option<[f64; 2]>; 3]) -> Result<[Option<Range>; 3], Failure> {
+    let range = |[low, high]: [f64; 2]| Some(Range { low, high }).filter(|range| range.low < range.high);
+    let mut travels_mm = said.map(|ends| ends.and_then(range));
+    for (travel_mm, axis) in travels_mm.iter_mut().zip([Axis::X, Axis::Y, Axis::Z]) {
+        let mut given = arguments.travel.iter().filter(|travel| travel.axis == axis);
+        if let Some(travel) = given.next() {
+            *travel_mm = Some(travel.range_mm);
+        }
+        if given.next().is_some() {
+            return Err(not_once(axis));
+        }
+    }
+    Ok(travels_mm)
+}
+
 /// The answer of whoever is there; `None` where nobody is.
 fn asked<T>(
     ask: Option<&Questions<'_>>,
@@ -135,13 +141,11 @@ fn not_empty(text: &str) -> Result<String, Text> {
 
 fn not_once(axis: Axis) -> Failure {
     let letter = axis.letter();
-    Failure::option(
-        both!("--travel of {letter} is not given once", "--travel для {letter} задан не один раз"),
-        both!(
-            "`--travel {letter}=0..500` with the ends of its travel in machine coordinates",
-            "`--travel {letter}=0..500` — концы её хода в координатах станка"
-        ),
-    )
+    Failure::usage(notice!(OPTION;
+        "--travel of {letter} is not given once", "--travel для {letter} задан не один раз";
+        "`--travel {letter}=0..500` with the ends of its travel in machine coordinates",
+        "`--travel {letter}=0..500` — концы её хода в координатах станка"
+    ))
 }
 
 /// The axes from workpiece to tool; `rotary`: those that the control's files name.
@@ -153,7 +157,7 @@ fn chain(arguments: &New, rotary: &[char], ask: Option<&Questions<'_>>) -> Resul
                 "например `--chain '[w X Y b Z t]'`; для токарного станка начните с machine-profiles/generic_lathe.toml"
             );
             let error = error.text();
-            Failure::option(both!("--chain: {error}", "--chain: {error:#}"), help)
+            Failure::usage(notice!(OPTION; "--chain: {error}", "--chain: {error:#}"; help))
         })
     };
     if let Some(text) = &arguments.chain {
@@ -191,16 +195,12 @@ fn chain(arguments: &New, rotary: &[char], ask: Option<&Questions<'_>>) -> Resul
         return Ok(chain);
     }
     if !rotary.is_empty() {
-        return Err(Failure::option(
-            both!(
-                "the machine turns {letters}, and which of them carry the workpiece no file says",
-                "у станка есть поворотные оси {letters}, а какие из них несут заготовку, файл не говорит"
-            ),
-            both!(
-                "`--chain '[w C A X Y b Z t]'`, the axes from workpiece to tool; without them where they are not used",
-                "`--chain '[w C A X Y b Z t]'` — оси от заготовки к инструменту; без поворотных, если ими не работают"
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "the machine turns {letters}, and which of them carry the workpiece no file says",
+            "у станка есть поворотные оси {letters}, а какие из них несут заготовку, файл не говорит";
+            "`--chain '[w C A X Y b Z t]'`, the axes from workpiece to tool; without them where they are not used",
+            "`--chain '[w C A X Y b Z t]'` — оси от заготовки к инструменту; без поворотных, если ими не работают"
+        )));
     }
     parsed(USUAL)
 }
@@ -213,31 +213,23 @@ fn centres(
 ) -> Result<Vec<(Axis, [f64; 3])>, Failure> {
     let rotary = || chain.table().iter().chain(chain.head()).copied();
     if let Some(centre) = arguments.centre.iter().find(|centre| rotary().all(|axis| axis != centre.axis)) {
-        let help = both!(
+        return Err(Failure::usage(notice!(OPTION;
+            "--centre {centre} is of no axis of {chain}",
+            "--centre {centre} не относится ни к одной оси цепи {chain}";
             "put {} into `--chain`, or leave the option out",
-            "впишите {} в `--chain` или уберите ключ",
-            centre.axis.letter()
-        );
-        return Err(Failure::option(
-            both!(
-                "--centre {centre} is of no axis of {chain}",
-                "--centre {centre} не относится ни к одной оси цепи {chain}"
-            ),
-            help,
-        ));
+            "впишите {} в `--chain` или уберите ключ", centre.axis.letter()
+        )));
     }
     let centre = |axis: Axis| {
         let letter = axis.letter();
         let mut given = arguments.centre.iter().filter(|centre| centre.axis == axis);
         let first = given.next();
         let not_once = || {
-            Failure::option(
-                both!("--centre of {letter} is not given once", "--centre для {letter} задан не один раз"),
-                both!(
-                    "`--centre {letter}=X,Y,Z` with the machine coordinates of a point of its line",
-                    "`--centre {letter}=X,Y,Z` — координаты станка одной точки её оси"
-                ),
-            )
+            Failure::usage(notice!(OPTION;
+                "--centre of {letter} is not given once", "--centre для {letter} задан не один раз";
+                "`--centre {letter}=X,Y,Z` with the machine coordinates of a point of its line",
+                "`--centre {letter}=X,Y,Z` — координаты станка одной точки её оси"
+            ))
         };
         if given.next().is_some() {
             return Err(not_once());
@@ -282,13 +274,11 @@ fn sense(arguments: &New, chain: &Chain, axis: Axis, ask: Option<&Questions<'_>>
         }
     };
     sign.map(along).ok_or_else(|| {
-        Failure::option(
-            both!("--sense of {letter} is not given once", "--sense для {letter} задан не один раз"),
-            both!(
-                "turn it by a little and look: `--sense {letter}=right`: {right}; `--sense {letter}=left`: {left} ({standard} by ISO 841)",
-                "поверните её немного и посмотрите: `--sense {letter}=right`: {right:#}; `--sense {letter}=left`: {left:#} (по ISO 841 {standard})"
-            ),
-        )
+        Failure::usage(notice!(OPTION;
+            "--sense of {letter} is not given once", "--sense для {letter} задан не один раз";
+            "turn it by a little and look: `--sense {letter}=right`: {right}; `--sense {letter}=left`: {left} ({standard} by ISO 841)",
+            "поверните её немного и посмотрите: `--sense {letter}=right`: {right:#}; `--sense {letter}=left`: {left:#} (по ISO 841 {standard})"
+        ))
     })
 }
 

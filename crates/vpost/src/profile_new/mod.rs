@@ -9,8 +9,8 @@ use diagnostic::{Language, both, say};
 use machine_model::Axis;
 use machine_profile::plus_turns;
 
-use crate::message::{Failure, Messages};
-use crate::number::short;
+use crate::figures::short;
+use crate::message::{Failure, Messages, OPTION, notice};
 use crate::profile_new::answers::Answers;
 use crate::values::{AxisTable, Centre, Given, Sense, Travel};
 use crate::{file, profile};
@@ -72,10 +72,10 @@ pub(crate) fn run(arguments: &New, messages: &Messages) -> Result<(), Failure> {
     profile::loaded(path, text.as_bytes())?;
     let Some(path) = &machine.output else { return file::print(text.as_bytes()) };
     if path.exists() {
-        return Err(Failure::option(
-            both!("{} is there already", "{} уже есть", file::name(path)),
-            both!("give another name, or remove it", "дайте другое имя или уберите его"),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "{} is there already", "{} уже есть", file::name(path);
+            "give another name, or remove it", "дайте другое имя или уберите его"
+        )));
     }
     file::write(path, text.as_bytes())?;
     messages.note(&both!(
@@ -132,14 +132,11 @@ fn text(arguments: &New, machine: &Answers, language: Language) -> Result<String
             ),
             [table] => writeln!(text, "errors        = {}", string(&table.path)),
             _ => {
-                let help = both!(
+                return Err(Failure::usage(notice!(OPTION;
+                    "--table of {letter} is given twice", "--table для {letter} задан дважды";
                     "one `--table {letter}=FILE` with all six functions",
                     "один `--table {letter}=FILE` со всеми шестью функциями"
-                );
-                return Err(Failure::option(
-                    both!("--table of {letter} is given twice", "--table для {letter} задан дважды"),
-                    help,
-                ));
+                )));
             }
         };
         text.push_str("# backlash_um = 0.0\n");

@@ -2,9 +2,9 @@
 
 use std::io::{BufRead, IsTerminal};
 
-use diagnostic::{Text, both};
+use diagnostic::Text;
 
-use crate::message::{Deed, Failure, Messages};
+use crate::message::{Deed, Failure, Messages, OPTION, notice};
 
 /// Asks on standard error and reads standard input.
 pub(super) struct Questions<'m> {
@@ -32,13 +32,10 @@ impl<'m> Questions<'m> {
                 .read_line(&mut line)
                 .map_err(|error| Failure::place(&Text::pair("the answer", "ответ"), Deed::Read, &error))?;
             if bytes == 0 {
-                return Err(Failure::option(
-                    both!(
-                        "the answers ended before the profile was complete",
-                        "ответы кончились раньше вопросов"
-                    ),
-                    both!("nothing was written; begin again", "ничего не записано; начните снова"),
-                ));
+                return Err(Failure::usage(notice!(OPTION;
+                    "the answers ended before the profile was complete", "ответы кончились раньше вопросов";
+                    "nothing was written; begin again", "ничего не записано; начните снова"
+                )));
             }
             match read(line.trim()) {
                 Ok(answer) => return Ok(answer),

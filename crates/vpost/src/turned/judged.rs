@@ -4,7 +4,7 @@ use diagnostic::{Text, both};
 use report::numbers::figures;
 pub(crate) use report::numbers::number as um;
 
-use super::surface::{Place, Surface, Turned};
+use jobs::turned::surface::{Place, Surface, Turned};
 
 /// Where the surface is how far off.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -218,7 +218,7 @@ pub(super) fn ridges(places: &[Place]) -> Vec<Ridge> {
 
 /// A place, mm.
 pub(crate) fn mm(value: f64) -> Text {
-    figures(crate::number::short(value, 3).replacen('-', "\u{2212}", 1))
+    figures(crate::figures::short(value, 3).replacen('-', "\u{2212}", 1))
 }
 
 #[cfg(test)]

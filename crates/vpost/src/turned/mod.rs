@@ -1,12 +1,12 @@
 //! Forward for a lathe: what a program leaves of the workpiece.
 
-mod cuts;
 pub(crate) mod judged;
 mod page;
-mod surface;
 mod wear;
 
-use diagnostic::{Code, Diagnostic, both};
+use diagnostic::{Code, both};
+use jobs::turned::read;
+use jobs::turned::surface::{Asked, HIGHEST_WAVE, Surface, Turned};
 use machine_profile::Profile;
 use rewrite::Manner;
 use turning::Lathe;
@@ -14,14 +14,12 @@ use turning::Lathe;
 use crate::arguments::{Predict, Shared};
 use crate::conditions::{conditions, failure};
 use crate::figures::fixed;
-use crate::message::{Failure, Messages};
+use crate::file;
+use crate::message::{Failure, Messages, OPTION, notice};
 use crate::roles::Roles;
 use crate::settings::Settings;
-use crate::{expand, file};
 
-use cuts::{Cut, cuts};
 use page::{Correction, Facts};
-use surface::{HIGHEST_WAVE, Surface, Turned};
 
 /// Nothing is turned, or too much is asked.
 const NOTHING_TURNED: Code = Code(908);
@@ -37,26 +35,22 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
     let lathe = settings.profile.lathe(&conditions(&shared.job)?).map_err(|error| failure(&error))?;
     let lathe = lathe.ok_or_else(|| no_lathe(&settings.profile_name, &settings.profile))?;
     if !(arguments.step > 0.0 && arguments.step.is_finite()) {
-        return Err(Failure::option(
-            both!("`--step {}` is no distance", "`--step {}` — не расстояние", arguments.step),
-            both!("write millimetres, like `--step 0.5`", "напишите миллиметры, например `--step 0.5`"),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "`--step {}` is no distance", "`--step {}` — не расстояние", arguments.step;
+            "write millimetres, like `--step 0.5`", "напишите миллиметры, например `--step 0.5`"
+        )));
     }
     let name = file::name(&arguments.points);
     let text = file::read_program(&arguments.points)?;
     let cuts = read(&text, &name, &settings)?;
-    let mut surface = Surface::over(&cuts, &lathe, arguments).ok_or_else(|| {
-        let diagnostic = Diagnostic::error(
-            NOTHING_TURNED,
-            both!(
-                "the program turns nothing that could be predicted",
-                "программа ничего не точит, предсказывать нечего"
-            ),
-        )
-        .help(both!(
+    let asked = Asked { step_mm: arguments.step, bore: arguments.bore };
+    let mut surface = Surface::over(&cuts, &lathe, &asked).ok_or_else(|| {
+        let diagnostic = notice!(NOTHING_TURNED;
+            "the program turns nothing that could be predicted",
+            "программа ничего не точит, предсказывать нечего";
             "feeds (G1, G2, G3) that move along Z are needed; with `--step` there may be up to 200000 places",
             "нужны рабочие ходы (G1, G2, G3) вдоль Z; мест с шагом `--step` может быть до 200000"
-        ));
+        );
         Failure::refused(&name, &text, vec![diagnostic])
     })?;
     cuts.iter().for_each(|cut| surface.cut(cut, &lathe));
@@ -76,24 +70,11 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
 }
 
 fn no_lathe(name: &str, profile: &Profile) -> Failure {
-    Failure::option(
-        both!(
-            "{name} is no lathe: its chain is {}",
-            "{name} — не токарный станок: его цепь — {}",
-            profile.chain()
-        ),
-        both!(
-            "leave `--lathe` out, or give the profile of a lathe",
-            "уберите `--lathe` или дайте профиль токарного станка"
-        ),
-    )
-}
-
-/// The feeds of a program, its flow executed.
-fn read(text: &[u8], name: &str, settings: &Settings) -> Result<Vec<Cut>, Failure> {
-    let expanded = expand::expanded(text, name, settings)?;
-    cuts(expanded.text(), settings)
-        .map_err(|diagnostics| Failure::Refused(expand::reports(&expanded, name, text, diagnostics)))
+    Failure::usage(notice!(OPTION;
+        "{name} is no lathe: its chain is {}", "{name} — не токарный станок: его цепь — {}", profile.chain();
+        "leave `--lathe` out, or give the profile of a lathe",
+        "уберите `--lathe` или дайте профиль токарного станка"
+    ))
 }
 
 /// What the main job makes of the program, and what the lathe turns by that. A refusal is an answer.

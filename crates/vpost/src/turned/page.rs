@@ -9,11 +9,11 @@ use serde::Serialize;
 use turning::Lathe;
 
 use super::judged::{Form, Outline, mm, ridges, um};
-use super::surface::{HIGHEST_WAVE, Stretch, Surface, Turned};
 use crate::file;
 use crate::message::{Failure, Wording};
 use crate::origin::{Origin, PROFILE};
 use crate::settings::Settings;
+use jobs::turned::surface::{HIGHEST_WAVE, Stretch, Surface, Turned};
 
 mod outline;
 mod round;

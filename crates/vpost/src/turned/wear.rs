@@ -5,9 +5,9 @@ use std::fmt::Write;
 use machine_model::Vector;
 
 use super::judged::Outline;
-use super::surface::{Surface, Turned};
 use crate::figures::fixed;
 use crate::settings::Settings;
+use jobs::turned::surface::{Surface, Turned};
 
 /// The smallest largest deviation that one offset leaves, of some places.
 struct Offset {

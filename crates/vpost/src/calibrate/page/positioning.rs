@@ -13,7 +13,7 @@ use super::super::iso_report;
 use super::facts::Facts;
 use super::found::Found;
 use super::runs::{Positions, Read, limits};
-use crate::number::short;
+use crate::figures::short;
 
 impl Found for Positions {
     fn title(&self) -> Text {

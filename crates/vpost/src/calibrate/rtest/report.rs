@@ -7,7 +7,7 @@ use diagnostic::{Text, both};
 use measurement_files::micro;
 use serde_json::{Value, json};
 
-use crate::number::short;
+use crate::figures::short;
 
 use super::super::sources::span;
 use super::rows::Rows;

@@ -3,18 +3,18 @@
 use std::path::PathBuf;
 
 use calibration::rtest::BallReading;
-use diagnostic::{Code, Speaks, Text, both};
+use diagnostic::{Diagnostic, Speaks, Text, both};
 use machine_model::{Axis, Command, RigidBody, Vector};
 use machine_profile::Profile;
 use measurement_files::{Row, Sheet, numbered};
 
 use crate::arguments::Shared;
-use crate::calibrate::codes::{AXES, CELL, UNITS, question};
+use crate::calibrate::codes::{AXES, CELL, QUESTION, UNITS};
 use crate::calibrate::options::RTest;
 use crate::calibrate::output::Output;
 use crate::calibrate::sources;
 use crate::conditions::conditions;
-use crate::message::Failure;
+use crate::message::{Failure, notice};
 
 const COLUMNS: &str = "run x_mm y_mm z_mm a_deg b_deg c_deg dx_um dy_um dz_um tool_x_mm tool_y_mm tool_z_mm dir_x dir_y dir_z \
                        dir_a dir_b dir_c u_um u_x_um u_y_um u_z_um repeat temp_c time_s load_kg feed_mm_min note";
@@ -66,9 +66,10 @@ impl Rows {
             read.add(sheet, |row| {
                 let mut name = row.text("run").into_owned();
                 if name.is_empty() {
-                    let message = both!("the row says no run", "в строке не названа серия");
-                    let help = both!("a run is one mounting of the ball", "серия — одна установка шара");
-                    return Err(row.refuse(CELL, "run", message, help).into());
+                    return Err(Failure::at_cell(row, "run")(notice!(CELL;
+                        "the row says no run", "в строке не названа серия";
+                        "a run is one mounting of the ball", "серия — одна установка шара"
+                    )));
                 }
                 if files.len() > 1 {
                     name = format!("{file} {name}");
@@ -144,10 +145,12 @@ impl Rows {
         Ok(())
     }
 
-    /// A refusal at the row of a reading.
-    pub(super) fn refuse(&self, reading: usize, code: Code, message: Text, help: Text) -> Option<Failure> {
-        let row = self.read.row(reading)?;
-        Some(row.refuse_row(code, message, both!("this row", "эта строка"), help).into())
+    /// What is refused of the row of a reading.
+    pub(super) fn at(&self, reading: usize) -> impl FnOnce(Diagnostic) -> Failure {
+        move |wrong| match self.read.row(reading) {
+            Some(row) => Failure::at_row(&row)(wrong),
+            None => Failure::unfit(wrong),
+        }
     }
 
     /// Nominal places of a sphere, which [`reading`] has given as deviations, about their mean in each run.
@@ -168,18 +171,12 @@ impl Rows {
                 }
             }
             if let Some((k, off_mm)) = far {
-                let message = both!(
+                return Err(self.at(k)(notice!(AXES;
                     "by the profile the tip was {off_mm:.1} mm from where run `{}` has the sphere in the mean",
-                    "по профилю щуп был в {off_mm:.1} мм от среднего места сферы в серии `{}`",
-                    self.runs[run]
-                );
-                let help = both!(
+                    "по профилю щуп был в {off_mm:.1} мм от среднего места сферы в серии `{}`", self.runs[run];
                     "a sphere stands at one place of the workpiece: check centre_mm, the tool vector, the signs of the angles, the run",
                     "сфера стоит в одном месте детали: проверьте centre_mm, вектор инструмента, знаки углов, серию"
-                );
-                return Err(self
-                    .refuse(k, AXES, message, help.clone())
-                    .unwrap_or_else(|| question(both!("the sphere moves", "сфера смещается"), help)));
+                )));
             }
         }
         Ok(())
@@ -209,39 +206,32 @@ fn columns(sheet: &Sheet, sphere: bool, profile: &Profile) -> Result<(), Failure
             return Err(sheet.refuse_column(AXES, key, message, help).into());
         }
         (false, None) => {
-            return Err(question(
-                both!("{} has no reading", "в {} нет отсчётов", sheet.name()),
-                both!(
-                    "give dx_um,dy_um,dz_um; where a touch probe was centred on a sphere at every row, add `--sphere`",
-                    "дайте dx_um,dy_um,dz_um; если в каждой строке щуп центрировали по сфере, добавьте `--sphere`"
-                ),
-            ));
+            return Err(Failure::usage(notice!(QUESTION;
+                "{} has no reading", "в {} нет отсчётов", sheet.name();
+                "give dx_um,dy_um,dz_um; where a touch probe was centred on a sphere at every row, add `--sphere`",
+                "дайте dx_um,dy_um,dz_um; если в каждой строке щуп центрировали по сфере, добавьте `--sphere`"
+            )));
         }
         _ => {}
     }
     let angles = ["a_deg", "b_deg", "c_deg"];
     let has = profile.has_rotary();
     if has == [false; 3] {
-        let message =
-            both!("the chain {} has no rotary axis", "в цепи {} нет поворотной оси", profile.chain());
-        let help = both!(
+        return Err(Failure::usage(notice!(AXES;
+            "the chain {} has no rotary axis", "в цепи {} нет поворотной оси", profile.chain();
             "give the profile of a machine with A, B or C: an R-test measures its rotary axes",
             "дайте профиль станка с A, B или C: R-тест измеряет его поворотные оси"
-        );
-        return Err(Failure::asks(AXES, message, help));
+        )));
     }
     let both_ways = |axis: &usize| has[*axis] && profile.description.rotary[*axis].errors_negative.is_some();
     if let Some(axis) = (0..3).find(both_ways) {
         let letter = ["A", "B", "C"][axis];
-        let message = both!(
+        return Err(Failure::usage(notice!(AXES;
             "[rotary.{letter}] of the base has `errors_negative`, and angles do not say from which side the axis came",
-            "в [rotary.{letter}] исходного профиля есть `errors_negative`, а по углам не видно, с какой стороны пришла ось"
-        );
-        let help = both!(
+            "в [rotary.{letter}] исходного профиля есть `errors_negative`, а по углам не видно, с какой стороны пришла ось";
             "give a base with one table, the mean of both directions, and `backlash_urad`",
             "дайте профиль с одной таблицей, средней по направлениям, и `backlash_urad`"
-        );
-        return Err(Failure::asks(AXES, message, help));
+        )));
     }
     if !(0..3).any(|axis| has[axis] && sheet.has(angles[axis])) {
         let wanted: Vec<&str> = (0..3).filter(|axis| has[*axis]).map(|axis| angles[axis]).collect();
@@ -275,13 +265,11 @@ fn other_way(profile: &Profile, turned: &[Axis], [as_said_mm, turned_mm]: [f64; 
     let said: Vec<Text> = turned.iter().map(|axis| profile.plus_turns(*axis)).collect();
     let said = Text::join(&said, "; ");
     let names = names.join(", ");
-    let message = both!(
+    Failure::usage(notice!(AXES;
         "plus of {names} turns the other way than the profile says: by it the ball moves by {as_said_mm:.1} mm in the workpiece, the other way by {turned_mm:.3} mm",
-        "плюс {names} направлен не так, как в профиле: по нему шар смещается на детали на {as_said_mm:.1} мм, наоборот — на {turned_mm:.3} мм"
-    );
-    let help =
-        both!("write {keys}; the profile says now: {said}", "напишите {keys}; сейчас в профиле: {said:#}");
-    Failure::asks(AXES, message, help)
+        "плюс {names} направлен не так, как в профиле: по нему шар смещается на детали на {as_said_mm:.1} мм, наоборот — на {turned_mm:.3} мм";
+        "write {keys}; the profile says now: {said}", "напишите {keys}; сейчас в профиле: {said:#}"
+    ))
 }
 
 fn reading(
@@ -301,25 +289,20 @@ fn reading(
         let read = row.any_of(DEVIATIONS)?;
         for (key, um) in DEVIATIONS.iter().zip(read) {
             if um.is_some_and(|um| um.abs() > MOST_UM) {
-                let message = both!(
+                return Err(Failure::at_cell(row, key)(notice!(UNITS;
                     "a deviation of {} um is none that an R-test reads",
-                    "отклонений в {} мкм R-тест не показывает",
-                    um.unwrap_or_default()
-                );
-                let help = both!(
+                    "отклонений в {} мкм R-тест не показывает", um.unwrap_or_default();
                     "measured minus commanded position of the tip, in um: look for another column or unit",
                     "измеренное минус заданное положение наконечника, в мкм: ищите другой столбец или единицу"
-                );
-                return Err(row.refuse(UNITS, key, message, help).into());
+                )));
             }
         }
         if read == [None; 3] {
-            let message = both!("the row holds no reading", "в строке нет отсчёта");
-            let help = both!(
+            return Err(Failure::at_cell(row, DEVIATIONS[0])(notice!(CELL;
+                "the row holds no reading", "в строке нет отсчёта";
                 "fill dx_um, dy_um or dz_um, or take the row out",
                 "заполните dx_um, dy_um или dz_um либо уберите строку"
-            );
-            return Err(row.refuse(CELL, DEVIATIONS[0], message, help).into());
+            )));
         }
         read.map(|um| um.map(|um| um * 1e-3))
     };
@@ -329,20 +312,11 @@ fn reading(
 
 /// By component, else of the row, mm.
 fn uncertainty(row: &Row<'_>) -> Result<Option<[f64; 3]>, Failure> {
-    let own = row.any_of(UNCERTAINTIES)?;
-    let common = row.number("u_um")?;
-    let all = own.map(|um| um.or(common));
-    for (key, um) in UNCERTAINTIES.iter().zip(all) {
-        if um.is_some_and(|um| um <= 0.0) {
-            let key = if common.is_some() { "u_um" } else { key };
-            let message = both!("an uncertainty is above zero", "неопределённость больше нуля");
-            let help =
-                both!("give the standard uncertainty in um", "дайте стандартную неопределённость в мкм");
-            return Err(row.refuse(CELL, key, message, help).into());
-        }
-    }
-    Ok(match all {
-        [Some(x), Some(y), Some(z)] => Some([x, y, z].map(|um| um * 1e-3)),
+    let stated_mm = |key: &str| sources::uncertainty_mm(row, key);
+    let [x, y, z] = UNCERTAINTIES.map(stated_mm);
+    let (own, common) = ([x?, y?, z?], stated_mm("u_um")?);
+    Ok(match own.map(|mm| mm.or(common)) {
+        [Some(x), Some(y), Some(z)] => Some([x, y, z]),
         _ => None,
     })
 }
@@ -357,42 +331,33 @@ fn stands_where_the_profile_knows(
     for axis in &Axis::ALL[3..] {
         let at = axis.direction();
         if command.rotary_rad[at] != 0.0 && !has[at] {
-            let message = both!(
+            return Err(Failure::at_cell(row, ["a_deg", "b_deg", "c_deg"][at])(notice!(AXES;
                 "the machine has no axis {axis}: its chain is {}",
-                "у станка нет оси {axis}: его цепь {}",
-                profile.chain()
-            );
-            let help = both!(
+                "у станка нет оси {axis}: его цепь {}", profile.chain();
                 "leave the column out, or give the profile of the machine that turns",
                 "уберите столбец или дайте профиль станка с этой осью"
-            );
-            return Err(row.refuse(AXES, ["a_deg", "b_deg", "c_deg"][at], message, help).into());
+            )));
         }
     }
     let volume = profile.volume();
     for (axis, key) in ["x_mm", "y_mm", "z_mm"].into_iter().enumerate() {
         let (at, range) = (command.linear_mm[axis], volume.0[axis]);
         if at < range.low - SLACK_MM || at > range.high + SLACK_MM {
-            let message = both!(
+            return Err(Failure::at_cell(row, key)(notice!(AXES;
                 "{} at {at} mm lies outside what the profile knows, {} to {} mm",
-                "{} = {at} мм вне того, что знает профиль: от {} до {} мм",
-                Axis::ALL[axis],
-                range.low,
-                range.high
-            );
-            let help = both!(
+                "{} = {at} мм вне того, что знает профиль: от {} до {} мм", Axis::ALL[axis], range.low,
+                range.high;
                 "x_mm y_mm z_mm are machine coordinates; is `-m` the profile of this machine?",
                 "x_mm y_mm z_mm — координаты станка; `-m` — профиль этого станка?"
-            );
-            return Err(row.refuse(AXES, key, message, help).into());
+            )));
         }
     }
     if let Err(error) = machine.rotary_inside(command) {
-        let help = both!(
+        return Err(Failure::at_row(row)(notice!(AXES;
+            error.text();
             "angles are machine coordinates, degrees; `travel_deg` and the error tables of the profile say how far they go",
             "углы — координаты станка в градусах; их пределы — `travel_deg` и таблицы погрешностей профиля"
-        );
-        return Err(row.refuse_row(AXES, error.text(), both!("this row", "эта строка"), help).into());
+        )));
     }
     Ok(())
 }

@@ -169,7 +169,7 @@ impl<'a> Pieces<'a> {
             })
             .numbers(Text::same("\u{b1} 95 %"), |(own, (.., scale))| digits(own.u.half_width_95() * scale, 3))
             .numbers(both!("degrees of freedom", "степеней свободы"), |(own, _)| {
-                finite(own.u.freedom, figures(crate::number::short(own.u.freedom, 1)))
+                finite(own.u.freedom, figures(crate::figures::short(own.u.freedom, 1)))
             })
             .numbers(Text::same("F"), |(own, _)| finite(own.f, number(own.f)))
             .words(Text::EMPTY, |(own, _)| said(own));

@@ -10,9 +10,9 @@ use turning::Lathe;
 use units::math;
 
 use super::super::judged::{mm, um};
-use super::super::surface::{ANGLES, HIGHEST_WAVE, Place, Stretch, Turned};
 use crate::figures::round;
-use crate::message::Failure;
+use crate::message::{Failure, OPTION, notice};
+use jobs::turned::surface::{ANGLES, HIGHEST_WAVE, Place, Stretch, Turned};
 
 /// Roundness that differs by less is the same, µm.
 const SAME_UM: f64 = 0.01;
@@ -52,15 +52,11 @@ pub(super) fn wanted(turned: &Turned, at_mm: &[f64], lathe: &Lathe) -> Result<Ve
     let mut chosen: Vec<&Place> = Vec::new();
     for z_mm in at_mm {
         if !(first.z_mm - 1e-9..=last.z_mm + 1e-9).contains(z_mm) {
-            return Err(Failure::option(
-                both!("nothing is turned at `--section {z_mm}`", "в `--section {z_mm}` ничего не точится"),
-                both!(
-                    "write Z from the chuck, mm: the program turns from {} to {}",
-                    "напишите Z от торца патрона, мм: программа точит от {} до {}",
-                    mm(first.z_mm),
-                    mm(last.z_mm)
-                ),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "nothing is turned at `--section {z_mm}`", "в `--section {z_mm}` ничего не точится";
+                "write Z from the chuck, mm: the program turns from {} to {}",
+                "напишите Z от торца патрона, мм: программа точит от {} до {}", mm(first.z_mm), mm(last.z_mm)
+            )));
         }
         let near = places.iter().min_by(|a, b| (a.z_mm - z_mm).abs().total_cmp(&(b.z_mm - z_mm).abs()));
         chosen.extend(near);

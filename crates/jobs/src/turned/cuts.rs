@@ -11,15 +11,17 @@ use toolpath::{Feed, Motion};
 use crate::settings::Settings;
 
 /// A feed of the program.
-pub(super) struct Cut {
-    pub(super) curve: Curve,
+pub struct Cut {
+    /// Its path.
+    pub curve: Curve,
     tool_mm: Vector,
     /// mm a turn, where the program says it so.
-    pub(super) feed_mm: Option<f64>,
+    pub feed_mm: Option<f64>,
 }
 
 impl Cut {
-    pub(super) fn at(&self, s: f64) -> Command {
+    /// The command at a share of it.
+    pub fn at(&self, s: f64) -> Command {
         Command {
             linear_mm: self.curve.at(s),
             rotary_rad: Vector::zeros(),
@@ -35,7 +37,7 @@ impl Cut {
 }
 
 /// The feeds of a program, as they are commanded.
-pub(super) fn cuts(text: &[u8], settings: &Settings) -> Result<Vec<Cut>, Vec<Diagnostic>> {
+pub fn cuts(text: &[u8], settings: &Settings) -> Result<Vec<Cut>, Vec<Diagnostic>> {
     let (dialect, setup) = (&settings.dialect, &settings.setup);
     let mut interpreter = Interpreter::new(dialect, setup);
     let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());

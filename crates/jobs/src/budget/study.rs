@@ -1,57 +1,70 @@
 //! The budget and what follows from it.
 
+use crate::datums::FromZero;
 use diagnostic::{Text, both};
 use error_budget::mending::{self, Mending};
 use error_budget::tolerances::{Figure, Tolerances, equal_influence};
 use error_budget::{
     Budget, Criteria, Extreme, Field, Machine, Unit, balanced_signs, root_sum_of_squares, worst_case,
 };
-use jobs::datums::FromZero;
 use machine_model::{Command, PathModel, Placement, Vector, WithEffects, counted_from_datum};
 use rayon::prelude::*;
 
 use super::control_points::ControlPoints;
 
 /// What is known of a machine's accuracy, deviation by deviation.
-pub(super) struct Study {
+pub struct Study {
+    /// Of the machine.
     pub name: String,
+    /// Its deviations.
     pub machine: Machine,
+    /// Where its error counts.
     pub points: ControlPoints,
     /// From where errors count.
     pub from_zero: FromZero,
+    /// What each deviation costs.
     pub budget: Budget,
     /// Every function as measured or mirrored.
     pub mirrored: Combined,
     /// Every function anywhere within ± its size.
     pub within_sizes: Combined,
+    /// What it takes to reach what is wanted.
     pub target: Option<Target>,
 }
 
 /// What deviations with free signs may come to, and the whole model beside the sums.
-pub(super) struct Combined {
+pub struct Combined {
+    /// What no choice of signs is above.
     pub worst: Extreme,
     /// M of the whole model with the worst signs, mm.
     pub worst_whole_mm: f64,
+    /// What machines with independent signs have in the mean of squares, mm.
     pub squares_mm: f64,
+    /// At which point.
     pub squares_at: usize,
     /// Root mean square of the whole model at that point over balanced signs, mm.
     pub squares_whole_mm: f64,
 }
 
 /// What it takes to reach a wanted M.
-pub(super) struct Target {
+pub struct Target {
+    /// Wanted, mm.
     pub mm: f64,
+    /// By deviation: it stays as it is.
     pub keep: Vec<bool>,
     /// M as measured is not above it.
     pub met: bool,
+    /// What to mend on this machine.
     pub mending: Mending,
+    /// What each may be in the worst case.
     pub worst_case: Option<Tolerances>,
+    /// The same where signs are independent.
     pub statistical: Option<Tolerances>,
 }
 
 impl Target {
     /// Why something of what was asked for cannot be had; `None` where all can.
-    pub(super) fn out_of_reach(&self) -> Option<Text> {
+    pub fn out_of_reach(&self) -> Option<Text> {
         let parts = [
             (self.mending.steps.is_none(), MENDING_OUT_OF_REACH.clone()),
             (
@@ -75,7 +88,7 @@ impl Target {
 }
 
 /// Said on the page and in the warning.
-pub(super) static MENDING_OUT_OF_REACH: Text = Text::pair(
+pub static MENDING_OUT_OF_REACH: Text = Text::pair(
     "M as measured stays above it, whichever of the others are mended",
     "M, как измерено, остаётся больше, что бы из остального ни исправить",
 );
@@ -85,7 +98,8 @@ fn counted(model: &WithEffects, command: &Command, datum: Placement) -> Vector {
 }
 
 impl Study {
-    pub(super) fn new(
+    /// All that follows from a machine at these points.
+    pub fn new(
         name: String,
         machine: Machine,
         points: ControlPoints,
@@ -136,12 +150,12 @@ impl Study {
     }
 
     /// All control points stay where they are, whatever the machine does wrong.
-    pub(super) fn moves_nothing(&self) -> bool {
+    pub fn moves_nothing(&self) -> bool {
         self.budget.items.iter().all(|item| item.alone.largest_mm == 0.0)
     }
 
     /// Name, size in the unit that is printed, and that unit.
-    pub(super) fn deviation(&self, index: usize) -> (&str, f64, Text) {
+    pub fn deviation(&self, index: usize) -> (&str, f64, Text) {
         let deviation = &self.machine.deviations()[index];
         let (size, unit) = match deviation.unit {
             Unit::Length => (deviation.size * 1e3, Text::pair("um", "мкм")),
@@ -153,7 +167,7 @@ impl Study {
     }
 
     /// A tolerance in the unit of the deviation's size, rounded down to three digits: smaller is allowed.
-    pub(super) fn tolerance(&self, tolerances: &Tolerances, index: usize) -> Option<f64> {
+    pub fn tolerance(&self, tolerances: &Tolerances, index: usize) -> Option<f64> {
         let (_, size, _) = self.deviation(index);
         tolerances.factors[index].map(|factor| {
             let value = factor * size;

@@ -9,7 +9,7 @@ use super::study::{Combined, Study, Target};
 use crate::figures::{millimetres, round, rounded_um as um};
 
 /// The file's bytes.
-pub(super) fn bytes(study: &Study) -> Vec<u8> {
+pub fn bytes(study: &Study) -> Vec<u8> {
     let budget = &study.budget;
     let document = json!({
         "schema": "vpost.budget/1",
@@ -37,7 +37,7 @@ pub(super) fn bytes(study: &Study) -> Vec<u8> {
         "sizes_only": combined(study, &study.within_sizes),
         "target": study.target.as_ref().map(|target| wanted(study, target)),
     });
-    jobs::summary::json(&document)
+    crate::summary::json(&document)
 }
 
 fn criteria(study: &Study, found: &Criteria) -> Value {

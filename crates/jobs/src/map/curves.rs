@@ -2,12 +2,12 @@
 
 use machine_model::{PathModel, Vector};
 
-use super::options::{Asked, command};
+use super::asked::Asked;
 
 /// Places along each curve.
 const CURVE: u32 = 101;
 /// Errors along one axis, the others in the middle of the map.
-pub(super) struct Curve {
+pub struct Curve {
     /// 0 X, 1 Y, 2 Z.
     pub axis: usize,
     /// Places of that axis, mm.
@@ -29,7 +29,7 @@ pub(super) fn curves(map: &error_map::ErrorMap, model: &dyn PathModel, asked: &A
             let error = |at: &f64| {
                 let mut place = middle;
                 place[axis] = *at;
-                model.error_mm(&command(asked, place, [0; 3]))
+                model.error_mm(&asked.command(place, [0; 3]))
             };
             Curve { axis, errors_mm: at_mm.iter().map(error).collect(), at_mm }
         })

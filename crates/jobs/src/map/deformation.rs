@@ -4,11 +4,11 @@ use diagnostic::{Text, both};
 use error_map::ErrorMap;
 use machine_model::{Matrix, PathModel, Range, Vector};
 
-use super::options::{Asked, command};
+use super::asked::Asked;
 
 /// Of one cell, in its middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Deformation {
+pub struct Deformation {
     /// Along X, Y, Z.
     pub stretch: Vector,
     /// By how much the right angles between X and Y, X and Z, Y and Z are smaller, rad.
@@ -28,14 +28,14 @@ impl Deformation {
     }
 
     /// All nine, µm/m and µrad, in the order of [`NAMES`].
-    pub(super) fn values(&self) -> [f64; 9] {
+    pub fn values(&self) -> [f64; 9] {
         let parts = [self.stretch, self.shear_rad, self.rotation_rad];
         std::array::from_fn(|k| parts[k / 3][k % 3] * 1e6)
     }
 }
 
 /// Columns of files, with units.
-pub(super) const NAMES: [&str; 9] = [
+pub const NAMES: [&str; 9] = [
     "stretch_x_um_m",
     "stretch_y_um_m",
     "stretch_z_um_m",
@@ -48,7 +48,7 @@ pub(super) const NAMES: [&str; 9] = [
 ];
 
 /// The same for readers.
-pub(super) const WORDS: [Text; 9] = [
+pub const WORDS: [Text; 9] = [
     Text::pair("stretch along X", "растяжение по X"),
     Text::pair("stretch along Y", "растяжение по Y"),
     Text::pair("stretch along Z", "растяжение по Z"),
@@ -61,7 +61,7 @@ pub(super) const WORDS: [Text; 9] = [
 ];
 
 /// Unit of one of them.
-pub(super) fn unit(which: usize) -> Text {
+pub fn unit(which: usize) -> Text {
     if which < 3 { both!("um/m", "мкм/м") } else { both!("urad", "мкрад") }
 }
 
@@ -76,7 +76,7 @@ pub(super) fn cells(map: &ErrorMap, model: &dyn PathModel, asked: &Asked) -> Vec
     for k in z {
         for j in y {
             for i in x {
-                let Some(jacobian) = model.jacobian(&command(asked, Vector::new(*i, *j, *k), [0; 3])) else {
+                let Some(jacobian) = model.jacobian(&asked.command(Vector::new(*i, *j, *k), [0; 3])) else {
                     return Vec::new();
                 };
                 all.push(Deformation::of(&jacobian));
@@ -87,7 +87,7 @@ pub(super) fn cells(map: &ErrorMap, model: &dyn PathModel, asked: &Asked) -> Vec
 }
 
 /// Smallest, largest and RMS of each of the nine, µm/m and µrad; `None` where there are no cells.
-pub(super) fn figures(cells: &[Deformation]) -> Option<[(Range, f64); 9]> {
+pub fn figures(cells: &[Deformation]) -> Option<[(Range, f64); 9]> {
     let n = cells.len() as f64;
     (!cells.is_empty()).then(|| {
         std::array::from_fn(|k| {
@@ -102,7 +102,7 @@ pub(super) fn figures(cells: &[Deformation]) -> Option<[(Range, f64); 9]> {
 }
 
 /// The cell that begins at a node, by the node's index.
-pub(super) fn of_node<'c>(map: &ErrorMap, cells: &'c [Deformation], index: usize) -> Option<&'c Deformation> {
+pub fn of_node<'c>(map: &ErrorMap, cells: &'c [Deformation], index: usize) -> Option<&'c Deformation> {
     let [nx, ny, nz] = map.grid().counts();
     let [i, j, k] = [index % nx, index / nx % ny, index / nx / ny];
     let inner = i + 1 < nx && j + 1 < ny && k + 1 < nz;

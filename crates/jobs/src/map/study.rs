@@ -1,20 +1,20 @@
 //! The map and everything that is found in it.
 
+use super::evaluated;
 use diagnostic::{Speaks, Text, both};
 use error_map::diagonals::{Diagonal, body_diagonals};
 use error_map::placement::{self, Freedom, Place};
 use error_map::zero_point::{best_node, best_share, geometric_median, smallest_ball};
 use error_map::{Block, ErrorMap, Grid, Nodes, Plane, Statistics};
-use jobs::map::evaluated;
 use machine_model::{EngineId, PathModel, Range, Vector};
 use machine_profile::Profile;
 use rayon::prelude::*;
 
+use super::asked::Asked;
 use super::curves::{Curve, curves};
 use super::deformation::{self, Deformation};
-use super::options::{Asked, command};
 use super::second_order::{self, SecondOrder};
-use crate::message::Failure;
+use crate::message::{Failure, OPTION, notice};
 
 /// Targets along each body diagonal.
 const TARGETS: u32 = 41;
@@ -22,19 +22,26 @@ const TARGETS: u32 = 41;
 const PART_NODES: u64 = 11;
 
 /// What the map shows.
-pub(super) struct Study {
+pub struct Study {
+    /// Its name.
     pub machine: String,
+    /// By which model.
     pub engine: EngineId,
-    pub tool_mm: Vector,
-    pub rotary_rad: Vector,
-    pub within_mm: f64,
+    /// What was asked.
+    pub asked: Asked,
+    /// Output step of each axis.
     pub resolution_mm: [f64; 3],
+    /// Of the profile.
     pub work_offsets: Vec<WorkOffset>,
+    /// The error of every node.
     pub map: ErrorMap,
     /// The volume first, then regions, planes, the workpiece.
     pub parts: Vec<Part>,
+    /// Of the volume (ISO 230-6).
     pub diagonals: Vec<Diagonal>,
+    /// Where a workpiece errs least, by what its set-up can do.
     pub places: Vec<(Freedom, Place)>,
+    /// What products of errors do.
     pub second_order: Option<SecondOrder>,
     /// Errors along each axis through the middle.
     pub curves: Vec<Curve>,
@@ -43,8 +50,10 @@ pub(super) struct Study {
 }
 
 /// A work offset of the profile.
-pub(super) struct WorkOffset {
+pub struct WorkOffset {
+    /// `G54`
     pub name: String,
+    /// Machine coordinates.
     pub zero_mm: Vector,
     /// What is in it of the machine's error already; `None` where it is true.
     pub touched_mm: Option<Vector>,
@@ -52,12 +61,12 @@ pub(super) struct WorkOffset {
 
 impl WorkOffset {
     /// What to enter for it, mm, where errors are to count from the zero point.
-    pub(super) fn to_enter_mm(&self, zero: &ZeroPoint, study: &Study) -> Vector {
+    pub fn to_enter_mm(&self, zero: &ZeroPoint, study: &Study) -> Vector {
         self.zero_mm + study.rounded(&(self.touched_mm.unwrap_or_default() - zero.shift_mm))
     }
 
     /// How it was found.
-    pub(super) fn how(&self) -> Text {
+    pub fn how(&self) -> Text {
         match self.touched_mm {
             None => Text::pair("true", "точное"),
             Some(_) => Text::pair("touched", "найдено касанием"),
@@ -66,34 +75,45 @@ impl WorkOffset {
 }
 
 /// A part of the volume, its figures and its zero points.
-pub(super) struct Part {
+pub struct Part {
+    /// As people call it.
     pub name: Text,
+    /// Where its nodes are.
     pub box_mm: [Range; 3],
+    /// As it is.
     pub figures: Statistics,
+    /// All four answers.
     pub zero_points: Vec<ZeroPoint>,
 }
 
 /// One answer to "where to put the zero point".
-pub(super) struct ZeroPoint {
+pub struct ZeroPoint {
     /// What it is best in.
     pub kind: Kind,
     /// The error that is taken away, mm.
     pub shift_mm: Vector,
+    /// What is left with it.
     pub figures: Statistics,
+    /// How good it is.
     pub proof: Proof,
 }
 
 /// The questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub enum Kind {
+    /// A node from which all others are nearest.
     Node,
+    /// Least sum of what is left.
     Median,
+    /// Least largest of what is left.
     Minimax,
+    /// Most nodes within the tolerance.
     Share,
 }
 
 /// How good the answer is.
-pub(super) enum Proof {
+#[expect(missing_docs, reason = "each case says its numbers")]
+pub enum Proof {
     /// The node's place; sums computed of all nodes.
     Node { place_mm: Vector, sum_mm: f64, examined: usize },
     /// The sum, and what no shift is below.
@@ -105,7 +125,8 @@ pub(super) enum Proof {
 }
 
 impl Kind {
-    pub(super) fn name(self) -> Text {
+    /// In words.
+    pub fn name(self) -> Text {
         match self {
             Self::Node => Text::pair("best node", "лучший узел"),
             Self::Median => Text::pair("geometric median", "геом. медиана"),
@@ -116,16 +137,20 @@ impl Kind {
 }
 
 impl Study {
-    pub(super) fn new(
+    /// The map, and what is found in it.
+    ///
+    /// # Errors
+    /// A region without nodes, a workpiece that fits nowhere, rotary axes under `second_order`.
+    pub fn new(
         profile: &Profile,
         engine: EngineId,
         model: &dyn PathModel,
         work_offsets: Vec<WorkOffset>,
-        asked: &Asked,
+        asked: Asked,
     ) -> Result<Self, Failure> {
-        let error = |q: &Vector, direction: [i8; 3]| model.error_mm(&command(asked, *q, direction));
+        let error = |q: &Vector, direction: [i8; 3]| model.error_mm(&asked.command(*q, direction));
         let map = evaluated(asked.grid.clone(), |q| error(q, [0; 3]));
-        let parts = parts(&map, asked, |q| error(q, [0; 3]))?;
+        let parts = parts(&map, &asked, |q| error(q, [0; 3]))?;
         let box_mm = map.grid().axes().each_ref().map(Nodes::range_mm);
         let mut places = Vec::new();
         if let Some(size) = &asked.clamp_mm {
@@ -136,13 +161,11 @@ impl Study {
                     freedom,
                     found.map_err(|too_large| {
                         let too_large = too_large.text();
-                        Failure::option(
-                            both!("`--clamp`: {too_large}", "`--clamp`: {too_large:#}"),
-                            both!(
-                                "give the size of a box that fits, X,Y,Z in mm",
-                                "дайте габарит, который помещается: X,Y,Z в мм"
-                            ),
-                        )
+                        Failure::usage(notice!(OPTION;
+                            "`--clamp`: {too_large}", "`--clamp`: {too_large:#}";
+                            "give the size of a box that fits, X,Y,Z in mm",
+                            "дайте габарит, который помещается: X,Y,Z в мм"
+                        ))
                     })?,
                 ));
             }
@@ -150,18 +173,16 @@ impl Study {
         Ok(Self {
             machine: profile.name.clone(),
             engine,
-            tool_mm: asked.tool_mm,
-            rotary_rad: asked.rotary_rad,
-            within_mm: asked.within_mm,
             resolution_mm: profile.resolution_mm,
             work_offsets,
             parts,
             diagonals: body_diagonals(&box_mm, TARGETS, error),
             places,
-            second_order: asked.second_order.then(|| second_order::of(profile, &map, asked)).transpose()?,
-            curves: curves(&map, model, asked),
-            cells: deformation::cells(&map, model, asked),
+            second_order: asked.second_order.then(|| second_order::of(profile, &map, &asked)).transpose()?,
+            curves: curves(&map, model, &asked),
+            cells: deformation::cells(&map, model, &asked),
             map,
+            asked,
         })
     }
 }
@@ -176,16 +197,12 @@ fn parts(
     for (name, ranges) in &asked.regions {
         let block = grid.region(ranges);
         if block.is_empty() {
-            return Err(Failure::option(
-                both!(
-                    "`--region {name}`: no node of the grid lies in it",
-                    "`--region {name}`: в ней нет ни одного узла сетки"
-                ),
-                both!(
-                    "make it larger, or the grid finer with `--grid`",
-                    "увеличьте её или сделайте сетку мельче ключом `--grid`"
-                ),
-            ));
+            return Err(Failure::usage(notice!(OPTION;
+                "`--region {name}`: no node of the grid lies in it",
+                "`--region {name}`: в ней нет ни одного узла сетки";
+                "make it larger, or the grid finer with `--grid`",
+                "увеличьте её или сделайте сетку мельче ключом `--grid`"
+            )));
         }
         blocks.push((Text::same(name.as_str()), block));
     }
@@ -252,4 +269,46 @@ fn part(name: Text, map: &ErrorMap, block: &Block, within_mm: f64) -> Part {
         Range { low: places[0], high: places[places.len() - 1] }
     });
     Part { name, box_mm, figures: Statistics::of(&errors, within_mm).expect(some), zero_points }
+}
+
+impl ZeroPoint {
+    /// What to add to a work offset: minus the error, in whole output steps. Equation (41).
+    pub fn to_enter_mm(&self, study: &Study) -> Vector {
+        study.rounded(&-self.shift_mm)
+    }
+}
+
+impl Part {
+    /// The answer that most work wants.
+    pub fn median(&self) -> &ZeroPoint {
+        self.zero_points
+            .iter()
+            .find(|zero| zero.kind == Kind::Median)
+            .expect("every part has all four answers")
+    }
+}
+
+impl Study {
+    /// In whole output steps.
+    pub fn rounded(&self, mm: &Vector) -> Vector {
+        // A negative zero would be printed as one.
+        Vector::from_fn(|axis, _| {
+            (mm[axis] / self.resolution_mm[axis]).round() * self.resolution_mm[axis] + 0.0
+        })
+    }
+
+    /// Decimals that show the finest output step.
+    pub fn decimals(&self) -> usize {
+        let finest = self.resolution_mm.iter().copied().fold(f64::INFINITY, f64::min);
+        (3..6).find(|d| finest * 10f64.powi(*d) >= 1.0 - 1e-9).map_or(6, |d| d as usize)
+    }
+}
+
+/// What the set-up can do, in words.
+pub fn freedom_name(freedom: Freedom) -> Text {
+    match freedom {
+        Freedom::Shift => Text::pair("shift the zero point", "сдвинуть нулевую точку"),
+        Freedom::ShiftAndTurn => Text::pair("shift, and turn about Z", "сдвинуть и повернуть вокруг Z"),
+        Freedom::Rigid => Text::pair("shift, and turn about X, Y and Z", "сдвинуть и повернуть вокруг XYZ"),
+    }
 }

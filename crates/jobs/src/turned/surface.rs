@@ -6,14 +6,13 @@ use serde::Serialize;
 use turning::{Cylinder, Lathe, Section, Wave, roughness};
 
 use super::cuts::Cut;
-use crate::arguments::Predict;
 use crate::figures::round;
 use crate::settings::Settings;
 
 /// Spindle angles of a section.
-pub(super) const ANGLES: usize = 360;
+pub const ANGLES: usize = 360;
 /// Waves a turn that are told apart.
-pub(super) const HIGHEST_WAVE: u32 = 8;
+pub const HIGHEST_WAVE: u32 = 8;
 /// Places of a path are so far apart at most, as a share of the step along Z.
 const SHARE_OF_STEP: f64 = 0.2;
 /// Most places along Z.
@@ -29,61 +28,83 @@ const MOVED_MM: f64 = 0.25;
 /// A cylinder is judged by so many sections at most, evenly chosen.
 const MOST_SECTIONS: usize = 20;
 
+/// What is asked of a surface.
+pub struct Asked {
+    /// Distance of its places along Z.
+    pub step_mm: f64,
+    /// The tool cuts inside: the largest radius counts.
+    pub bore: bool,
+}
+
 /// A place of the finished surface.
 #[derive(Serialize)]
-pub(super) struct Place {
+pub struct Place {
     /// From the chuck, mm.
-    pub(super) z_mm: f64,
-    pub(super) radius_mm: f64,
-    pub(super) diameter_mm: f64,
-    pub(super) nominal_radius_mm: f64,
-    pub(super) radius_error_um: f64,
+    pub z_mm: f64,
+    /// Real.
+    pub radius_mm: f64,
+    /// Twice that.
+    pub diameter_mm: f64,
+    /// Programmed.
+    pub nominal_radius_mm: f64,
+    /// Real less programmed.
+    pub radius_error_um: f64,
     /// By the least-squares circle.
-    pub(super) roundness_um: f64,
+    pub roundness_um: f64,
     /// By the minimum zone.
-    pub(super) roundness_zone_um: f64,
+    pub roundness_zone_um: f64,
     /// Theoretical, exact; nothing where the tool's nose is not known or does not meet its own cut.
-    pub(super) roughness_um: Option<f64>,
+    pub roughness_um: Option<f64>,
     /// f²/8r.
-    pub(super) roughness_usual_um: Option<f64>,
+    pub roughness_usual_um: Option<f64>,
     /// Waves a turn, from 2 on: amplitudes.
-    pub(super) waves_um: Vec<f64>,
+    pub waves_um: Vec<f64>,
     /// What cut it.
     #[serde(skip)]
-    pub(super) command: Command,
+    pub command: Command,
     /// Feed a turn and nose's radius, mm, where both are known.
     #[serde(skip)]
-    pub(super) ridge_mm: Option<[f64; 2]>,
+    pub ridge_mm: Option<[f64; 2]>,
     /// Its place on the grid along Z.
     #[serde(skip)]
-    pub(super) place: usize,
+    pub place: usize,
 }
 
 /// A stretch of one programmed radius.
 #[derive(Serialize)]
-pub(super) struct Stretch {
-    pub(super) from_z_mm: f64,
-    pub(super) to_z_mm: f64,
-    pub(super) nominal_radius_mm: f64,
-    pub(super) cylindricity_um: f64,
-    pub(super) cylindricity_zone_um: f64,
+pub struct Stretch {
+    /// Its end at the chuck.
+    pub from_z_mm: f64,
+    /// The other.
+    pub to_z_mm: f64,
+    /// Programmed.
+    pub nominal_radius_mm: f64,
+    /// By the least-squares cylinder.
+    pub cylindricity_um: f64,
+    /// By the minimum zone.
+    pub cylindricity_zone_um: f64,
 }
 
+/// What a lathe turns by a program.
 #[derive(Serialize)]
-pub(super) struct Turned {
+pub struct Turned {
     schema: &'static str,
     angles: usize,
-    pub(super) asynchronous_um: f64,
-    pub(super) cylinders: Vec<Stretch>,
-    pub(super) places: Vec<Place>,
+    /// What the spindle adds from turn to turn.
+    pub asynchronous_um: f64,
+    /// Stretches of one programmed radius.
+    pub cylinders: Vec<Stretch>,
+    /// All that have a radius.
+    pub places: Vec<Place>,
 }
 
 /// What cut a place last: radius, command, and the number of the cut.
 type Reached = Option<(f64, Command, usize)>;
 
 /// The finished surface at places along Z.
-pub(super) struct Surface {
-    pub(super) step_mm: f64,
+pub struct Surface {
+    /// Distance of the places along Z.
+    pub step_mm: f64,
     first_mm: f64,
     bore: bool,
     done: usize,
@@ -93,17 +114,17 @@ pub(super) struct Surface {
 
 impl Surface {
     /// Over all that the cuts reach; `None` where they reach nothing, or too much.
-    pub(super) fn over(cuts: &[Cut], lathe: &Lathe, arguments: &Predict) -> Option<Self> {
+    pub fn over(cuts: &[Cut], lathe: &Lathe, asked: &Asked) -> Option<Self> {
         let places = cuts.iter().flat_map(|cut| [0.0, 0.5, 1.0].map(|s| lathe.nominal_mm(&cut.at(s))[1]));
         let (low, high) =
             places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(z), high.max(z)));
-        let step_mm = arguments.step;
+        let Asked { step_mm, bore } = *asked;
         let first_mm = (low / step_mm).ceil() * step_mm;
         let count = ((high - first_mm) / step_mm).floor() + 1.0;
         (count >= 1.0 && count <= MOST_PLACES as f64).then(|| Self {
             step_mm,
             first_mm,
-            bore: arguments.bore,
+            bore,
             done: 0,
             real: vec![None; count as usize],
             nominal: vec![None; count as usize],
@@ -111,7 +132,7 @@ impl Surface {
     }
 
     /// What a corrected program leaves of the part that this one describes: at the same places, programmed the same.
-    pub(super) fn corrected(&self, cuts: &[Cut], lathe: &Lathe) -> Self {
+    pub fn corrected(&self, cuts: &[Cut], lathe: &Lathe) -> Self {
         let real = vec![None; self.real.len()];
         let mut corrected = Self { real, nominal: self.nominal.clone(), done: 0, ..*self };
         cuts.iter().for_each(|cut| corrected.cut(cut, lathe));
@@ -120,7 +141,7 @@ impl Surface {
     }
 
     /// Takes away what a cut reaches; the tip counts as a point.
-    pub(super) fn cut(&mut self, cut: &Cut, lathe: &Lathe) {
+    pub fn cut(&mut self, cut: &Cut, lathe: &Lathe) {
         let pieces =
             (cut.curve.length_mm() / (SHARE_OF_STEP * self.step_mm).min(1.0)).ceil().max(1.0) as usize;
         let number = self.done;
@@ -161,21 +182,22 @@ impl Surface {
     }
 
     /// Slope of the programmed outline at a place; nothing near a face or an edge, nor at an end.
-    pub(super) fn slope(&self, place: usize) -> Option<f64> {
+    pub fn slope(&self, place: usize) -> Option<f64> {
         slope(&self.nominal, place, (MOVED_MM / self.step_mm).ceil().max(1.0) as usize, self.step_mm)
     }
 
     /// Programmed radius at every place of the grid, mm.
-    pub(super) fn nominal_mm(&self) -> &[Option<f64>] {
+    pub fn nominal_mm(&self) -> &[Option<f64>] {
         &self.nominal
     }
 
     /// From the chuck, mm.
-    pub(super) fn z_mm(&self, place: usize) -> f64 {
+    pub fn z_mm(&self, place: usize) -> f64 {
         self.first_mm + place as f64 * self.step_mm
     }
 
-    pub(super) fn turned(&self, lathe: &Lathe, settings: &Settings, cuts: &[Cut]) -> Turned {
+    /// Radii, roundness, roughness and cylinders.
+    pub fn turned(&self, lathe: &Lathe, settings: &Settings, cuts: &[Cut]) -> Turned {
         let mut places = Vec::new();
         let mut cylinders = Vec::new();
         let mut run: Vec<(f64, f64, Section)> = Vec::new();
