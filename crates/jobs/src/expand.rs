@@ -252,6 +252,7 @@ mod tests {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let profile = root.join("machine-profiles/stan_s500.toml");
         let (mut short, mut long, mut warned) = (0, 0, 0);
+        let manner = Manner { force: true, threads: 1, hashes: false };
         for dialect in ["linuxcnc", "fanuc"] {
             let options = JobOptions {
                 machine: Some(profile.clone()),
@@ -267,8 +268,8 @@ mod tests {
             let warned_of = "G21 G90 G17 G54\nG43 H1\nG0 X10. Y10. Z30.\nG1 Z15. F600\nG41 D1 X20.\nY30.\nG40 X40.\nM30\n";
             programs.push(("warned of".to_owned(), warned_of.into()));
             for (name, text) in programs {
-                let whole = correct_expanded(&text, &name, &settings, true, |_| Ok(()));
-                let Some(done) = correct_plain(&text, &name, &settings, true, |_| Ok(())).unwrap() else {
+                let whole = correct_expanded(&text, &name, &settings, |_| Ok(()));
+                let Some(done) = correct_plain(&text, &name, &settings, manner, |_| Ok(())).unwrap() else {
                     long += 1;
                     continue;
                 };
