@@ -249,8 +249,7 @@ fn finished(
     steps: Vec<Step>,
     residuals: Vec<Residual>,
 ) -> Holdout {
-    let shrink = if rms_before_um > 0.0 { 1.0 - rms_after_um / rms_before_um } else { 0.0 };
-    Holdout { rows, rms_before_um, rms_after_um, shrink, steps, residuals, worse: None }
+    Holdout { steps, residuals, ..Holdout::new(rows, rms_before_um, rms_after_um) }
 }
 
 /// Two states of the same equations.

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use diagnostic::{Text, both};
-use jobs::diagnose::{Books, Diagnosed, File, Measured, Model, of_one_machine};
+use jobs::diagnose::{Books, Diagnosed, File, Model, of_one_machine};
 use machine_model::EngineId;
+use machine_profile::Profile;
 
-use super::lathe::ProfileFile;
 use super::plan::{self, Form};
 use super::report::{Facts, Report};
 use super::{summary, written};
@@ -74,8 +74,14 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
             .writes("--json", arguments.json.as_deref())
             .writes("--html", arguments.html.as_deref())
             .are_apart()?;
-        let file = ProfileFile { name: file::name(machine(&shared.job)?), hash: whole.hash.to_string() };
-        return super::lathe::run(arguments, &whole.profile, parts, &file, shared, messages);
+        return super::lathe::run(
+            arguments,
+            &whole.profile,
+            parts,
+            &whole.hash.to_string(),
+            shared,
+            messages,
+        );
     }
     let model = Model::load(&shared.job)?;
     let Some(measurements) = &arguments.measurements else {
@@ -108,7 +114,10 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         file::write(path, json.as_bytes())?;
     }
     if arguments.html.is_some() || arguments.viewer.is_some() {
-        let facts = facts(&model, arguments, shared, &measured, holdout.as_ref())?;
+        let held = holdout.as_ref().map(|h| &h.file);
+        let hash = model.hash.to_string();
+        let facts = facts(&model.profile, &hash, arguments, shared, &measured.file, held)?;
+        let facts = Facts { seed: Some(arguments.seed), ..facts };
         let page = Report {
             diagnosis: &diagnosis,
             changes: &changes,
@@ -144,28 +153,31 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
 }
 
 /// What the report says of files, options and machine.
-fn facts(
-    model: &Model,
+///
+/// * `hash` – of the profile and its tables
+pub(super) fn facts(
+    profile: &Profile,
+    hash: &str,
     arguments: &Diagnose,
     shared: &Shared,
-    measured: &Measured,
-    holdout: Option<&Measured>,
+    measured: &File,
+    holdout: Option<&File>,
 ) -> Result<Facts, Failure> {
     Ok(Facts {
-        machine: model.profile.name.clone(),
-        chain: model.profile.chain().to_string(),
-        origin: crate::origin::Origin::of(&model.profile),
+        machine: profile.name.clone(),
+        chain: profile.chain().to_string(),
+        origin: crate::origin::Origin::of(profile),
         profile: File {
             name: file::name(machine(&shared.job)?),
-            hash: model.hash.to_string(),
+            hash: hash.to_owned(),
             comments: Vec::new(),
         },
-        measurements: measured.file.clone(),
-        holdout: holdout.map(|h| h.file.clone()),
+        measurements: measured.clone(),
+        holdout: holdout.cloned(),
         engine: shared.job.engine().unwrap_or(EngineId::RigidBody).to_string(),
-        seed: arguments.seed,
+        seed: None,
         ignored_columns: arguments.ignore_column.clone(),
         without: arguments.without.clone(),
-        tolerance_um: shared.job.tolerance.unwrap_or(model.profile.correction.tolerance_um),
+        tolerance_um: shared.job.tolerance.unwrap_or(profile.correction.tolerance_um),
     })
 }

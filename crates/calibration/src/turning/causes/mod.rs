@@ -5,19 +5,24 @@
 //! judged by parts, not by readings. A cause has a name where no sum of all other causes can be it: the F test of its
 //! columns beside all others. Where only some other can be it too, both are told.
 
-mod answer;
 mod columns;
 mod mixed;
+mod rivals;
+mod words;
 
+use diagnostic::{Text, both};
+use gap_diagnosis::{Cause as Found, Diagnosis, Gap, Holdout, Leftover, Parameter, Residual, Verdict};
+use machine_model::Vector;
 use machine_model::effects::legendre;
 use nalgebra::DVector;
 use turning::WorkpieceError;
 use units::math;
 
-pub use answer::{FoundCause, LatheDiagnosis, Number, Unseen, Verdict};
 use columns::Columns;
 pub use columns::{Bar, Cause, CauseRow};
 use mixed::{Fitted, Mixed};
+pub use words::cause_name;
+use words::{CLAMPING, meaning};
 
 use crate::student::quantile_between;
 
@@ -29,8 +34,6 @@ const LEFTOVER: f64 = 1e-3;
 const DOUBTFUL: f64 = 0.05;
 /// No lathe of these presses so hard beyond what its profile says, N.
 const MOST_N: f64 = 5000.0;
-/// A rival that is no cause of the list.
-const CLAMPING: &str = "how the parts were clamped";
 /// Less than this share of what is no noise is no matter.
 const LITTLE: f64 = 0.05;
 /// Good readings have one that lies so far off with this chance.
@@ -39,10 +42,6 @@ const OUTLIER: f64 = 1e-4;
 const LEAST_ROWS: usize = 12;
 const LEAST_PARTS: usize = 2;
 const LEAST_FREEDOM: usize = 6;
-/// A taper is sure where it is so many times the curve beside it.
-const MOSTLY: f64 = 3.0;
-/// Wear or growth of less than this share of the other is not sure beside it.
-const LITTLE_DRIFT: f64 = 0.5;
 /// A column of which less is its own is one of the others.
 const OWN: f64 = 1e-6;
 
@@ -57,6 +56,7 @@ struct Asked<'a> {
 /// Finds what makes radii wrong.
 ///
 /// * `held` – rows that judge what was found
+/// * `tailstock_mm` – where the tailstock's centre stands, if there is one
 ///
 /// # Errors
 /// A bar that cannot be.
@@ -64,7 +64,8 @@ pub fn lathe_causes(
     rows: &[CauseRow],
     held: &[CauseRow],
     bar: Option<&Bar>,
-) -> Result<LatheDiagnosis, WorkpieceError> {
+    tailstock_mm: Option<f64>,
+) -> Result<Diagnosis, WorkpieceError> {
     let columns = Columns::new(rows, bar)?;
     let mut parts: Vec<usize> = rows.iter().map(|row| row.part).collect();
     parts.sort_unstable();
@@ -75,7 +76,7 @@ pub fn lathe_causes(
         // No part is left that tells how parts differ: then every part has its own size, and drift is not asked.
         asked = Asked::new(&columns, &parts, true);
     }
-    Ok(asked.diagnosis(&parts, held, bar))
+    Ok(asked.diagnosis(&parts, held, bar, tailstock_mm))
 }
 
 fn indicator(rows: &[CauseRow], of: impl Fn(&CauseRow) -> f64) -> DVector<f64> {
@@ -210,75 +211,95 @@ impl<'a> Asked<'a> {
         selected
     }
 
-    /// What else may be a cause: what in its place leaves nothing for it.
-    fn rivals(&self, cause: usize, selected: &[usize]) -> Vec<String> {
-        let kept: Vec<usize> = selected.iter().copied().filter(|k| *k != cause).collect();
-        let all_others: Vec<usize> = (0..self.all.len()).filter(|k| *k != cause).collect();
-        if self.p(cause, &all_others) < self.level() {
-            return Vec::new();
-        }
-        let open: Vec<usize> = all_others.iter().copied().filter(|k| !kept.contains(k)).collect();
-        let id = |k: &usize| self.all[*k].0.id();
-        let replaces = |others: &[usize]| self.p(cause, &[&kept[..], others].concat()) >= self.level();
-        let singles: Vec<usize> = open.iter().copied().filter(|k| replaces(&[*k])).collect();
-        let mut rivals: Vec<String> = singles.iter().map(|k| id(k).to_owned()).collect();
-        if rivals.is_empty() {
-            for (place, a) in open.iter().enumerate() {
-                let pairs = open[place + 1..].iter().filter(|b| replaces(&[*a, **b]));
-                rivals.extend(pairs.map(|b| format!("{} with {}", id(a), id(b))));
-            }
-        }
-        if rivals.is_empty() {
-            rivals.push("several other causes together".to_owned());
-        }
-        rivals
-    }
-
-    fn diagnosis(&self, parts: &[usize], held: &[CauseRow], bar: Option<&Bar>) -> LatheDiagnosis {
+    fn diagnosis(
+        &self,
+        parts: &[usize],
+        held: &[CauseRow],
+        bar: Option<&Bar>,
+        tailstock_mm: Option<f64>,
+    ) -> Diagnosis {
         let everything = self.independent(&self.everything());
-        let whole = self.mixed.fit(&everything);
-        let typical = self.weights.iter().sum::<f64>() / self.weights.len().max(1) as f64;
-        let mut answer = LatheDiagnosis {
-            verdict: Verdict::Underpowered,
-            rms_mm: self.mixed.rms() * typical,
-            noise_mm: whole.noise * typical,
-            causes: Vec::new(),
-            asked: self.all.iter().map(|(cause, _)| *cause).collect(),
-            leftover_p: 1.0,
-            outlier: None,
-            unseen: None,
-            explained_mm: vec![0.0; self.weights.len()],
+        let typical = self.typical();
+        let noise_um = self.mixed.fit(&everything).noise * typical * 1e3;
+        let beyond = self.mixed.beyond();
+        let gap = Gap::new(beyond.iter().map(|own| own.abs() * typical * 1e3).collect(), noise_um);
+        let asked: Vec<Text> = self.all.iter().map(|(cause, _)| cause_name(cause.id())).collect();
+        let notes = vec![
+            both!(
+                "All figures are on the radius; sizes of tools and where parts were clamped are taken off.",
+                "Все числа — по радиусу, без размеров инструментов и установок деталей."
+            ),
+            both!("These rows could show: {}.", "Эти строки могли показать: {:#}.", Text::join(&asked, ", ")),
+        ];
+        let of = |verdict: Verdict| Diagnosis {
+            notes: notes.clone(),
+            ..Diagnosis::new(verdict, meaning(verdict), gap)
         };
         let rows = self.columns.rows.len();
         if rows < LEAST_ROWS || parts.len() < LEAST_PARTS || self.mixed.freedom(&everything) < LEAST_FREEDOM {
-            return answer;
+            return Diagnosis { next_measurement: Some(words::more_parts()), ..of(Verdict::Underpowered) };
         }
-        let leftovers: Vec<DVector<f64>> = self
-            .columns
-            .leftovers(parts)
-            .into_iter()
-            .map(|column| DVector::from_fn(rows, |k, _| column[k] / self.weights[k]))
-            .collect();
         let (row, size, freedom) = self.mixed.largest_residual(&everything);
         if size > quantile_between(OUTLIER / rows as f64, freedom) {
-            answer.verdict = Verdict::NoiseModelSuspect;
-            answer.outlier = Some(row);
-            return answer;
+            let suspect = of(Verdict::NoiseModelSuspect);
+            let mut sentence = suspect.sentence.clone();
+            sentence.push(&words::outlier(&self.columns.rows[row]));
+            return Diagnosis { sentence, residuals: self.residuals(None), ..suspect };
         }
+        let leftovers: Vec<DVector<f64>> =
+            self.columns.leftovers(parts).into_iter().map(|column| self.weighed(column)).collect();
         let all: Vec<DVector<f64>> = everything.iter().chain(&leftovers).cloned().collect();
         let is_judged = self.mixed.freedom(&self.independent(&all)) >= LEAST_FREEDOM;
-        answer.leftover_p = if is_judged { self.p_beside(&leftovers, &everything) } else { 1.0 };
-        let tilts = self.p_beside(&self.tilts(parts), &everything);
+        let leftover_p = if is_judged { self.p_beside(&leftovers, &everything) } else { 1.0 };
         let selected = self.selected();
         let model = self.of(&selected);
         let found = self.mixed.fit(&model);
-        let share = self.leftover_share(&model, &leftovers, &found);
-        let is_left = answer.leftover_p < LEFTOVER && share > LITTLE;
+        let own = self.independent(&model);
+        let with = self.independent(&own.iter().chain(&leftovers).cloned().collect::<Vec<_>>());
+        let share = self.share(&own, &with, &found);
+        let is_left = leftover_p < LEFTOVER && share > LITTLE;
+        let causes = self.causes(parts, &selected, &found, bar, tailstock_mm);
+        let holdout = self.unseen(held, &selected, &found, bar);
+        let is_refuted = holdout.as_ref().is_some_and(|unseen| unseen.rms_after_um > unseen.rms_before_um);
+        let verdict = match (selected.is_empty(), is_left) {
+            (true, false) => Verdict::NoGap,
+            (true, true) => Verdict::Unknown,
+            (false, _) if is_refuted || (is_left && share > 0.5) => Verdict::Unknown,
+            (false, true) => Verdict::Partial,
+            (false, false) if causes.iter().any(|own| !own.cannot_be_told_from.is_empty()) => {
+                Verdict::Ambiguous
+            }
+            (false, false) => Verdict::Named,
+        };
+        let rms_um = causes.last().map_or(gap.rms_um, |last| last.rms_after_um);
+        let signal = (gap.rms_um * gap.rms_um - noise_um * noise_um).max(f64::MIN_POSITIVE);
+        let phi = ((rms_um * rms_um - noise_um * noise_um) / signal).clamp(0.0, 1.0);
+        Diagnosis {
+            next_measurement: words::next(&causes),
+            causes,
+            leftover: Leftover { rms_um, phi, lack_of_fit_p: leftover_p, ..Leftover::default() },
+            holdout,
+            residuals: self.residuals(Some(&self.effect_mm(&selected, &found, |_| true))),
+            ..of(verdict)
+        }
+    }
+
+    /// Each with what it leaves of the gap.
+    fn causes(
+        &self,
+        parts: &[usize],
+        selected: &[usize],
+        found: &Fitted,
+        bar: Option<&Bar>,
+        tailstock_mm: Option<f64>,
+    ) -> Vec<Found> {
+        let tilts = self.p_beside(&self.tilts(parts), &self.independent(&self.everything()));
         let mut place = 0;
+        let mut causes = Vec::new();
         for (rank, k) in selected.iter().enumerate() {
             let (cause, own) = &self.all[*k];
-            let mut rivals = self.rivals(*k, &selected);
-            rivals.extend(self.unseen_rivals(*cause, &selected, &found, bar));
+            let mut rivals = self.rivals(*k, selected);
+            rivals.extend(self.unseen_rivals(*cause, selected, found, bar));
             let along = matches!(cause, Cause::Taper | Cause::Bending | Cause::Straightness);
             let drifts = matches!(cause, Cause::Growth | Cause::Wear | Cause::Scale);
             let is_absurd = *cause == Cause::Bending && found.values[place].abs() > MOST_N;
@@ -286,86 +307,70 @@ impl<'a> Asked<'a> {
             if (along || drifts) && (tilts < DOUBTFUL || is_absurd || is_coarse) {
                 rivals.push(CLAMPING.to_owned());
             }
-            let others: Vec<usize> = match rivals.is_empty() {
+            let kept: Vec<usize> = selected.iter().copied().filter(|other| other != k).collect();
+            let others = match rivals.is_empty() {
                 true => (0..self.all.len()).filter(|other| other != k).collect(),
-                false => selected.iter().copied().filter(|other| other != k).collect(),
+                false => kept.clone(),
             };
-            let rms = |count: usize| self.mixed.rms_with(&self.of(&selected[..count])) * typical;
-            answer.causes.push(FoundCause {
-                cause: *cause,
+            let rms = |count: usize| self.mixed.rms_with(&self.of(&selected[..count])) * self.typical() * 1e3;
+            let parameters = self.numbers(*cause, place, own.len(), found);
+            causes.push(Found {
+                term: None,
+                effect: cause.id().to_owned(),
+                words: words::sentence(*cause, &parameters),
+                remedy: words::remedy(*cause, &parameters, tailstock_mm),
+                share_unique: self.share(&self.of(&kept), &self.of(selected), found),
+                share_alone: self.share(&[], own, found),
                 p: self.p(*k, &others),
-                numbers: self.numbers(*cause, place, own.len(), &found),
-                rivals,
-                rms_mm: [rms(rank), rms(rank + 1)],
+                parameters,
+                cannot_be_told_from: rivals,
+                nearest: Vec::new(),
+                rms_before_um: rms(rank),
+                rms_after_um: rms(rank + 1),
+                shrink_predicted: None,
             });
             place += own.len();
         }
-        answer.explained_mm = self.effect_mm(&selected, &found, |_| true).iter().copied().collect();
-        answer.unseen = self.unseen(held, &selected, &found, bar);
-        let is_refuted = answer.unseen.is_some_and(|unseen| unseen.rms_mm[1] > unseen.rms_mm[0]);
-        answer.verdict = match (selected.is_empty(), is_left) {
-            (true, false) => Verdict::NoGap,
-            (true, true) => Verdict::Unknown,
-            (false, _) if is_refuted || (is_left && share > 0.5) => Verdict::Unknown,
-            (false, true) => Verdict::Partial,
-            (false, false) if answer.causes.iter().any(|own| !own.rivals.is_empty()) => Verdict::Ambiguous,
-            (false, false) => Verdict::Named,
+        causes
+    }
+
+    /// Gap and what is left of it by row, each part at its own mean: its size is the tool's.
+    fn residuals(&self, explained_mm: Option<&DVector<f64>>) -> Vec<Residual> {
+        let rows = self.columns.rows;
+        let after_mm = |k: usize| rows[k].gap_mm - explained_mm.map_or(0.0, |all| all[k]);
+        let of = |k: usize| {
+            let same = |i: &usize| (rows[*i].part, rows[*i].tool) == (rows[k].part, rows[k].tool);
+            let own: Vec<usize> = (0..rows.len()).filter(same).collect();
+            let mean = |of: &dyn Fn(usize) -> f64| own.iter().map(|i| of(*i)).sum::<f64>() / own.len() as f64;
+            Residual {
+                row: k,
+                class: 0,
+                along: Vector::x(),
+                before_um: (rows[k].gap_mm - mean(&|i| rows[i].gap_mm)) * 1e3,
+                after_um: (after_mm(k) - mean(&after_mm)) * 1e3,
+            }
         };
-        answer
+        (0..rows.len()).map(of).collect()
+    }
+
+    fn typical(&self) -> f64 {
+        self.weights.iter().sum::<f64>() / self.weights.len().max(1) as f64
+    }
+
+    fn weighed(&self, column: DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(column.len(), |k, _| column[k] / self.weights[k])
     }
 
     /// Every part's own lean, as a clamping makes it.
     fn tilts(&self, parts: &[usize]) -> Vec<DVector<f64>> {
-        let own = self.columns.tilts(parts);
-        own.map(|column| DVector::from_fn(column.len(), |k, _| column[k] / self.weights[k])).collect()
+        self.columns.tilts(parts).map(|column| self.weighed(column)).collect()
     }
 
-    /// Of the squares that are no noise, those that what is left explains.
-    fn leftover_share(&self, model: &[DVector<f64>], leftovers: &[DVector<f64>], found: &Fitted) -> f64 {
-        let own = self.independent(model);
-        let all: Vec<DVector<f64>> = own.iter().chain(leftovers).cloned().collect();
-        let (before, after) = (self.mixed.rms_with(&own), self.mixed.rms_with(&self.independent(&all)));
-        let gap = self.mixed.rms();
+    /// Of the squares that are no noise, those that a model explains beyond another.
+    fn share(&self, before: &[DVector<f64>], after: &[DVector<f64>], found: &Fitted) -> f64 {
+        let [gap, before, after] = [&[], before, after].map(|model| self.mixed.rms_with(model));
         let signal = (gap * gap - found.noise * found.noise).max(f64::MIN_POSITIVE);
         ((before * before - after * after) / signal).clamp(0.0, 1.0)
-    }
-
-    /// What may be a cause, and no column shows: what nobody wrote into the file.
-    fn unseen_rivals(
-        &self,
-        cause: Cause,
-        selected: &[usize],
-        found: &Fitted,
-        bar: Option<&Bar>,
-    ) -> Vec<String> {
-        let is_timed = self.columns.times.is_some();
-        let is = |own: Cause| self.all.iter().any(|(known, _)| *known == own);
-        let mut rivals: Vec<&'static str> = Vec::new();
-        // No spindle grows quite as the columns do: a little of the one beside much of the other may be its shape.
-        let is_little = |own: Cause, other: Cause| {
-            let [own, other] = [own, other].map(|cause| self.extent_mm(cause, selected, found));
-            own < LITTLE_DRIFT * other
-        };
-        match cause {
-            Cause::Wear if !is_timed || is_little(Cause::Wear, Cause::Growth) => {
-                rivals.push("spindle.growth")
-            }
-            Cause::Growth if !is(Cause::Wear) || is_little(Cause::Growth, Cause::Wear) => {
-                rivals.push("tool.wear");
-            }
-            Cause::Straightness if bar.is_none() => rivals.push("lathe.bending"),
-            Cause::Jaws => rivals.push("spindle.runout"),
-            Cause::Bending => rivals.extend(self.within_the_cut(cause, selected)),
-            Cause::Taper => {
-                rivals.extend(self.within_the_cut(cause, selected));
-                // Few places do not tell a slope from a curve, and a curve's slope is not sure.
-                if self.columns.degrees() < 2 || self.is_mostly_curve(selected, found) {
-                    rivals.push("straightness.EXZ");
-                }
-            }
-            _ => {}
-        }
-        rivals.into_iter().map(str::to_owned).collect()
     }
 
     /// What causes that were found do to each row, mm.
@@ -388,59 +393,8 @@ impl<'a> Asked<'a> {
         sum
     }
 
-    /// How much a cause that was found changes the radius, from least to most, mm.
-    fn extent_mm(&self, cause: Cause, selected: &[usize], found: &Fitted) -> f64 {
-        let sum = self.effect_mm(selected, found, |own| own == cause);
-        sum.max() - sum.min()
-    }
-
-    /// The curve that was found beside a taper is nearly as large: a part of it that these places do not resolve may be all
-    /// that the taper is.
-    fn is_mostly_curve(&self, selected: &[usize], found: &Fitted) -> bool {
-        let (mut place, mut taper_mm) = (0, 0.0);
-        let mut curve = DVector::zeros(self.columns.rows.len());
-        for k in selected {
-            let (cause, own) = &self.all[*k];
-            for (i, _) in own.iter().enumerate() {
-                let value = found.values[place + i];
-                match cause {
-                    Cause::Taper => taper_mm = value * (self.columns.along[1] - self.columns.along[0]),
-                    Cause::Straightness => curve += self.columns.legendre(i + 2) * value,
-                    _ => {}
-                }
-            }
-            place += own.len();
-        }
-        MOSTLY * (curve.max() - curve.min()) > taper_mm.abs()
-    }
-
-    /// Wear and growth go on while a part is cut, and look like its taper: as large as what parts differ by, at most.
-    fn within_the_cut(&self, cause: Cause, selected: &[usize]) -> Vec<&'static str> {
-        let is_timed = self.columns.times.is_some();
-        let with: Vec<usize> =
-            (0..self.all.len()).filter(|k| selected.contains(k) || self.all[*k].0 == Cause::Wear).collect();
-        let causes: Vec<Cause> =
-            with.iter().flat_map(|k| vec![self.all[*k].0; self.all[*k].1.len()]).collect();
-        let at = |own: Cause| causes.iter().position(|known| *known == own);
-        let (Some(place), Some(wear)) = (at(cause), at(Cause::Wear)) else {
-            // No tool is named: nothing tells by how much a tip recedes.
-            return if is_timed { vec!["tool.wear"] } else { vec!["spindle.growth", "tool.wear"] };
-        };
-        let columns = self.of(&with);
-        let fitted = self.mixed.fit(&columns);
-        let unit = DVector::from_fn(causes.len(), |i, _| f64::from(u8::from(i == wear)));
-        let own = DVector::from_fn(self.weights.len(), |k, _| columns[place][k] * self.weights[k]);
-        let along_mm = (fitted.values[place] * (own.max() - own.min())).abs();
-        let is_small = along_mm <= fitted.values[wear].abs() + fitted.u95(&unit);
-        match (is_small, is_timed) {
-            (false, _) => Vec::new(),
-            (true, true) => vec!["tool.wear"],
-            (true, false) => vec!["spindle.growth", "tool.wear"],
-        }
-    }
-
     /// * `place`, `count` – its columns in the model
-    fn numbers(&self, cause: Cause, place: usize, count: usize, found: &Fitted) -> Vec<Number> {
+    fn numbers(&self, cause: Cause, place: usize, count: usize, found: &Fitted) -> Vec<Parameter> {
         let size = found.values.len();
         let sum = |of: &[f64]| {
             DVector::from_fn(size, |i, _| {
@@ -449,7 +403,7 @@ impl<'a> Asked<'a> {
         };
         let number = |name: &'static str, of: &[f64]| {
             let row = sum(of);
-            Number { name, value: row.dot(&found.values), u95: found.u95(&row) }
+            Parameter { name: name.to_owned(), value: row.dot(&found.values), u95: Some(found.u95(&row)) }
         };
         match cause {
             // r falls where the axis leads to +X with growing Z.
@@ -491,7 +445,7 @@ impl<'a> Asked<'a> {
         selected: &[usize],
         found: &Fitted,
         bar: Option<&Bar>,
-    ) -> Option<Unseen> {
+    ) -> Option<Holdout> {
         if held.is_empty() || selected.is_empty() {
             return None;
         }
@@ -523,7 +477,8 @@ impl<'a> Asked<'a> {
         }
         let cells = mixed::basis(&[levels(held, |row| (row.part, row.tool)), centres(held)].concat());
         let gap = indicator(held, |row| row.gap_mm);
-        let rms = |of: &DVector<f64>| (mixed::beyond(of, &cells).norm_squared() / held.len() as f64).sqrt();
-        Some(Unseen { rows: held.len(), rms_mm: [rms(&gap), rms(&(&gap - predicted))] })
+        let rms =
+            |of: &DVector<f64>| 1e3 * (mixed::beyond(of, &cells).norm_squared() / held.len() as f64).sqrt();
+        Some(Holdout::new(held.len(), rms(&gap), rms(&(&gap - predicted))))
     }
 }

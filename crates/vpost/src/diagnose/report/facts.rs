@@ -19,8 +19,8 @@ pub(in crate::diagnose) struct Facts {
     pub holdout: Option<File>,
     /// What predicts the rows.
     pub engine: String,
-    /// Seed of the relabellings.
-    pub seed: u64,
+    /// Seed of the relabellings, where there are any.
+    pub seed: Option<u64>,
     /// Columns that were passed over.
     pub ignored_columns: Vec<String>,
     /// Effects taken out of the library.
