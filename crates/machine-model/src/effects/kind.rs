@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use super::spec::{Direction, Origin, Spec};
+
 /// Index of a linear axis in every array of three: X, Y, Z.
 pub type AxisIndex = usize;
 
@@ -146,42 +148,32 @@ impl EffectKind {
         kinds
     }
 
+    pub(super) const fn spec(&self) -> Spec {
+        Spec::of(*self)
+    }
+
     /// The name without the axis: `backlash` of `backlash.X`.
     #[must_use]
     pub const fn family(&self) -> &'static str {
-        match self {
-            Self::Scale(_) => "scale",
-            Self::Thermal(_) => "thermal",
-            Self::Warmup(_) => "warmup",
-            Self::Backlash(_) => "backlash",
-            Self::LostMotion { .. } => "lost-motion",
-            Self::Squareness(..) => "squareness",
-            Self::Positioning(_) => "positioning",
-            Self::Straightness { .. } => "straightness",
-            Self::Pitch(_) => "pitch",
-            Self::Angular { .. } => "angular",
-            Self::Sag(_) => "sag",
-            Self::Load(_) => "load",
-            Self::ServoLag(_) => "servo-lag",
-            Self::ServoMismatch(..) => "servo-mismatch",
-            Self::Rotary { .. } => "rotary",
-            Self::Eccentricity(_) => "eccentricity",
-            Self::ProbeLobing => "probe-lobing",
-            Self::InstrumentDrift => "instrument-drift",
-            Self::Step(_) => "step",
-            Self::Local(_) => "local",
-            Self::Joint(_) => "joint",
-            Self::Spike(_) => "spike",
-            Self::Contraction => "contraction",
-            Self::SpindleTilt(_) => "spindle-tilt",
-            Self::Tracker(_) => "tracker",
-        }
+        self.spec().family
+    }
+
+    /// Names of the coefficients, with their unit; the displacement is linear in them.
+    #[must_use]
+    pub const fn coefficient_names(&self) -> &'static [&'static str] {
+        self.spec().coefficients
+    }
+
+    /// Names of the [`super::Shape`] fields the effect uses.
+    #[must_use]
+    pub const fn shape_names(&self) -> &'static [&'static str] {
+        self.spec().shape
     }
 
     /// True where the effect is a fault of the measuring instrument, not of the machine.
     #[must_use]
     pub const fn is_instrument(&self) -> bool {
-        matches!(self, Self::ProbeLobing | Self::InstrumentDrift | Self::Tracker(_))
+        matches!(self.spec().origin, Origin::Probe | Origin::Instrument)
     }
 
     /// True where the coefficients can only be positive: a ram droops, it does not rise.
@@ -193,15 +185,7 @@ impl EffectKind {
     /// True where the error depends on the direction of motion.
     #[must_use]
     pub const fn depends_on_direction(&self) -> bool {
-        matches!(
-            self,
-            Self::Backlash(_)
-                | Self::LostMotion { .. }
-                | Self::ServoLag(_)
-                | Self::ServoMismatch(..)
-                | Self::ProbeLobing
-                | Self::Spike(_)
-        )
+        matches!(self.spec().direction, Direction::Matters)
     }
 }
 
