@@ -118,6 +118,11 @@ impl Term {
         }
     }
 
+    /// The non-linear numbers of an effect.
+    pub(crate) fn shape(&self) -> Option<Shape> {
+        if let Self::Effect { shape, .. } = self { Some(*shape) } else { None }
+    }
+
     /// The axis on whose position and direction of approach, and the rotary axes, alone the displacement depends; `None`
     /// where it depends on more.
     pub(crate) fn axis(&self) -> Option<usize> {
