@@ -3,8 +3,6 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::spec::{Direction, Origin, Spec};
-
 /// Index of a linear axis in every array of three: X, Y, Z.
 pub type AxisIndex = usize;
 
@@ -148,44 +146,10 @@ impl EffectKind {
         kinds
     }
 
-    pub(super) const fn spec(&self) -> Spec {
-        Spec::of(*self)
-    }
-
-    /// The name without the axis: `backlash` of `backlash.X`.
-    #[must_use]
-    pub const fn family(&self) -> &'static str {
-        self.spec().family
-    }
-
-    /// Names of the coefficients, with their unit; the displacement is linear in them.
-    #[must_use]
-    pub const fn coefficient_names(&self) -> &'static [&'static str] {
-        self.spec().coefficients
-    }
-
-    /// Names of the [`super::Shape`] fields the effect uses.
-    #[must_use]
-    pub const fn shape_names(&self) -> &'static [&'static str] {
-        self.spec().shape
-    }
-
-    /// True where the effect is a fault of the measuring instrument, not of the machine.
-    #[must_use]
-    pub const fn is_instrument(&self) -> bool {
-        matches!(self.spec().origin, Origin::Probe | Origin::Instrument)
-    }
-
     /// True where the coefficients can only be positive: a ram droops, it does not rise.
     #[must_use]
     pub const fn is_one_sided(&self) -> bool {
         matches!(self, Self::Sag(_))
-    }
-
-    /// True where the error depends on the direction of motion.
-    #[must_use]
-    pub const fn depends_on_direction(&self) -> bool {
-        matches!(self.spec().direction, Direction::Matters)
     }
 }
 

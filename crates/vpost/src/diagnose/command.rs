@@ -165,7 +165,7 @@ pub(super) fn facts(
 ) -> Result<Facts, Failure> {
     Ok(Facts {
         machine: profile.name.clone(),
-        chain: profile.chain().to_string(),
+        chain: profile.lathe.is_none().then(|| profile.chain().to_string()),
         origin: crate::origin::Origin::of(profile),
         profile: File {
             name: file::name(machine(&shared.job)?),

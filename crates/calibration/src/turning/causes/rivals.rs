@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::Asked;
+use super::asked::Asked;
 use super::columns::{Bar, Cause};
 use super::mixed::Fitted;
 use super::words::SEVERAL;

@@ -85,8 +85,8 @@ fn one(out: &mut Body, c: &Cause, changes: &[Change]) {
         let changes: Vec<Text> = changes.iter().map(Change::text).collect();
         facts.push(Fact::new(both!("change", "изменить"), &said(&Text::join(&changes, ", "))));
     }
-    facts.push(Fact::new(both!("what to do", "что делать"), &c.remedy));
     out.facts(facts);
+    out.typed(&said(&c.remedy));
 }
 
 fn probability(p: f64) -> Text {

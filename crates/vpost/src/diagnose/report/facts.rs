@@ -7,8 +7,8 @@ use jobs::diagnose::File;
 pub(in crate::diagnose) struct Facts {
     /// Name in the profile.
     pub machine: String,
-    /// Its kinematic chain.
-    pub chain: String,
+    /// Its kinematic chain; none of a lathe, whose model is another.
+    pub chain: Option<String>,
     /// When, how warm and with what it was measured.
     pub origin: crate::origin::Origin,
     /// The profile, with the hash of its tables.

@@ -22,9 +22,10 @@ pub(in crate::diagnose) fn facts(facts: &Facts) -> Vec<Fact> {
         Fact::remarked(name, &file.name, hash, comments)
     };
     let list = |name: Text, all: &[String]| (!all.is_empty()).then(|| Fact::same(name, all.join(", ")));
-    let Facts { machine, chain, .. } = facts;
+    let machine = &facts.machine;
+    let chained = |chain: &String| both!("{machine}, chain {chain}", "{machine}, цепь {chain}");
     let mut all = vec![
-        Fact::new(MACHINE, &both!("{machine}, chain {chain}", "{machine}, цепь {chain}")),
+        Fact::new(MACHINE, &facts.chain.as_ref().map_or_else(|| Text::same(machine), chained)),
         file(MEASUREMENTS, &facts.measurements),
         file(PROFILE, &facts.profile),
     ];

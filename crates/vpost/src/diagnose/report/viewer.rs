@@ -117,7 +117,10 @@ impl Report<'_> {
             },
             facts: &[
                 ("fact_measurements", format!("{name} (BLAKE3 {})", facts.measurements.hash)),
-                ("fact_machine", format!("{}, {}", facts.machine, facts.chain)),
+                (
+                    "fact_machine",
+                    format!("{}, {}", facts.machine, facts.chain.as_deref().unwrap_or_default()),
+                ),
                 ("fact_calibrated", facts.origin.said().in_language(messages.language()).to_owned()),
                 ("fact_profile", format!("{} (BLAKE3 {})", facts.profile.name, facts.profile.hash)),
                 ("fact_engine", facts.engine.clone()),
