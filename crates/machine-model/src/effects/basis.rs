@@ -2,7 +2,7 @@
 
 use units::math;
 
-use super::spec::{Origin, curve_order};
+use super::spec::{Origin, Spec, curve_order};
 use super::{EffectGeometry, EffectKind};
 use crate::{Command, Vector};
 
@@ -125,7 +125,7 @@ impl EffectKind {
         geometry: &EffectGeometry,
     ) -> Result<Vector, MissingCondition> {
         let arising = self.arising_mm(index, &At { shape, command, conditions, geometry })?;
-        let is_turned = matches!(self.spec().origin, Origin::LinearAxes | Origin::Probe);
+        let is_turned = matches!(Spec::of(*self).origin, Origin::LinearAxes | Origin::Probe);
         let turns = is_turned && geometry.has_table();
         Ok(if turns { geometry.table_turn(command) * arising } else { arising })
     }
@@ -184,11 +184,11 @@ impl EffectKind {
             }
             Self::Step(a) => along(a, if at.time()? >= at.shape.time_s { 1e-3 } else { 0.0 }),
             Self::Local(a) => {
-                let wave = math::cos(0.5 * std::f64::consts::PI * at.from_centre(a).abs().min(1.0));
+                let wave = math::cos(0.5 * std::f64::consts::PI * at.off_centre(a).abs().min(1.0));
                 along(index, 1e-3 * wave * wave)
             }
             Self::Joint(a) => {
-                let ramp = math::sin(0.5 * std::f64::consts::PI * at.from_centre(a).clamp(-1.0, 1.0));
+                let ramp = math::sin(0.5 * std::f64::consts::PI * at.off_centre(a).clamp(-1.0, 1.0));
                 along(index, 0.5e-3 * (1.0 + ramp))
             }
             Self::Spike(a) => {
@@ -235,7 +235,7 @@ impl At<'_> {
     }
 
     /// From the middle of a damage, in halves of its width.
-    fn from_centre(&self, axis: usize) -> f64 {
+    fn off_centre(&self, axis: usize) -> f64 {
         (self.command.linear_mm[axis] - self.shape.centre_mm) / (0.5 * self.shape.width_mm).max(1e-9)
     }
 

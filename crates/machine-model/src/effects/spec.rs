@@ -163,37 +163,33 @@ impl Spec {
 }
 
 impl EffectKind {
-    pub(super) const fn spec(&self) -> Spec {
-        Spec::of(*self)
-    }
-
     /// The name without the axis: `backlash` of `backlash.X`.
     #[must_use]
     pub const fn family(&self) -> &'static str {
-        self.spec().family
+        Spec::of(*self).family
     }
 
     /// Names of the coefficients, with their unit; the displacement is linear in them.
     #[must_use]
     pub const fn coefficient_names(&self) -> &'static [&'static str] {
-        self.spec().coefficients
+        Spec::of(*self).coefficients
     }
 
     /// Names of the [`super::Shape`] fields the effect uses.
     #[must_use]
     pub const fn shape_names(&self) -> &'static [&'static str] {
-        self.spec().shape
+        Spec::of(*self).shape
     }
 
     /// True where the effect is a fault of the measuring instrument, not of the machine.
     #[must_use]
     pub const fn is_instrument(&self) -> bool {
-        matches!(self.spec().origin, Origin::Probe | Origin::Instrument)
+        matches!(Spec::of(*self).origin, Origin::Probe | Origin::Instrument)
     }
 
     /// True where the error depends on the direction of motion.
     #[must_use]
     pub const fn depends_on_direction(&self) -> bool {
-        matches!(self.spec().direction, Direction::Matters)
+        matches!(Spec::of(*self).direction, Direction::Matters)
     }
 }

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::spec::Path;
+use super::spec::{Path, Spec};
 use super::{Conditions, EffectGeometry, EffectKind, MissingCondition, Shape, UnknownEffect};
 use crate::{Command, Vector};
 
@@ -237,7 +237,7 @@ impl EffectTerm {
     /// True where the term is linear in the axis commands, so that it never leaves a chord.
     #[must_use]
     pub fn is_linear_in_command(&self) -> bool {
-        match self.kind.spec().path {
+        match Spec::of(self.kind).path {
             Path::Straight => true,
             Path::StraightBelow(count) => self.coefficients.iter().skip(count).all(|c| *c == 0.0),
             Path::Bent => false,

@@ -5,10 +5,13 @@ use std::path::Path;
 use calibration::turning::{Bar, CauseRow, Change, Feature, Stretch, TurnedReading, lathe_causes};
 use diagnostic::{Speaks, Text, both};
 use jobs::diagnose::{File, json};
+use jobs::profile::Loaded;
 use machine_profile::{LatheParts, Profile};
 use measurement_files::{Row, numbered};
 
-use super::{Diagnose, command, summary};
+use super::options::Diagnose;
+use super::report::Facts;
+use super::summary;
 use crate::arguments::Shared;
 use crate::calibrate::codes::{CELL, UNITS, question};
 use crate::calibrate::sources;
@@ -43,14 +46,13 @@ struct Also {
 /// `vpost diagnose PARTS.csv -m LATHE`
 pub(super) fn run(
     arguments: &Diagnose,
-    profile: &Profile,
-    lathe: &LatheParts,
-    hash: &str,
+    whole: &Loaded,
     shared: &Shared,
     messages: &Messages,
 ) -> Result<(), Failure> {
     only_what_a_lathe_has(arguments)?;
-    let Some(measurements) = &arguments.measurements else { return Ok(()) };
+    let profile = &whole.profile;
+    let (Some(measurements), Some(lathe)) = (&arguments.measurements, &profile.lathe) else { return Ok(()) };
     let mut parts = Parts::default();
     parts.read(measurements, profile, &arguments.ignore_column)?;
     let seen = parts.read.rows.len();
@@ -68,12 +70,7 @@ pub(super) fn run(
     });
     let (rows, held) = parts.read.rows.split_at(seen);
     let tailstock_mm = lathe.spindle.tailstock.map(|tailstock| tailstock.at_mm);
-    let found = lathe_causes(rows, held, bar.as_ref(), tailstock_mm).map_err(|error| {
-        question(
-            error.text(),
-            both!("run `vpost profile check` on the profile", "запустите `vpost profile check` для профиля"),
-        )
-    })?;
+    let found = lathe_causes(rows, held, bar.as_ref(), tailstock_mm).map_err(|error| impossible(&error))?;
     // No key of a lathe's profile is an effect's.
     let changes = vec![Vec::new(); found.causes.len()];
     let json = json::text(&found, &changes);
@@ -83,12 +80,18 @@ pub(super) fn run(
     if let Some(path) = &arguments.html {
         let held = arguments.holdout.as_deref().map(read_again).transpose()?;
         let measured = read_again(measurements)?;
-        let facts = command::facts(profile, hash, arguments, shared, &measured, held.as_ref())?;
+        let facts = Facts::new(whole, arguments, shared, &measured, held.as_ref())?;
         let page =
             page::Lathe { found: &found, changes: &changes, rows, parts: &parts.also.parts, facts: &facts };
         file::write(path, page.html(&json, messages.language()).as_bytes())?;
     }
     file::print(summary::text(&found, &changes).in_language(messages.language()).as_bytes())
+}
+
+fn impossible(error: &impl Speaks) -> Failure {
+    let help =
+        both!("run `vpost profile check` on the profile", "запустите `vpost profile check` для профиля");
+    question(error.text(), help)
 }
 
 /// A file that was read, for the page.
@@ -243,13 +246,9 @@ impl Parts {
         let base = base_of(profile, lathe);
         by_effects(&mut self.also.commands, profile, &base, shared)?;
         let stretch = Stretch { low_mm: 0.0, high_mm: 1.0 };
-        let predicted =
-            base.predicted_mm(&Change::default(), stretch, &self.also.commands).map_err(|error| {
-                question(
-                    error.text(),
-                    both!("run `vpost profile check` on it", "запустите для него `vpost profile check`"),
-                )
-            })?;
+        let predicted = base
+            .predicted_mm(&Change::default(), stretch, &self.also.commands)
+            .map_err(|error| impossible(&error))?;
         for (row, diameter_mm) in self.read.rows.iter_mut().zip(predicted) {
             row.gap_mm -= 0.5 * diameter_mm;
         }

@@ -155,13 +155,13 @@ impl<'a> Asked<'a> {
         self.weights.iter().sum::<f64>() / self.weights.len().max(1) as f64
     }
 
-    pub(super) fn weighed(&self, column: DVector<f64>) -> DVector<f64> {
+    pub(super) fn weighed(&self, column: &DVector<f64>) -> DVector<f64> {
         DVector::from_fn(column.len(), |k, _| column[k] / self.weights[k])
     }
 
     /// Every part's own lean, as a clamping makes it.
     pub(super) fn tilts(&self, parts: &[usize]) -> Vec<DVector<f64>> {
-        self.columns.tilts(parts).map(|column| self.weighed(column)).collect()
+        self.columns.tilts(parts).map(|column| self.weighed(&column)).collect()
     }
 
     /// Of the squares that are no noise, those that a model explains beyond another.

@@ -106,7 +106,7 @@ impl Asked<'_> {
             return Diagnosis { sentence, residuals: self.residuals(None), ..suspect };
         }
         let leftovers: Vec<DVector<f64>> =
-            self.columns.leftovers(parts).into_iter().map(|column| self.weighed(column)).collect();
+            self.columns.leftovers(parts).iter().map(|column| self.weighed(column)).collect();
         let all: Vec<DVector<f64>> = everything.iter().chain(&leftovers).cloned().collect();
         let is_judged = self.mixed.freedom(&self.independent(&all)) >= LEAST_FREEDOM;
         let leftover_p = if is_judged { self.p_beside(&leftovers, &everything) } else { 1.0 };

@@ -41,28 +41,22 @@ pub(super) fn meaning(verdict: Verdict) -> Text {
             "Every cause that is told can be nothing else in the list.",
             "Ни одну из названных причин не принять за другую из списка."
         ),
-        Verdict::Ambiguous => {
-            both!(
-                "A cause may be another: do not repair by it yet.",
-                "Причина может быть и другой: чинить по ней рано."
-            )
-        }
-        Verdict::Partial => {
-            both!(
-                "Something is left that no cause explains.",
-                "Остаётся то, чего ни одна причина не объясняет."
-            )
-        }
+        Verdict::Ambiguous => both!(
+            "A cause may be another: do not repair by it yet.",
+            "Причина может быть и другой: чинить по ней рано."
+        ),
+        Verdict::Partial => both!(
+            "Something is left that no cause explains.",
+            "Остаётся то, чего ни одна причина не объясняет."
+        ),
         Verdict::Unknown => both!(
             "Something is there that no cause of the list explains, or unseen parts refute what was found.",
             "Есть то, чего ни одна причина из списка не объясняет, или контрольные детали опровергают найденное."
         ),
-        Verdict::NoiseModelSuspect => {
-            both!(
-                "A reading is none: look at it first.",
-                "Одно из показаний неверно: сначала разберитесь с ним."
-            )
-        }
+        Verdict::NoiseModelSuspect => both!(
+            "A reading is none: look at it first.",
+            "Одно из показаний неверно: сначала разберитесь с ним."
+        ),
         Verdict::Underpowered => both!(
             "Too few readings or parts: twelve rows of two parts at least, several places along Z.",
             "Мало показаний или деталей: не меньше двенадцати строк двух деталей, несколько мест вдоль Z."
@@ -192,12 +186,10 @@ pub(super) fn next(causes: &[Found]) -> Option<NextMeasurement> {
             "With time_s filled in, turn one part with a new edge while warm, and the first diameter again.",
             "С заполненным time_s обточите одну деталь новой кромкой на тёплом станке и снова первый диаметр."
         ),
-        Cause::Jaws | Cause::Runout => {
-            both!(
-                "Measure a part between centres, at twelve angles or more.",
-                "Измерьте деталь в центрах, не меньше чем под двенадцатью углами."
-            )
-        }
+        Cause::Jaws | Cause::Runout => both!(
+            "Measure a part between centres, at twelve angles or more.",
+            "Измерьте деталь в центрах, не меньше чем под двенадцатью углами."
+        ),
     };
     let separates = std::iter::once(&open.effect).chain(&open.cannot_be_told_from);
     let separates = separates.map(Text::same).collect();
