@@ -209,7 +209,7 @@ fn pages_of_lathes_open_print_and_fit_a_telephone() {
         (turned(SHAFT, &[]), 5, 4),
         (turned(SHAFT, &russian), 5, 4),
         (pieces(&[]), 4, 1),
-        (diagnosis(-30.0, &russian), 4, 1),
+        (diagnosis(-30.0, &russian), 4, 2),
     ];
     for (report, sections, drawings) in reports {
         opens_prints_and_fits(&mut browser, &report, sections, drawings, 1..8);

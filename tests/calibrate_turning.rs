@@ -120,7 +120,10 @@ fn diagnose_names_a_taper_and_never_a_wear_that_may_be_growth() {
         (Some("AMBIGUOUS"), vec!["tool.wear".to_owned()]),
         "{said}"
     );
-    assert!(said.contains("cannot be told from spindle.growth") && said.contains("measure next"), "{said}");
+    assert!(
+        said.contains("cannot be told from spindle.growth") && said.contains("next    With time_s"),
+        "{said}"
+    );
     let (found, said) = answer(&diagnosed(0.0, 0.0, true));
     assert_eq!((found["verdict"].as_str(), ids(&found).len()), (Some("NO GAP"), 0), "{said}");
     let refused =

@@ -197,12 +197,8 @@ impl Estimate {
         // Bonferroni: as many readings, so many chances.
         let others = self.degrees_of_freedom.map(|free| free.saturating_sub(1));
         let limit = quantile(chance / self.standardised.len() as f64, others);
-        (standardised.abs() > limit).then(|| Outlier {
-            reading,
-            residual: self.residuals[reading],
-            standardised,
-            limit,
-        })
+        let residual = self.residuals[reading];
+        (standardised.abs() > limit).then_some(Outlier { reading, residual, standardised, limit })
     }
 }
 
@@ -289,17 +285,13 @@ fn design(problem: &Problem<'_>, x: &DVector<f64>) -> DMatrix<f64> {
         Jacobian::Exact(columns) => columns(x),
         Jacobian::Constant(matrix) => matrix.clone(),
         Jacobian::Numerical { steps } => {
-            let columns: Vec<DVector<f64>> = (0..x.len())
-                .map(|k| {
-                    let at = |by: f64| {
-                        let mut moved = x.clone();
-                        moved[k] += by;
-                        (problem.forward)(&moved)
-                    };
-                    (at(steps[k]) - at(-steps[k])) / (2.0 * steps[k])
-                })
-                .collect();
-            DMatrix::from_columns(&columns)
+            let at = |k: usize, by: f64| {
+                let mut moved = x.clone();
+                moved[k] += by;
+                (problem.forward)(&moved)
+            };
+            let column = |k: usize| (at(k, steps[k]) - at(k, -steps[k])) / (2.0 * steps[k]);
+            DMatrix::from_columns(&(0..x.len()).map(column).collect::<Vec<_>>())
         }
     }
 }

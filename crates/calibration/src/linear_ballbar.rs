@@ -193,16 +193,7 @@ pub fn calibrate(
         let lengths = DVector::from_iterator(
             readings.len(),
             readings.iter().zip(&arms_mm).zip(&errors).map(|((r, arm), error_mm)| {
-                let plane = planes[r.run];
-                let [u, v] = PLANES[plane];
-                let mut arm = *arm;
-                let half = 0.5 * layout.mismatch[plane].map_or(0.0, |k| x[k]);
-                let stretched = [half * arm[u], -half * arm[v]];
-                arm += error_mm - carried[r.run];
-                let own = layout.setup + 3 * r.run;
-                arm[u] += stretched[0] - x[own];
-                arm[v] += stretched[1] - x[own + 1];
-                arm.norm() + x[own + 2]
+                layout.length_mm(x, r.run, planes[r.run], *arm, error_mm - carried[r.run])
             }),
         );
         *kept = Some((own, errors));
@@ -270,6 +261,18 @@ struct OfPlane {
 }
 
 impl Layout {
+    /// What the bar of a run reads in its plane, by unknowns: its arm as commanded, and by how much that is off.
+    fn length_mm(&self, x: &DVector<f64>, run: usize, plane: usize, mut arm: Vector, off_mm: Vector) -> f64 {
+        let [u, v] = PLANES[plane];
+        let half = 0.5 * self.mismatch[plane].map_or(0.0, |k| x[k]);
+        let stretched = [half * arm[u], -half * arm[v]];
+        arm += off_mm;
+        let own = self.setup + 3 * run;
+        arm[u] += stretched[0] - x[own];
+        arm[v] += stretched[1] - x[own + 1];
+        arm.norm() + x[own + 2]
+    }
+
     /// Every cause that was fitted; of play, in every plane of its axis.
     fn causes(
         &self,

@@ -6,7 +6,8 @@
 
 #![expect(clippy::print_stdout, reason = "with --nocapture the tallies are the figures of docs/diagnosis.md")]
 
-use calibration::turning::{Bar, Cause, CauseRow, LatheDiagnosis, Verdict, lathe_causes};
+use calibration::turning::{Bar, Cause, CauseRow, lathe_causes};
+use gap_diagnosis::{Diagnosis, Verdict};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use turning::Clamping;
@@ -141,6 +142,7 @@ fn turned(fault: Fault, seed: u64) -> (Vec<CauseRow>, Bar) {
                     if is_round { centre.0 * math::cos(angle) + centre.1 * math::sin(angle) } else { 0.0 };
                 let read = um + round.sum::<f64>() + aside + reading_um * noise(&mut dice);
                 rows.push(CauseRow {
+                    line: 0,
                     part,
                     tool: is_named.then_some(tool),
                     z_mm: CHUCK_MM + z,
@@ -180,20 +182,21 @@ struct Tally {
     misled: usize,
 }
 
-fn count(fault: Fault, found: &LatheDiagnosis, tally: &mut Tally) {
+fn count(fault: Fault, found: &Diagnosis, tally: &mut Tally) {
     tally.cases += 1;
     let truth = fault.cause();
-    let told = |cause: Cause| found.causes.iter().any(|own| own.cause == cause);
+    let told = |cause: Cause| found.causes.iter().any(|own| own.effect == cause.id());
     let is_rival = |cause: Cause| {
         let names = |rival: &String| rival.contains(cause.id()) || rival.starts_with("several");
-        found.causes.iter().any(|own| own.rivals.iter().any(names))
+        found.causes.iter().any(|own| own.cannot_be_told_from.iter().any(names))
     };
-    let is_clamping = found.causes.iter().all(|own| own.rivals.iter().any(|rival| rival.contains("clamped")));
+    let is_clamping =
+        found.causes.iter().all(|own| own.cannot_be_told_from.iter().any(|rival| rival.contains("clamped")));
     match found.verdict {
         Verdict::NoGap | Verdict::Underpowered => tally.silent += 1,
         Verdict::Unknown | Verdict::Partial | Verdict::NoiseModelSuspect => tally.unknown += 1,
         Verdict::Named => {
-            let is_right = found.causes.iter().all(|own| Some(own.cause) == truth);
+            let is_right = found.causes.iter().all(|own| Some(own.effect.as_str()) == truth.map(Cause::id));
             if is_right { tally.named += 1 } else { tally.wrong += 1 }
         }
         Verdict::Ambiguous => match truth {
@@ -209,14 +212,19 @@ fn tally(fault: Fault, cases: u64, first: u64) -> Tally {
     for case in 0..cases {
         let seed = first + case;
         let (rows, bar) = turned(fault, seed);
-        let found = lathe_causes(&rows, &[], Some(&bar)).expect("a bar");
+        let found = lathe_causes(&rows, &[], Some(&bar), None).expect("a bar");
         let before = tally;
         count(fault, &found, &mut tally);
         if tally.wrong + tally.misled > before.wrong + before.misled {
             let told: Vec<String> = found
                 .causes
                 .iter()
-                .map(|own| format!("{} {:?} {:?} p {:.1e}", own.cause.id(), own.rivals, own.numbers, own.p))
+                .map(|own| {
+                    format!(
+                        "{} {:?} {:?} p {:.1e}",
+                        own.effect, own.cannot_be_told_from, own.parameters, own.p
+                    )
+                })
                 .collect();
             println!("{fault:?} {seed}: {:?} {told:?}", found.verdict);
         }
@@ -270,6 +278,7 @@ fn rested(fault: Fault, seed: u64) -> Vec<CauseRow> {
                 _ => 2.0 * (f64::from(part) + 1.0 - share),
             };
             rows.push(CauseRow {
+                line: 0,
                 part: usize::from(part),
                 tool: Some(0),
                 z_mm: 100.0 + 50.0 * f64::from(place),
@@ -290,11 +299,13 @@ fn wear_and_growth_are_told_apart_where_the_machine_rests() {
     for (fault, cause) in [(Fault::Wear, Cause::Wear), (Fault::Growth, Cause::Growth)] {
         let mut told = 0;
         for seed in 0..20 {
-            let found = lathe_causes(&rested(fault, seed), &[], None).expect("no bar");
-            let own = found.causes.iter().find(|own| own.cause == cause);
-            let sure = own.is_some_and(|own| own.rivals.is_empty());
+            let found = lathe_causes(&rested(fault, seed), &[], None, None).expect("no bar");
+            let own = found.causes.iter().find(|own| own.effect == cause.id());
+            let sure = own.is_some_and(|own| own.cannot_be_told_from.is_empty());
             let other = found.causes.iter().any(|other| {
-                other.rivals.is_empty() && !matches!(other.cause, Cause::Taper) && other.cause != cause
+                other.cannot_be_told_from.is_empty()
+                    && other.effect != Cause::Taper.id()
+                    && other.effect != cause.id()
             });
             assert!(!other, "{fault:?} {seed}: {found:?}");
             told += u32::from(sure);

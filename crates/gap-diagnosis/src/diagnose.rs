@@ -1,7 +1,7 @@
 //! The whole diagnosis of one file.
 
 use crate::equations::observation::{Measurements, Scalar};
-use crate::judgement::answer::{Diagnosis, Gap, Leftover, Setup, Verdict};
+use crate::judgement::answer::{Diagnosis, Gap, Setup, Verdict};
 use crate::judgement::assembly::Assembly;
 use crate::judgement::unseen::kept_back;
 use crate::options::Options;
@@ -52,24 +52,10 @@ fn too_little(data: &Measurements, scalars: &[Scalar]) -> Option<Diagnosis> {
 #[must_use]
 pub fn underpowered(rows: usize, missing: Vec<Text>) -> Diagnosis {
     let list = Text::join(&missing, "; ");
-    Diagnosis {
-        verdict: Verdict::Underpowered,
-        sentence: both!("Too little was measured: {list}.", "Измерено слишком мало: {list:#}."),
-        gap: Gap { rows, ..Gap::default() },
-        places: Vec::new(),
-        causes: Vec::new(),
-        withheld: None,
-        within: None,
-        setup: Setup::default(),
-        leftover: Leftover::default(),
-        holdout: None,
-        next_measurement: None,
-        outlier_lines: Vec::new(),
-        detectable: Vec::new(),
-        formulas: Vec::new(),
-        notes: missing,
-        residuals: Vec::new(),
-    }
+    let sentence = both!("Too little was measured: {list}.", "Измерено слишком мало: {list:#}.");
+    let gap = Gap { rows, ..Gap::default() };
+    let setup = Some(Setup::default());
+    Diagnosis { setup, notes: missing, ..Diagnosis::new(Verdict::Underpowered, sentence, gap) }
 }
 
 fn moves_rotary(data: &Measurements) -> bool {

@@ -29,4 +29,3 @@ pub use judgement::confounding::{Confounding, confounding};
 pub use options::Options;
 pub use search::formula::Formula;
 pub use words::name::{effect_name, number_name};
-pub use words::remedy::remedy;

@@ -83,6 +83,15 @@ impl<'r> Measured<'r> {
         3 * self.runs
     }
 
+    /// The offsets of the runs, of which these columns were fitted.
+    pub(super) fn offsets_mm(&self, columns: &[usize], values: &DVector<f64>) -> Vec<Vector> {
+        let mut all = vec![Vector::zeros(); self.runs];
+        for (column, value) in columns.iter().zip(values.iter()) {
+            all[column / 3][column % 3] = *value;
+        }
+        all
+    }
+
     pub(super) fn comes_from_both(&self, axis: Axis) -> bool {
         let sides = || self.rows.iter().map(|row| row.turning[axis.direction()]);
         sides().any(|side| side > 0) && sides().any(|side| side < 0)

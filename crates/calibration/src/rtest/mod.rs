@@ -191,10 +191,7 @@ pub fn calibrate(
     let written = tables::machine(base, &found, &tables);
     let rms_mm = [measured.rms_mm(description)?, measured.rms_mm(&written)?];
     let field_u95_mm = tables::field_u95_mm(rows, base, &axes, &found, &covariance, factor)?;
-    let mut offsets_mm = vec![Vector::zeros(); runs.len()];
-    for (k, column) in sweep.kept.iter().take(kept_offsets).enumerate() {
-        offsets_mm[column / 3][column % 3] = estimate.values[k];
-    }
+    let offsets_mm = measured.offsets_mm(&sweep.kept[..kept_offsets], &estimate.values);
     Ok(RotaryTables {
         axes,
         still,

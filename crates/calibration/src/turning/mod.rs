@@ -14,7 +14,7 @@ mod rows;
 mod strata;
 mod term;
 
-pub use causes::{Bar, Cause, CauseRow, FoundCause, LatheDiagnosis, Number, Unseen, Verdict, lathe_causes};
+pub use causes::{Bar, Cause, CauseRow, cause_name, lathe_causes};
 pub use equations::{Change, Stretch, TurningBase};
 pub use estimate::{FoundTerm, HeldOut, LEVEL, Offset, TurningCalibration, calibrate};
 pub use rows::{Feature, TurnedReading};

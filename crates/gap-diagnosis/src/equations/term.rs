@@ -71,27 +71,15 @@ impl Term {
                 let tip = row.command.linear_mm + row.command.tool_mm;
                 unit(*about).cross(&(1e-3 * (tip - Vector::from(*centre_mm))))
             }
-            Self::InstrumentShift { instrument, axis } => {
-                if row.instrument == Some(*instrument) {
-                    unit(*axis)
-                } else {
-                    Vector::zeros()
-                }
-            }
+            Self::InstrumentShift { instrument, axis } if row.instrument == Some(*instrument) => unit(*axis),
+            Self::UnknownApproach(axis) if row.command.direction[*axis] == 0 => unit(*axis),
+            Self::InstrumentShift { .. } | Self::UnknownApproach(_) | Self::BarLength => Vector::zeros(),
             Self::StationFrame { station, component } => match (row.station == Some(*station), component) {
                 (false, _) => Vector::zeros(),
                 (true, 0..=2) => unit(*component),
                 (true, _) => unit(component - 3).cross(&geometry.nominal_tip_mm(&row.command)) * 1e-3,
             },
-            Self::BarLength => Vector::zeros(),
             Self::Order { component, anew } => unit(*component) * row.order[usize::from(*anew)],
-            Self::UnknownApproach(axis) => {
-                if row.command.direction[*axis] == 0 {
-                    unit(*axis)
-                } else {
-                    Vector::zeros()
-                }
-            }
             Self::Effect { kind, index, shape } => kind
                 .unit_displacement_mm(*index, shape, &row.command, &row.conditions, geometry)
                 .map_or_else(|_| Vector::zeros(), |v| v * 1e3),
@@ -116,6 +104,11 @@ impl Term {
             Self::Order { .. } => Some(EffectKind::InstrumentDrift),
             _ => None,
         }
+    }
+
+    /// The non-linear numbers of an effect.
+    pub(crate) fn shape(&self) -> Option<Shape> {
+        if let Self::Effect { shape, .. } = self { Some(*shape) } else { None }
     }
 
     /// The axis on whose position and direction of approach, and the rotary axes, alone the displacement depends; `None`

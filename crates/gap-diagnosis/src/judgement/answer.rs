@@ -4,6 +4,8 @@ use diagnostic::{Text, both};
 use machine_model::effects::{EffectKind, EffectTerm};
 use machine_model::{Vector, Volume};
 
+use crate::equations::align::rms;
+
 /// The verdicts of the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
@@ -72,6 +74,18 @@ pub struct Gap {
     pub max_um: f64,
     /// Standard deviation of the noise of one reading.
     pub noise_um: f64,
+}
+
+impl Gap {
+    /// Of what was seen of each row, µm.
+    #[must_use]
+    pub fn new(mut lengths_um: Vec<f64>, noise_um: f64) -> Self {
+        let rms_um = rms(&lengths_um);
+        lengths_um.sort_by(f64::total_cmp);
+        let at = |q: f64| ((lengths_um.len() as f64 - 1.0) * q).round() as usize;
+        let quantile = |q: f64| lengths_um.get(at(q)).copied().unwrap_or(0.0);
+        Self { rows: lengths_um.len(), rms_um, p95_um: quantile(0.95), max_um: quantile(1.0), noise_um }
+    }
 }
 
 /// A place where the gap is larger than elsewhere.
@@ -165,8 +179,8 @@ pub struct Lookalike {
 /// One cause.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cause {
-    /// The effect with its numbers, ready for a profile.
-    pub term: EffectTerm,
+    /// The effect with its numbers, ready for a profile; `None` where profiles hold it by other keys, as of a lathe.
+    pub term: Option<EffectTerm>,
     /// Its id.
     pub effect: String,
     /// What it is, in words, with its size.
@@ -187,23 +201,34 @@ pub struct Cause {
     pub rms_before_um: f64,
     /// RMS after it, µm.
     pub rms_after_um: f64,
-    /// Predicted shrinkage by this cause and those before it, on the hold-out commands or on the rows.
-    pub shrink_predicted: Shrinkage,
+    /// Predicted shrinkage by this cause and those before it, on the hold-out commands or on the rows; where it is.
+    pub shrink_predicted: Option<Shrinkage>,
     /// What to do.
     pub remedy: Text,
 }
 
 impl Cause {
+    /// Of what a profile may hold as an effect.
+    #[must_use]
+    pub fn kind(&self) -> Option<EffectKind> {
+        self.term.as_ref().map(EffectTerm::kind)
+    }
+
+    /// True where it is a fault of the measuring instrument.
+    pub(crate) fn is_instrument(&self) -> bool {
+        self.kind().is_some_and(|kind| kind.is_instrument())
+    }
+
     /// A play below zero: directions of approach or signs that are the wrong way round, or an over-compensated reversal.
     pub(crate) fn is_turned_play(&self) -> bool {
-        matches!(self.term.kind(), EffectKind::Backlash(_))
+        matches!(self.kind(), Some(EffectKind::Backlash(_)))
             && self.parameters.first().is_some_and(|half_width| half_width.value < 0.0)
     }
 
     /// True where a fault of the instrument could have shown as well; one that is such a fault stands by its own name.
     fn may_be_the_instrument(&self) -> bool {
         let mut rivals = self.cannot_be_told_from.iter().filter_map(|id| id.parse::<EffectKind>().ok());
-        !self.term.kind().is_instrument() && rivals.any(|kind| kind.is_instrument())
+        !self.is_instrument() && rivals.any(|kind| kind.is_instrument())
     }
 }
 
@@ -291,13 +316,23 @@ pub struct Holdout {
     pub(crate) worse: Option<WorseRun>,
 }
 
+impl Holdout {
+    /// Of so many rows, with nothing said of single ones.
+    #[must_use]
+    pub fn new(rows: usize, rms_before_um: f64, rms_after_um: f64) -> Self {
+        let shrink = if rms_before_um > 0.0 { 1.0 - rms_after_um / rms_before_um } else { 0.0 };
+        let (steps, residuals) = (Vec::new(), Vec::new());
+        Self { rows, rms_before_um, rms_after_um, shrink, steps, residuals, worse: None }
+    }
+}
+
 /// What would settle it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NextMeasurement {
     /// In words.
     pub text: Text,
-    /// The pair it separates.
-    pub separates: [Text; 2],
+    /// What it separates: a pair, mostly.
+    pub separates: Vec<Text>,
     /// How far apart they would lie, standard deviations; 0 where nothing is to be separated yet.
     pub expected_sigma: f64,
     /// Its rows, readings to be filled in: each run goes along its line and back.
@@ -343,8 +378,8 @@ pub struct Diagnosis {
     pub withheld: Option<Text>,
     /// The part of the volume to which a correction is limited.
     pub within: Option<Volume>,
-    /// Set-up.
-    pub setup: Setup,
+    /// Set-up, where there is a measuring frame.
+    pub setup: Option<Setup>,
     /// Rest.
     pub leftover: Leftover,
     /// Unseen points.
@@ -364,12 +399,35 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
+    /// A verdict that needs no causes.
+    #[must_use]
+    pub fn new(verdict: Verdict, sentence: Text, gap: Gap) -> Self {
+        Self {
+            verdict,
+            sentence,
+            gap,
+            places: Vec::new(),
+            causes: Vec::new(),
+            withheld: None,
+            within: None,
+            setup: None,
+            leftover: Leftover::default(),
+            holdout: None,
+            next_measurement: None,
+            outlier_lines: Vec::new(),
+            detectable: Vec::new(),
+            formulas: Vec::new(),
+            notes: Vec::new(),
+            residuals: Vec::new(),
+        }
+    }
+
     /// The causes that a profile may take: no unseen row speaks against them, they do no harm under any explanation that the
     /// rows do not refute, and what a fault of the instrument could have shown as well is none of them.
     pub fn corrections(&self) -> impl Iterator<Item = &Cause> {
         let doubted = self.withheld.is_some();
         // A drift in the order of the rows has no number that a profile could hold.
-        let holds = |cause: &Cause| cause.term.coefficients().any(|(_, value)| value != 0.0);
+        let holds = |cause: &Cause| cause.term.iter().any(|term| term.coefficients().next().is_some());
         let written = move |cause: &&Cause| !doubted && !cause.may_be_the_instrument() && holds(cause);
         self.causes.iter().filter(written)
     }

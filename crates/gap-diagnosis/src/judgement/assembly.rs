@@ -198,18 +198,7 @@ impl<'a> Assembly<'a> {
 
     /// Size of the gap that is left of every equation, by rows.
     pub(crate) fn size(&self, gap_um: &[f64]) -> Gap {
-        let mut lengths = row_lengths(&self.model.scalars, gap_um);
-        let rms_um = rms(&lengths);
-        lengths.sort_by(f64::total_cmp);
-        let quantile =
-            |q: f64| lengths.get(((lengths.len() as f64 - 1.0) * q).round() as usize).copied().unwrap_or(0.0);
-        Gap {
-            rows: lengths.len(),
-            rms_um,
-            p95_um: quantile(0.95),
-            max_um: quantile(1.0),
-            noise_um: self.noise_variance().sqrt(),
-        }
+        Gap::new(row_lengths(&self.model.scalars, gap_um), self.noise_variance().sqrt())
     }
 
     /// What the verdict depends on, unseen rows not yet asked; `corner_um`: how uncertain the causes are in the corners of the
@@ -228,7 +217,7 @@ impl<'a> Assembly<'a> {
             runs: self.data.runs.len(),
             visible: model.library.candidates.len(),
             causes: causes.len(),
-            instrument_causes: causes.iter().filter(|c| c.term.kind().is_instrument()).count(),
+            instrument_causes: causes.iter().filter(|c| c.is_instrument()).count(),
             ambiguous: self.ordered.iter().any(|r| !self.told(r).is_empty()),
             phi: leftover.phi,
             lack_of_fit_p: leftover.lack_of_fit_p,

@@ -86,7 +86,7 @@ pub(crate) fn next_measurement(
         );
         return Some(NextMeasurement {
             text,
-            separates: [cause, rival].map(Text::same),
+            separates: [cause, rival].map(Text::same).to_vec(),
             expected_sigma: sigmas[0],
             rows: line.rows,
         });
@@ -98,7 +98,7 @@ pub(crate) fn next_measurement(
         "Измерьте {what:#}: это отличит {cause} от {names}."
     );
     let expected_sigma = told.iter().map(|r| sigmas[*r]).fold(f64::INFINITY, f64::min);
-    let separates = [cause, name(rivals[*first])].map(Text::same);
+    let separates = [cause, name(rivals[*first])].map(Text::same).to_vec();
     Some(NextMeasurement { text, separates, expected_sigma, rows: line.rows })
 }
 
@@ -113,7 +113,7 @@ pub(crate) fn once_more(data: &Measurements) -> Option<NextMeasurement> {
         what = line.text
     );
     let separates =
-        [Text::pair("what has no name", "то, у чего нет названия,"), Text::pair("chance", "случайность")];
+        vec![Text::pair("what has no name", "то, у чего нет названия,"), Text::pair("chance", "случайность")];
     // Back and forth from one end, then from the other.
     let (there, back) = line.rows.split_at(line.rows.len() / 2);
     let again = back.iter().chain(there).map(|row| Row { run: row.run + 1, ..*row });

@@ -34,7 +34,7 @@ impl Assembly<'_> {
         let rows = row_lengths(&scalars, &gaps[0]).len();
         let last = &gaps[self.ordered.len()];
         let worse = worse_run(holdout, &scalars, &gaps[0], last, self.model.caution.as_one());
-        Holdout { worse, ..finished(rows, sizes[0], sizes[self.ordered.len()], steps, residuals) }
+        Holdout { worse, steps, residuals, ..Holdout::new(rows, sizes[0], sizes[self.ordered.len()]) }
     }
 
     /// Lengths alone cannot be aligned: they are taken in the measuring frame that was found, its zero first (the
@@ -76,7 +76,7 @@ impl Assembly<'_> {
                 after_um: *after,
             })
             .collect();
-        finished(errors[0].len(), sizes[0], sizes[last], steps, residuals)
+        Holdout { steps, residuals, ..Holdout::new(errors[0].len(), sizes[0], sizes[last]) }
     }
 
     /// What some unseen rows say, in units of what noise alone would leave there.
@@ -240,17 +240,6 @@ fn worse_run(
         counts.then_some(worse)
     });
     worse.max_by(|a, b| (a.after_um / a.before_um).total_cmp(&(b.after_um / b.before_um)))
-}
-
-fn finished(
-    rows: usize,
-    rms_before_um: f64,
-    rms_after_um: f64,
-    steps: Vec<Step>,
-    residuals: Vec<Residual>,
-) -> Holdout {
-    let shrink = if rms_before_um > 0.0 { 1.0 - rms_after_um / rms_before_um } else { 0.0 };
-    Holdout { rows, rms_before_um, rms_after_um, shrink, steps, residuals, worse: None }
 }
 
 /// Two states of the same equations.

@@ -56,55 +56,48 @@ impl Library {
     }
 
     fn forms(&mut self, kind: EffectKind, seen: &Seen) -> Vec<Variant> {
-        let travels = |a: usize| seen.sampling[a].range_mm.1 - seen.sampling[a].range_mm.0 > 1e-6;
+        if !seen.shows(kind) {
+            return Vec::new();
+        }
         let none = Shape::default();
         match kind {
-            EffectKind::Scale(a) if travels(a) => self.selections(kind, none, &[&[0]]),
-            EffectKind::Squareness(a, b) if travels(a) && travels(b) => self.selections(kind, none, &[&[0]]),
-            EffectKind::Backlash(a) | EffectKind::LostMotion { axis: a, .. } if seen.direction[a] => {
+            EffectKind::Scale(_)
+            | EffectKind::Squareness(..)
+            | EffectKind::ServoMismatch(..)
+            | EffectKind::Rotary { .. }
+            | EffectKind::SpindleTilt(_) => self.selections(kind, none, &[&[0]]),
+            EffectKind::Backlash(a) | EffectKind::LostMotion { axis: a, .. } => {
                 self.selections(kind, seen.interval(a), &[&[0], &[0, 1], &[0, 1, 2, 3]])
             }
-            EffectKind::Thermal(a) if seen.temperature[a] && travels(a) => {
-                self.selections(kind, none, &[&[0, 1], &[0], &[0, 1, 2]])
-            }
+            EffectKind::Thermal(_) => self.selections(kind, none, &[&[0, 1], &[0], &[0, 1, 2]]),
             EffectKind::Warmup(_) => self.warmup(kind, seen),
-            EffectKind::Positioning(a) | EffectKind::Straightness { axis: a, .. } if travels(a) => {
+            EffectKind::Positioning(a) | EffectKind::Straightness { axis: a, .. } => {
                 self.curve(kind, a, seen)
             }
-            EffectKind::Angular { axis: a, about } if travels(a) => self.angle(kind, a, about, seen),
-            EffectKind::Sag(a) if travels(a) => self.sag(kind, a, seen),
+            EffectKind::Angular { axis: a, about } => self.angle(kind, a, about, seen),
+            EffectKind::Sag(a) => self.sag(kind, a, seen),
             // With two loads a line and a parabola can be any two values: a bend needs three. A lag bent over
             // the feed could be a backlash, so lags stay straight.
-            EffectKind::Load(_) if seen.load => {
+            EffectKind::Load(_) => {
                 self.selections(kind, none, if seen.loads > 2 { &[&[0], &[0, 1]] } else { &[&[0]] })
             }
-            EffectKind::ServoLag(a) if seen.feed && seen.direction[a] => {
-                self.selections(kind, none, &[&[0], &[1]])
-            }
-            EffectKind::ServoMismatch(a, b) if seen.feed && seen.direction[a] && seen.direction[b] => {
-                self.selections(kind, none, &[&[0]])
-            }
-            EffectKind::Rotary { axis, .. } if seen.rotary[axis] => self.selections(kind, none, &[&[0]]),
-            EffectKind::Eccentricity(axis) if seen.rotary[axis] => {
-                self.selections(kind, none, &[&[0, 1], &[0, 1, 2, 3, 4, 5]])
-            }
-            EffectKind::ProbeLobing if seen.probed => {
-                self.selections(kind, none, &[&[0, 1], &[0, 1, 4], &[0, 1, 2, 3, 4]])
-            }
-            EffectKind::InstrumentDrift if seen.time.is_some() => {
+            EffectKind::ServoLag(_) => self.selections(kind, none, &[&[0], &[1]]),
+            EffectKind::Eccentricity(_) => self.selections(kind, none, &[&[0, 1], &[0, 1, 2, 3, 4, 5]]),
+            EffectKind::ProbeLobing => self.selections(kind, none, &[&[0, 1], &[0, 1, 4], &[0, 1, 2, 3, 4]]),
+            EffectKind::InstrumentDrift => {
                 let lists: [&[usize]; 8] =
                     [&[0, 1, 2], &[0], &[1], &[2], &[0, 3], &[1, 4], &[2, 5], &[0, 1, 2, 3, 4, 5]];
                 self.selections(kind, none, &lists)
             }
             EffectKind::Step(_) => self.steps(kind, seen),
-            EffectKind::Local(a) if travels(a) => self.places(kind, &seen.sampling[a]),
+            EffectKind::Local(a) => self.places(kind, &seen.sampling[a]),
             EffectKind::Spike(a) => SPIKES_MM
                 .into_iter()
-                .filter(|width| seen.direction[a] && *width >= seen.turns_mm[a])
+                .filter(|width| *width >= seen.turns_mm[a])
                 .flat_map(|width_mm| self.selections(kind, Shape { width_mm, ..Shape::default() }, &[&[0]]))
                 .collect(),
             // With one feed on one radius it is a scale of all axes that move.
-            EffectKind::Contraction if seen.curved => {
+            EffectKind::Contraction => {
                 let mut forms =
                     self.selections(kind, none, &[&[0], &[1], &[2], &[3], &[1, 2], &[1, 3], &[2, 3]]);
                 forms.iter_mut().for_each(|form| {
@@ -113,10 +106,10 @@ impl Library {
                 });
                 forms
             }
-            EffectKind::SpindleTilt(_) if seen.tools => self.selections(kind, none, &[&[0]]),
-            EffectKind::Tracker(2 | 3) if seen.station => self.selections(kind, none, &[&[0, 1]]),
-            EffectKind::Tracker(_) if seen.station => self.selections(kind, none, &[&[0]]),
-            _ => Vec::new(),
+            EffectKind::Tracker(2 | 3) => self.selections(kind, none, &[&[0, 1]]),
+            EffectKind::Tracker(_) => self.selections(kind, none, &[&[0]]),
+            // The search proposes them.
+            EffectKind::Pitch(_) | EffectKind::Joint(_) => Vec::new(),
         }
     }
 

@@ -51,6 +51,35 @@ impl Seen {
         })
     }
 
+    /// True where the rows vary in what an effect depends on.
+    pub(super) fn shows(&self, kind: EffectKind) -> bool {
+        let travels = |a: usize| self.sampling[a].range_mm.1 - self.sampling[a].range_mm.0 > 1e-6;
+        match kind {
+            EffectKind::Scale(a)
+            | EffectKind::Positioning(a)
+            | EffectKind::Straightness { axis: a, .. }
+            | EffectKind::Angular { axis: a, .. }
+            | EffectKind::Sag(a)
+            | EffectKind::Local(a)
+            | EffectKind::Pitch(a)
+            | EffectKind::Joint(a) => travels(a),
+            EffectKind::Squareness(a, b) => travels(a) && travels(b),
+            EffectKind::Backlash(a) | EffectKind::LostMotion { axis: a, .. } | EffectKind::Spike(a) => {
+                self.direction[a]
+            }
+            EffectKind::Thermal(a) => self.temperature[a] && travels(a),
+            EffectKind::Warmup(_) | EffectKind::Step(_) | EffectKind::InstrumentDrift => self.time.is_some(),
+            EffectKind::Load(_) => self.load,
+            EffectKind::ServoLag(a) => self.feed && self.direction[a],
+            EffectKind::ServoMismatch(a, b) => self.feed && self.direction[a] && self.direction[b],
+            EffectKind::Rotary { axis, .. } | EffectKind::Eccentricity(axis) => self.rotary[axis],
+            EffectKind::ProbeLobing => self.probed,
+            EffectKind::Contraction => self.curved,
+            EffectKind::SpindleTilt(_) => self.tools,
+            EffectKind::Tracker(_) => self.station,
+        }
+    }
+
     /// A shape over the whole of an axis.
     pub(super) fn interval(&self, axis: usize) -> Shape {
         let (from_mm, to_mm) = self.sampling[axis].range_mm;

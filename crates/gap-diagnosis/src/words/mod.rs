@@ -1,8 +1,8 @@
 //! The answer in words.
 
 pub(crate) mod cause;
+mod effect;
 pub(crate) mod name;
 pub(crate) mod notes;
-pub(crate) mod remedy;
 pub(crate) mod report;
 pub(crate) mod sentence;

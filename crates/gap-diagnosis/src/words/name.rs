@@ -1,7 +1,9 @@
 //! Effects and their numbers by name, for people who do not type them.
 
 use diagnostic::{Text, both};
-use machine_model::effects::{EffectKind, TRACKER};
+use machine_model::effects::EffectKind;
+
+use crate::words::effect::{self, FAULTS};
 
 /// A name of an effect that fits beside a bar: in English its id.
 ///
@@ -18,39 +20,11 @@ pub fn effect_name(kind: &EffectKind) -> Text {
     let id = kind.to_string();
     let of = id.split_once('.').map_or("", |(_, of)| of);
     let russian = match kind {
-        EffectKind::Scale(_) => "масштаб",
-        EffectKind::Thermal(_) => "тепловое расширение",
-        EffectKind::Warmup(_) => "прогрев",
-        EffectKind::Backlash(_) => "люфт",
-        EffectKind::LostMotion { .. } => "мёртвый ход",
-        EffectKind::Squareness(..) => "перпендикулярность",
-        EffectKind::Positioning(_) => "позиционирование",
-        EffectKind::Straightness { .. } => "прямолинейность",
-        EffectKind::Pitch(_) => "шаг винта",
-        EffectKind::Angular { .. } => "угол",
-        EffectKind::Sag(_) => "провисание",
-        EffectKind::Load(_) => "прогиб от нагрузки",
-        EffectKind::ServoLag(_) => "отставание привода",
-        EffectKind::ServoMismatch(..) => "разница приводов",
-        EffectKind::Rotary { .. } => "положение оси",
-        EffectKind::Eccentricity(_) => "эксцентриситет",
-        EffectKind::ProbeLobing => "направление щупа",
-        EffectKind::InstrumentDrift => "дрейф прибора",
-        EffectKind::Step(_) => "скачок",
-        EffectKind::Local(_) => "местный дефект",
-        EffectKind::Joint(_) => "стык направляющих",
-        EffectKind::Spike(_) => "выброс при реверсе",
-        EffectKind::Contraction => "сжатие окружностей",
-        EffectKind::SpindleTilt(_) => "наклон шпинделя",
-        EffectKind::Tracker(fault) => return Text::new(id, format!("трекер: {}", FAULTS[*fault])),
+        EffectKind::Tracker(fault) => format!("трекер: {}", FAULTS[*fault][0]),
+        other => format!("{} {of}", effect::of(*other).name).trim_end().to_owned(),
     };
-    let russian = format!("{russian} {of}").trim_end().to_owned();
     Text::new(id, russian)
 }
-
-/// What a tracker reads wrong, in the order of [`TRACKER`].
-const FAULTS: [&str; TRACKER.len()] =
-    ["масштаб", "нуль дальности", "круг азимута", "круг угла места", "ось качания", "коллимация"];
 
 /// The units behind the names of numbers, the longest first.
 static UNITS: [(&str, Text); 19] = [
@@ -76,7 +50,8 @@ static UNITS: [(&str, Text); 19] = [
 ];
 
 /// Words of names, in Russian.
-const WORDS: [(&str, &str); 32] = [
+const WORDS: [(&str, &str); 33] = [
+    ("wave", "волна"),
     ("taper", "конусность"),
     ("force", "сила"),
     ("wear", "износ"),

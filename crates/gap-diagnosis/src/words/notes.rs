@@ -149,9 +149,8 @@ impl Assembly<'_> {
                 Text::join(&beyond, ", ")
             ));
         }
-        if let Some(open) = causes.iter().find(|c| {
-            !c.cannot_be_told_from.is_empty() && c.shrink_predicted.high - c.shrink_predicted.low > 0.2
-        }) {
+        let is_wide = |c: &&Cause| c.shrink_predicted.is_some_and(|shrink| shrink.high - shrink.low > 0.2);
+        if let Some(open) = causes.iter().filter(is_wide).find(|c| !c.cannot_be_told_from.is_empty()) {
             notes.push(both!(
                 "Whether {} or {} is the cause decides how far the gap shrinks on the hold-out: settle that before correcting there.",
                 "От того, {} причина или {}, зависит, насколько уменьшится расхождение на контрольных измерениях: выясните это, прежде чем исправлять там.",

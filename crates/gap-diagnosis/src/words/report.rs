@@ -14,7 +14,7 @@ use crate::judgement::verdict::{Evidence, Unseen, verdict};
 use crate::options::Options;
 use crate::search::formula::formulas;
 use crate::words::cause::{DO_NOT_ACT, NO_NAME_YET, NO_PLAY, TURNED};
-use crate::words::remedy::remedy;
+use crate::words::effect;
 use crate::words::sentence::sentence;
 
 /// What the rows that were fitted say, before others are asked.
@@ -44,7 +44,7 @@ impl Assembly<'_> {
         let named = matches!(verdict(&evidence), Verdict::Named | Verdict::Ambiguous | Verdict::Partial);
         evidence.unseen = match (holdout, &held) {
             (Some(data), Some(held)) => {
-                let promised = causes.last().map(|c| c.shrink_predicted);
+                let promised = causes.last().and_then(|c| c.shrink_predicted);
                 let pooled = self.unseen(data, held.rms_before_um, held.rms_after_um, promised);
                 let open = !fine && causes.is_empty() && !pooled.shows_a_gap();
                 Some(Unseen { worse: held.worse, alone: open && gap_of_its_own(data, options), ..pooled })
@@ -100,7 +100,7 @@ impl Assembly<'_> {
             causes,
             withheld,
             within,
-            setup: self.setup(),
+            setup: Some(self.setup()),
             leftover,
             holdout: held.filter(|_| !unsure),
             outlier_lines: self.model.outliers.iter().map(|r| data.rows[*r].line).collect(),
@@ -136,7 +136,7 @@ impl Assembly<'_> {
             let kind = self.model.library.kind(ranked.part);
             let rms_after_um = rms(&row_lengths(&self.model.scalars, &self.gap_after(index + 1)));
             let mut cause = Cause {
-                term: self.term(ranked.place),
+                term: Some(self.term(ranked.place)),
                 effect: kind.to_string(),
                 words: self.words(ranked.place),
                 parameters: self.parameters(ranked.place),
@@ -147,8 +147,8 @@ impl Assembly<'_> {
                 nearest: ranked.nearest(),
                 rms_before_um,
                 rms_after_um,
-                shrink_predicted: self.shrink(index + 1, holdout),
-                remedy: remedy(kind),
+                shrink_predicted: Some(self.shrink(index + 1, holdout)),
+                remedy: effect::of(kind).remedy.clone(),
             };
             if cause.is_turned_play() {
                 cause.remedy = NO_PLAY;

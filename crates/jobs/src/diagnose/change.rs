@@ -64,10 +64,10 @@ fn unit_text(unit: &str) -> Text {
 /// Nothing for faults of the instrument, which are none of the machine.
 #[must_use]
 pub fn of(cause: &Cause, profile: &Profile) -> Vec<Change> {
-    let kind = cause.term.kind();
-    if kind.is_instrument() {
+    let Some(term) = cause.term.as_ref().filter(|term| !term.kind().is_instrument()) else {
         return Vec::new();
-    }
+    };
+    let kind = term.kind();
     let [first, ..] = kind.coefficient_names() else { return Vec::new() };
     let change = |(name, by): (&str, f64)| {
         let entered = entered(profile, &cause.effect, name);
@@ -87,7 +87,7 @@ pub fn of(cause: &Cause, profile: &Profile) -> Vec<Change> {
             },
         }
     };
-    cause.term.coefficients().map(change).collect()
+    term.coefficients().map(change).collect()
 }
 
 /// A key of the profile, outside `[[effect]]`, that holds the first coefficient of an effect.

@@ -45,13 +45,13 @@ pub fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
             .collect(),
         causes: d.causes.iter().zip(changes).map(|(c, changes)| cause(c, changes)).collect(),
         withheld: d.withheld.as_ref().map(Text::english),
-        setup: json!({
-            "shift_um": d.setup.shift_um.map(round),
-            "rotation_urad": d.setup.rotation_urad.map(round),
-            "run_offsets_um": d.setup.run_offsets_um.iter()
-                .map(|(run, o)| (run.clone(), json!(o.map(round)))).collect::<Map<String, Value>>(),
-            "run_rotations_urad": d.setup.run_rotations_urad.iter()
-                .map(|(run, o)| (run.clone(), json!(o.map(round)))).collect::<Map<String, Value>>(),
+        setup: d.setup.as_ref().map_or(Value::Null, |setup| {
+            json!({
+                "shift_um": setup.shift_um.map(round),
+                "rotation_urad": setup.rotation_urad.map(round),
+                "run_offsets_um": by_run(&setup.run_offsets_um),
+                "run_rotations_urad": by_run(&setup.run_rotations_urad),
+            })
         }),
         leftover: json!({
             "rms_um": round(d.leftover.rms_um), "phi": round(d.leftover.phi),
@@ -84,6 +84,10 @@ pub fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
     let mut text = serde_json::to_string_pretty(&document).expect("plain values always serialise");
     text.push('\n');
     text
+}
+
+fn by_run(all: &[(String, [f64; 3])]) -> Map<String, Value> {
+    all.iter().map(|(run, values)| (run.clone(), json!(values.map(round)))).collect()
 }
 
 /// JSON is English in every language.
@@ -133,11 +137,9 @@ fn cause(c: &Cause, changes: &[Change]) -> Value {
         })).collect::<Vec<_>>(),
         "rms_before_um": round(c.rms_before_um),
         "rms_after_um": round(c.rms_after_um),
-        "shrink_predicted": {
-            "low": round(c.shrink_predicted.low),
-            "mid": round(c.shrink_predicted.mid),
-            "high": round(c.shrink_predicted.high),
-        },
+        "shrink_predicted": c.shrink_predicted.map(|shrink| json!({
+            "low": round(shrink.low), "mid": round(shrink.mid), "high": round(shrink.high),
+        })),
         "remedy": c.remedy.english(),
         "changes": changes,
     })

@@ -1,6 +1,6 @@
 //! How far the displacement by one effect can leave its chord: equation (24) of `docs/equations.md`.
 
-use super::basis::curve_order;
+use super::spec::curve_order;
 use super::{Conditions, EffectKind, EffectTerm};
 use crate::{Command, Move, Range, Tilt, Vector};
 

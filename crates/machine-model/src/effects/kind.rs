@@ -146,62 +146,10 @@ impl EffectKind {
         kinds
     }
 
-    /// The name without the axis: `backlash` of `backlash.X`.
-    #[must_use]
-    pub const fn family(&self) -> &'static str {
-        match self {
-            Self::Scale(_) => "scale",
-            Self::Thermal(_) => "thermal",
-            Self::Warmup(_) => "warmup",
-            Self::Backlash(_) => "backlash",
-            Self::LostMotion { .. } => "lost-motion",
-            Self::Squareness(..) => "squareness",
-            Self::Positioning(_) => "positioning",
-            Self::Straightness { .. } => "straightness",
-            Self::Pitch(_) => "pitch",
-            Self::Angular { .. } => "angular",
-            Self::Sag(_) => "sag",
-            Self::Load(_) => "load",
-            Self::ServoLag(_) => "servo-lag",
-            Self::ServoMismatch(..) => "servo-mismatch",
-            Self::Rotary { .. } => "rotary",
-            Self::Eccentricity(_) => "eccentricity",
-            Self::ProbeLobing => "probe-lobing",
-            Self::InstrumentDrift => "instrument-drift",
-            Self::Step(_) => "step",
-            Self::Local(_) => "local",
-            Self::Joint(_) => "joint",
-            Self::Spike(_) => "spike",
-            Self::Contraction => "contraction",
-            Self::SpindleTilt(_) => "spindle-tilt",
-            Self::Tracker(_) => "tracker",
-        }
-    }
-
-    /// True where the effect is a fault of the measuring instrument, not of the machine.
-    #[must_use]
-    pub const fn is_instrument(&self) -> bool {
-        matches!(self, Self::ProbeLobing | Self::InstrumentDrift | Self::Tracker(_))
-    }
-
     /// True where the coefficients can only be positive: a ram droops, it does not rise.
     #[must_use]
     pub const fn is_one_sided(&self) -> bool {
         matches!(self, Self::Sag(_))
-    }
-
-    /// True where the error depends on the direction of motion.
-    #[must_use]
-    pub const fn depends_on_direction(&self) -> bool {
-        matches!(
-            self,
-            Self::Backlash(_)
-                | Self::LostMotion { .. }
-                | Self::ServoLag(_)
-                | Self::ServoMismatch(..)
-                | Self::ProbeLobing
-                | Self::Spike(_)
-        )
     }
 }
 

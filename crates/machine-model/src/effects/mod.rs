@@ -9,6 +9,7 @@ mod basis;
 mod bound;
 mod chain;
 mod kind;
+mod spec;
 mod term;
 
 pub use basis::{Conditions, MissingCondition, Shape, legendre};

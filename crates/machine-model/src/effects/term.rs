@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::spec::{Path, Spec};
 use super::{Conditions, EffectGeometry, EffectKind, MissingCondition, Shape, UnknownEffect};
 use crate::{Command, Vector};
 
@@ -236,24 +237,10 @@ impl EffectTerm {
     /// True where the term is linear in the axis commands, so that it never leaves a chord.
     #[must_use]
     pub fn is_linear_in_command(&self) -> bool {
-        match self.kind {
-            EffectKind::Scale(_)
-            | EffectKind::Squareness(..)
-            | EffectKind::Thermal(_)
-            | EffectKind::Warmup(_)
-            | EffectKind::Load(_)
-            | EffectKind::ServoLag(_)
-            | EffectKind::ServoMismatch(..)
-            | EffectKind::InstrumentDrift
-            | EffectKind::ProbeLobing
-            | EffectKind::SpindleTilt(_)
-            | EffectKind::Spike(_)
-            | EffectKind::Contraction
-            | EffectKind::Step(_) => true,
-            EffectKind::Backlash(_) | EffectKind::LostMotion { .. } => {
-                self.coefficients.iter().skip(2).all(|c| *c == 0.0)
-            }
-            _ => false,
+        match Spec::of(self.kind).path {
+            Path::Straight => true,
+            Path::StraightBelow(count) => self.coefficients.iter().skip(count).all(|c| *c == 0.0),
+            Path::Bent => false,
         }
     }
 }

@@ -1,13 +1,11 @@
 //! `vpost diagnose`: files in, the answer of `gap-diagnosis` out.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use clap::Args;
 use diagnostic::{Text, both};
-use jobs::diagnose::{Books, Diagnosed, File, Measured, Model, of_one_machine};
-use machine_model::EngineId;
+use jobs::diagnose::{Books, Diagnosed, Model, of_one_machine};
 
-use super::lathe::ProfileFile;
+use super::options::Diagnose;
 use super::plan::{self, Form};
 use super::report::{Facts, Report};
 use super::{summary, written};
@@ -17,79 +15,25 @@ use crate::message::{Failure, Messages};
 use crate::roles::Roles;
 use crate::settings::machine;
 
-/// `vpost diagnose`
-#[derive(Debug, Args)]
-pub struct Diagnose {
-    /// Measurements (CSV); - for standard input.
-    #[arg(value_name = "MEASUREMENTS.csv", required_unless_present = "plan")]
-    pub measurements: Option<PathBuf>,
-    /// Print what to measure on this machine, and nothing else: rows to fill in, or the NC program that goes there.
-    #[arg(long, value_enum, value_name = "FORM", conflicts_with = "measurements")]
-    pub plan: Option<Form>,
-    /// Print what to measure next instead of the summary: rows to fill in, or the NC program that goes there.
-    #[arg(long, value_enum, value_name = "FORM", conflicts_with = "plan")]
-    pub next: Option<Form>,
-    /// Measurements that no fit may see: the predicted shrinkage is checked on them.
-    #[arg(long, value_name = "FILE")]
-    pub holdout: Option<PathBuf>,
-    /// Write the diagnosis as JSON.
-    #[arg(long, value_name = "FILE")]
-    pub json: Option<PathBuf>,
-    /// Write the diagnosis as one page for a browser.
-    ///
-    /// Drawings, no network, no script.
-    #[arg(long, value_name = "FILE")]
-    pub html: Option<PathBuf>,
-    /// Write a page in which the error moves.
-    ///
-    /// The rows in space, magnified, cause by cause; HTML with a script of its own.
-    #[arg(long, value_name = "FILE")]
-    pub viewer: Option<PathBuf>,
-    /// Write the profile with the causes added as effects.
-    #[arg(long, value_name = "FILE")]
-    pub write_profile: Option<PathBuf>,
-    /// Column to pass over (repeatable).
-    #[arg(long, value_name = "NAME")]
-    pub ignore_column: Vec<String>,
-    /// Take the columns as named: no look for flipped signs, swapped columns.
-    #[arg(long)]
-    pub as_written: bool,
-    /// Seed of the random relabellings behind the p values of places.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub seed: u64,
-    /// Effect that this machine does not have, or the instrument (repeatable).
-    #[arg(long, value_name = "ID")]
-    pub without: Vec<String>,
-}
-
 /// `vpost diagnose MEASUREMENTS.csv -m PROFILE`
 pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let whole = crate::profile::load(machine(&shared.job)?)?;
-    if let Some(parts) = &whole.profile.lathe {
-        let roles = Roles::default()
-            .reads_all(&both!("the measurements", "измерения"), &arguments.measurements)
-            .reads_all(&both!("the hold-out", "контрольные измерения"), &arguments.holdout)
-            .reads_all(&both!("read by the profile", "файл, который читает профиль"), &whole.files);
-        roles
-            .writes("--json", arguments.json.as_deref())
-            .writes("--html", arguments.html.as_deref())
-            .are_apart()?;
-        let file = ProfileFile { name: file::name(machine(&shared.job)?), hash: whole.hash.to_string() };
-        return super::lathe::run(arguments, &whole.profile, parts, &file, shared, messages);
-    }
-    let model = Model::load(&shared.job)?;
-    let Some(measurements) = &arguments.measurements else {
-        return plan::print(arguments.plan.unwrap_or(Form::Points), &model, shared, messages);
-    };
     Roles::default()
-        .reads(both!("the measurements", "измерения"), measurements)
+        .reads_all(&both!("the measurements", "измерения"), &arguments.measurements)
         .reads_all(&both!("the hold-out", "контрольные измерения"), &arguments.holdout)
-        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &model.files)
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &whole.files)
         .writes("--json", arguments.json.as_deref())
         .writes("--html", arguments.html.as_deref())
         .writes("--viewer", arguments.viewer.as_deref())
         .writes("--write-profile", arguments.write_profile.as_deref())
         .are_apart()?;
+    if whole.profile.lathe.is_some() {
+        return super::lathe::run(arguments, &whole, shared, messages);
+    }
+    let model = Model::load(&shared.job)?;
+    let Some(measurements) = &arguments.measurements else {
+        return plan::print(arguments.plan.unwrap_or(Form::Points), &model, shared, messages);
+    };
     let books = if arguments.as_written { Books::AsWritten } else { Books::Checked };
     let read = |path: &Path, bytes: &[u8]| {
         jobs::diagnose::read(&file::name(path), bytes, &model, &arguments.ignore_column, books)
@@ -108,7 +52,9 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         file::write(path, json.as_bytes())?;
     }
     if arguments.html.is_some() || arguments.viewer.is_some() {
-        let facts = facts(&model, arguments, shared, &measured, holdout.as_ref())?;
+        let held = holdout.as_ref().map(|h| &h.file);
+        let facts = Facts::new(&whole, arguments, shared, &measured.file, held)?;
+        let facts = Facts { seed: Some(arguments.seed), ..facts };
         let page = Report {
             diagnosis: &diagnosis,
             changes: &changes,
@@ -141,31 +87,4 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         Some(form) => plan::print_next(form, &diagnosis, &model, shared, messages),
         None => file::print(summary::text(&diagnosis, &changes).in_language(messages.language()).as_bytes()),
     }
-}
-
-/// What the report says of files, options and machine.
-fn facts(
-    model: &Model,
-    arguments: &Diagnose,
-    shared: &Shared,
-    measured: &Measured,
-    holdout: Option<&Measured>,
-) -> Result<Facts, Failure> {
-    Ok(Facts {
-        machine: model.profile.name.clone(),
-        chain: model.profile.chain().to_string(),
-        origin: crate::origin::Origin::of(&model.profile),
-        profile: File {
-            name: file::name(machine(&shared.job)?),
-            hash: model.hash.to_string(),
-            comments: Vec::new(),
-        },
-        measurements: measured.file.clone(),
-        holdout: holdout.map(|h| h.file.clone()),
-        engine: shared.job.engine().unwrap_or(EngineId::RigidBody).to_string(),
-        seed: arguments.seed,
-        ignored_columns: arguments.ignore_column.clone(),
-        without: arguments.without.clone(),
-        tolerance_um: shared.job.tolerance.unwrap_or(model.profile.correction.tolerance_um),
-    })
 }

@@ -2,11 +2,12 @@
 
 mod command;
 mod lathe;
+mod options;
 mod plan;
 mod report;
 mod summary;
 mod written;
 
-pub use command::Diagnose;
 pub(crate) use command::run;
+pub use options::Diagnose;
 pub use plan::Form;

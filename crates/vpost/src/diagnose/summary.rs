@@ -69,8 +69,7 @@ fn of_cause(cause: &Cause, changes: &[Change]) -> Text {
 
 /// What the causes in the model bring, and what unseen points say of that.
 fn gain(out: &mut Text, d: &Diagnosis) {
-    if let Some(last) = d.causes.last() {
-        let s = last.shrink_predicted;
+    if let Some(s) = d.causes.last().and_then(|last| last.shrink_predicted) {
         let [low, mid, high] = [s.low, s.mid, s.high].map(|share| 100.0 * share);
         out.push(&both!(
             "\nshrinks by {mid:.0} % (between {low:.0} and {high:.0} %) with the cause(s) in the model\n",

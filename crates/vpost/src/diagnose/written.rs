@@ -5,6 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use diagnostic::{Code, both, of_toml};
 use gap_diagnosis::Diagnosis;
 use machine_model::Volume;
+use machine_model::effects::EffectTerm;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value};
 
 use crate::file;
@@ -31,7 +32,7 @@ pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(
         for cause in diagnosis.corrections() {
             let mut entry = Table::new();
             entry.insert("id", Item::Value(cause.effect.as_str().into()));
-            for (name, value) in cause.term.entry() {
+            for (name, value) in cause.term.iter().flat_map(EffectTerm::entry) {
                 entry.insert(name, Item::Value(decimal(value)));
             }
             effects.push(entry);
@@ -43,11 +44,11 @@ pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(
                 Item::Value([range.low, range.high].into_iter().map(decimal).collect::<Array>().into());
         }
     }
-    if diagnosis.corrects() {
+    if let Some(found) = diagnosis.setup.as_ref().filter(|_| diagnosis.corrects()) {
         let setup = document.entry("setup").or_insert(Item::Table(Table::new()));
         if let Some(setup) = setup.as_table_like_mut() {
-            setup.insert("shift_mm", three(diagnosis.setup.shift_um.map(|v| 1e-3 * v)));
-            setup.insert("rotation_urad", three(diagnosis.setup.rotation_urad));
+            setup.insert("shift_mm", three(found.shift_um.map(|v| 1e-3 * v)));
+            setup.insert("rotation_urad", three(found.rotation_urad));
         }
     }
     file::write(path, document.to_string().as_bytes())

@@ -9,6 +9,8 @@ use crate::turning::readings::order_within;
 /// A radius that was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CauseRow {
+    /// Line in the file, from 1.
+    pub line: u64,
     /// Which part: one clamping, one finishing cut.
     pub part: usize,
     /// Which tool and edge, where that is known.

@@ -107,13 +107,12 @@ impl Mixed {
         self.readings.len().saturating_sub(orthonormal(columns, &self.cells).len())
     }
 
-    /// Root mean square of the readings beyond the levels, in the unit of the weights.
-    pub(super) fn rms(&self) -> f64 {
-        let basis = orthonormal(&self.levels, &[]);
-        (without(&self.readings, &basis).norm_squared() / self.readings.len() as f64).sqrt()
+    /// The readings beyond the levels, in the unit of the weights.
+    pub(super) fn beyond(&self) -> DVector<f64> {
+        without(&self.readings, &orthonormal(&self.levels, &[]))
     }
 
-    /// The same with columns fitted.
+    /// Root mean square of the same with columns fitted.
     pub(super) fn rms_with(&self, columns: &[DVector<f64>]) -> f64 {
         let all: Vec<DVector<f64>> = self.levels.iter().chain(columns).cloned().collect();
         let left = without(&self.readings, &orthonormal(&all, &[]));

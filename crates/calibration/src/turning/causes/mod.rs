@@ -5,32 +5,35 @@
 //! judged by parts, not by readings. A cause has a name where no sum of all other causes can be it: the F test of its
 //! columns beside all others. Where only some other can be it too, both are told.
 
-mod answer;
+mod asked;
 mod columns;
 mod mixed;
+mod rivals;
+mod words;
 
+use diagnostic::{Text, both};
+use gap_diagnosis::{Cause as Found, Diagnosis, Gap, Holdout, Leftover, Parameter, Residual, Verdict};
+use machine_model::Vector;
 use machine_model::effects::legendre;
 use nalgebra::DVector;
 use turning::WorkpieceError;
 use units::math;
 
-pub use answer::{FoundCause, LatheDiagnosis, Number, Unseen, Verdict};
+use asked::{Asked, centres, indicator, levels};
 use columns::Columns;
 pub use columns::{Bar, Cause, CauseRow};
-use mixed::{Fitted, Mixed};
+use mixed::Fitted;
+pub use words::cause_name;
+use words::{CLAMPING, meaning};
 
 use crate::student::quantile_between;
 
-/// Chance of a name that is none, over all causes.
-const LEVEL: f64 = 0.01;
 /// Chance that noise looks like something left.
 const LEFTOVER: f64 = 1e-3;
 /// Parts whose tapers differ so much with this chance may be clamped askew.
 const DOUBTFUL: f64 = 0.05;
 /// No lathe of these presses so hard beyond what its profile says, N.
 const MOST_N: f64 = 5000.0;
-/// A rival that is no cause of the list.
-const CLAMPING: &str = "how the parts were clamped";
 /// Less than this share of what is no noise is no matter.
 const LITTLE: f64 = 0.05;
 /// Good readings have one that lies so far off with this chance.
@@ -39,24 +42,11 @@ const OUTLIER: f64 = 1e-4;
 const LEAST_ROWS: usize = 12;
 const LEAST_PARTS: usize = 2;
 const LEAST_FREEDOM: usize = 6;
-/// A taper is sure where it is so many times the curve beside it.
-const MOSTLY: f64 = 3.0;
-/// Wear or growth of less than this share of the other is not sure beside it.
-const LITTLE_DRIFT: f64 = 0.5;
-/// A column of which less is its own is one of the others.
-const OWN: f64 = 1e-6;
-
-/// The causes that are asked for, with their columns.
-struct Asked<'a> {
-    columns: &'a Columns<'a>,
-    mixed: Mixed,
-    all: Vec<(Cause, Vec<DVector<f64>>)>,
-    weights: Vec<f64>,
-}
 
 /// Finds what makes radii wrong.
 ///
 /// * `held` – rows that judge what was found
+/// * `tailstock_mm` – where the tailstock's centre stands, if there is one
 ///
 /// # Errors
 /// A bar that cannot be.
@@ -64,7 +54,8 @@ pub fn lathe_causes(
     rows: &[CauseRow],
     held: &[CauseRow],
     bar: Option<&Bar>,
-) -> Result<LatheDiagnosis, WorkpieceError> {
+    tailstock_mm: Option<f64>,
+) -> Result<Diagnosis, WorkpieceError> {
     let columns = Columns::new(rows, bar)?;
     let mut parts: Vec<usize> = rows.iter().map(|row| row.part).collect();
     parts.sort_unstable();
@@ -75,210 +66,99 @@ pub fn lathe_causes(
         // No part is left that tells how parts differ: then every part has its own size, and drift is not asked.
         asked = Asked::new(&columns, &parts, true);
     }
-    Ok(asked.diagnosis(&parts, held, bar))
+    Ok(asked.diagnosis(&parts, held, bar, tailstock_mm))
 }
 
-fn indicator(rows: &[CauseRow], of: impl Fn(&CauseRow) -> f64) -> DVector<f64> {
-    DVector::from_iterator(rows.len(), rows.iter().map(of))
-}
-
-/// One column for each different key.
-fn levels<K: PartialEq>(rows: &[CauseRow], key: impl Fn(&CauseRow) -> K) -> Vec<DVector<f64>> {
-    let mut keys: Vec<K> = Vec::new();
-    for row in rows {
-        if !keys.contains(&key(row)) {
-            keys.push(key(row));
-        }
-    }
-    keys.iter().map(|own| indicator(rows, |row| f64::from(u8::from(key(row) == *own)))).collect()
-}
-
-/// Where the centre of each cross section lies: one wave a turn is the clamping's, in the machine or on the instrument.
-fn centres(rows: &[CauseRow]) -> Vec<DVector<f64>> {
-    let turned: Vec<CauseRow> = rows.iter().filter(|row| row.angle_rad.is_some()).cloned().collect();
-    let mut sections: Vec<(usize, f64)> = Vec::new();
-    for row in &turned {
-        if !sections.contains(&(row.part, row.z_mm)) {
-            sections.push((row.part, row.z_mm));
-        }
-    }
-    let wave = |section: &(usize, f64), of: fn(f64) -> f64| {
-        indicator(rows, |row| match row.angle_rad {
-            Some(angle) if (row.part, row.z_mm) == *section => of(angle),
-            _ => 0.0,
-        })
-    };
-    sections.iter().flat_map(|section| [wave(section, math::cos), wave(section, math::sin)]).collect()
-}
-
-impl<'a> Asked<'a> {
-    /// * `is_each_its_own` – every part has its own size
-    fn new(columns: &'a Columns<'a>, parts: &[usize], is_each_its_own: bool) -> Self {
-        let rows = columns.rows;
-        let is_known = rows.iter().all(|row| row.uncertainty_mm.is_some());
-        let weights: Vec<f64> =
-            rows.iter().map(|row| if is_known { row.uncertainty_mm.unwrap_or(1.0) } else { 1.0 }).collect();
-        let weigh = |column: DVector<f64>| DVector::from_fn(rows.len(), |k, _| column[k] / weights[k]);
-        let weighed = |all: Vec<DVector<f64>>| all.into_iter().map(weigh).collect::<Vec<DVector<f64>>>();
-        let centres = centres(rows);
-        let with = |own: Vec<DVector<f64>>| weighed(own.into_iter().chain(centres.clone()).collect());
-        let cells = with(levels(rows, |row| (row.part, row.tool)));
-        let sizes = match is_each_its_own {
-            true => cells.clone(),
-            false => with(levels(rows, |row| (row.tool, row.tool.is_none().then_some(row.part)))),
-        };
-        let shared = weighed(
-            parts.iter().map(|part| indicator(rows, |row| f64::from(u8::from(row.part == *part)))).collect(),
-        );
-        let readings = weigh(indicator(rows, |row| row.gap_mm));
-        let mixed = Mixed::new(readings, sizes, &cells, shared, is_known);
-        let mut asked = Self { columns, mixed, all: Vec::new(), weights: weights.clone() };
-        for cause in Cause::ALL {
-            let own: Vec<DVector<f64>> = weighed(columns.cause(cause))
-                .into_iter()
-                .filter(|column| column.norm() > 0.0 && asked.mixed.seen(column) > OWN)
-                .collect();
-            if !own.is_empty() {
-                asked.all.push((cause, own));
-            }
-        }
-        asked
-    }
-
-    fn everything(&self) -> Vec<DVector<f64>> {
-        self.all.iter().flat_map(|(_, own)| own.clone()).collect()
-    }
-
-    /// The columns without those that others before them are.
-    fn independent(&self, columns: &[DVector<f64>]) -> Vec<DVector<f64>> {
-        let mut kept: Vec<DVector<f64>> = Vec::new();
-        for column in columns {
-            if self.mixed.own_share(column, &kept) > OWN {
-                kept.push(column.clone());
-            }
-        }
-        kept
-    }
-
-    fn of(&self, causes: &[usize]) -> Vec<DVector<f64>> {
-        causes.iter().flat_map(|k| self.all[*k].1.clone()).collect()
-    }
-
-    /// Chance that columns beside others are noise; 1 where the others are these.
-    fn p_beside(&self, own: &[DVector<f64>], others: &[DVector<f64>]) -> f64 {
-        let mut model = self.independent(others);
-        let before = model.len();
-        for column in own {
-            if self.mixed.own_share(column, &model) > OWN {
-                model.push(column.clone());
-            }
-        }
-        let tested: Vec<usize> = (before..model.len()).collect();
-        if tested.is_empty() { 1.0 } else { self.mixed.fit(&model).p(&tested) }
-    }
-
-    /// Of a cause beside others.
-    fn p(&self, cause: usize, others: &[usize]) -> f64 {
-        self.p_beside(&self.all[cause].1, &self.of(others))
-    }
-
-    fn level(&self) -> f64 {
-        LEVEL / self.all.len().max(1) as f64
-    }
-
-    /// Causes that are needed, the surest first: one after the other, and none that the later ones made needless.
-    fn selected(&self) -> Vec<usize> {
-        let mut selected: Vec<usize> = Vec::new();
-        loop {
-            let open = (0..self.all.len()).filter(|k| !selected.contains(k));
-            let best = open.map(|k| (k, self.p(k, &selected))).min_by(|a, b| a.1.total_cmp(&b.1));
-            match best {
-                Some((k, p)) if p < self.level() => selected.push(k),
-                _ => break,
-            }
-        }
-        let mut place = 0;
-        while place < selected.len() {
-            let others: Vec<usize> = selected.iter().copied().filter(|k| *k != selected[place]).collect();
-            if self.p(selected[place], &others) < self.level() {
-                place += 1;
-            } else {
-                selected.remove(place);
-                place = 0;
-            }
-        }
-        selected
-    }
-
-    /// What else may be a cause: what in its place leaves nothing for it.
-    fn rivals(&self, cause: usize, selected: &[usize]) -> Vec<String> {
-        let kept: Vec<usize> = selected.iter().copied().filter(|k| *k != cause).collect();
-        let all_others: Vec<usize> = (0..self.all.len()).filter(|k| *k != cause).collect();
-        if self.p(cause, &all_others) < self.level() {
-            return Vec::new();
-        }
-        let open: Vec<usize> = all_others.iter().copied().filter(|k| !kept.contains(k)).collect();
-        let id = |k: &usize| self.all[*k].0.id();
-        let replaces = |others: &[usize]| self.p(cause, &[&kept[..], others].concat()) >= self.level();
-        let singles: Vec<usize> = open.iter().copied().filter(|k| replaces(&[*k])).collect();
-        let mut rivals: Vec<String> = singles.iter().map(|k| id(k).to_owned()).collect();
-        if rivals.is_empty() {
-            for (place, a) in open.iter().enumerate() {
-                let pairs = open[place + 1..].iter().filter(|b| replaces(&[*a, **b]));
-                rivals.extend(pairs.map(|b| format!("{} with {}", id(a), id(b))));
-            }
-        }
-        if rivals.is_empty() {
-            rivals.push("several other causes together".to_owned());
-        }
-        rivals
-    }
-
-    fn diagnosis(&self, parts: &[usize], held: &[CauseRow], bar: Option<&Bar>) -> LatheDiagnosis {
+impl Asked<'_> {
+    fn diagnosis(
+        &self,
+        parts: &[usize],
+        held: &[CauseRow],
+        bar: Option<&Bar>,
+        tailstock_mm: Option<f64>,
+    ) -> Diagnosis {
         let everything = self.independent(&self.everything());
-        let whole = self.mixed.fit(&everything);
-        let typical = self.weights.iter().sum::<f64>() / self.weights.len().max(1) as f64;
-        let mut answer = LatheDiagnosis {
-            verdict: Verdict::Underpowered,
-            rms_mm: self.mixed.rms() * typical,
-            noise_mm: whole.noise * typical,
-            causes: Vec::new(),
-            asked: self.all.iter().map(|(cause, _)| *cause).collect(),
-            leftover_p: 1.0,
-            outlier: None,
-            unseen: None,
-            explained_mm: vec![0.0; self.weights.len()],
+        let typical = self.typical();
+        let noise_um = self.mixed.fit(&everything).noise * typical * 1e3;
+        let beyond = self.mixed.beyond();
+        let gap = Gap::new(beyond.iter().map(|own| own.abs() * typical * 1e3).collect(), noise_um);
+        let asked: Vec<Text> = self.all.iter().map(|(cause, _)| cause_name(cause.id())).collect();
+        let notes = vec![
+            both!(
+                "All figures are on the radius; sizes of tools and where parts were clamped are taken off.",
+                "Все числа — по радиусу, без размеров инструментов и установок деталей."
+            ),
+            both!("These rows could show: {}.", "Эти строки могли показать: {:#}.", Text::join(&asked, ", ")),
+        ];
+        let of = |verdict: Verdict| Diagnosis {
+            notes: notes.clone(),
+            ..Diagnosis::new(verdict, meaning(verdict), gap)
         };
         let rows = self.columns.rows.len();
         if rows < LEAST_ROWS || parts.len() < LEAST_PARTS || self.mixed.freedom(&everything) < LEAST_FREEDOM {
-            return answer;
+            return Diagnosis { next_measurement: Some(words::more_parts()), ..of(Verdict::Underpowered) };
         }
-        let leftovers: Vec<DVector<f64>> = self
-            .columns
-            .leftovers(parts)
-            .into_iter()
-            .map(|column| DVector::from_fn(rows, |k, _| column[k] / self.weights[k]))
-            .collect();
         let (row, size, freedom) = self.mixed.largest_residual(&everything);
         if size > quantile_between(OUTLIER / rows as f64, freedom) {
-            answer.verdict = Verdict::NoiseModelSuspect;
-            answer.outlier = Some(row);
-            return answer;
+            let suspect = of(Verdict::NoiseModelSuspect);
+            let mut sentence = suspect.sentence.clone();
+            sentence.push(&words::outlier(&self.columns.rows[row]));
+            return Diagnosis { sentence, residuals: self.residuals(None), ..suspect };
         }
+        let leftovers: Vec<DVector<f64>> =
+            self.columns.leftovers(parts).iter().map(|column| self.weighed(column)).collect();
         let all: Vec<DVector<f64>> = everything.iter().chain(&leftovers).cloned().collect();
         let is_judged = self.mixed.freedom(&self.independent(&all)) >= LEAST_FREEDOM;
-        answer.leftover_p = if is_judged { self.p_beside(&leftovers, &everything) } else { 1.0 };
-        let tilts = self.p_beside(&self.tilts(parts), &everything);
+        let leftover_p = if is_judged { self.p_beside(&leftovers, &everything) } else { 1.0 };
         let selected = self.selected();
         let model = self.of(&selected);
         let found = self.mixed.fit(&model);
-        let share = self.leftover_share(&model, &leftovers, &found);
-        let is_left = answer.leftover_p < LEFTOVER && share > LITTLE;
+        let own = self.independent(&model);
+        let with = self.independent(&own.iter().chain(&leftovers).cloned().collect::<Vec<_>>());
+        let share = self.share(&own, &with, &found);
+        let is_left = leftover_p < LEFTOVER && share > LITTLE;
+        let causes = self.causes(parts, &selected, &found, bar, tailstock_mm);
+        let holdout = self.unseen(held, &selected, &found, bar);
+        let is_refuted = holdout.as_ref().is_some_and(|unseen| unseen.rms_after_um > unseen.rms_before_um);
+        let verdict = match (selected.is_empty(), is_left) {
+            (true, false) => Verdict::NoGap,
+            (true, true) => Verdict::Unknown,
+            (false, _) if is_refuted || (is_left && share > 0.5) => Verdict::Unknown,
+            (false, true) => Verdict::Partial,
+            (false, false) if causes.iter().any(|own| !own.cannot_be_told_from.is_empty()) => {
+                Verdict::Ambiguous
+            }
+            (false, false) => Verdict::Named,
+        };
+        let rms_um = causes.last().map_or(gap.rms_um, |last| last.rms_after_um);
+        let signal = (gap.rms_um * gap.rms_um - noise_um * noise_um).max(f64::MIN_POSITIVE);
+        let phi = ((rms_um * rms_um - noise_um * noise_um) / signal).clamp(0.0, 1.0);
+        Diagnosis {
+            next_measurement: words::next(&causes),
+            causes,
+            leftover: Leftover { rms_um, phi, lack_of_fit_p: leftover_p, ..Leftover::default() },
+            holdout,
+            residuals: self.residuals(Some(&self.effect_mm(&selected, &found, |_| true))),
+            ..of(verdict)
+        }
+    }
+
+    /// Each with what it leaves of the gap.
+    fn causes(
+        &self,
+        parts: &[usize],
+        selected: &[usize],
+        found: &Fitted,
+        bar: Option<&Bar>,
+        tailstock_mm: Option<f64>,
+    ) -> Vec<Found> {
+        let tilts = self.p_beside(&self.tilts(parts), &self.independent(&self.everything()));
         let mut place = 0;
+        let mut causes = Vec::new();
         for (rank, k) in selected.iter().enumerate() {
             let (cause, own) = &self.all[*k];
-            let mut rivals = self.rivals(*k, &selected);
-            rivals.extend(self.unseen_rivals(*cause, &selected, &found, bar));
+            let mut rivals = self.rivals(*k, selected);
+            rivals.extend(self.unseen_rivals(*cause, selected, found, bar));
             let along = matches!(cause, Cause::Taper | Cause::Bending | Cause::Straightness);
             let drifts = matches!(cause, Cause::Growth | Cause::Wear | Cause::Scale);
             let is_absurd = *cause == Cause::Bending && found.values[place].abs() > MOST_N;
@@ -286,161 +166,54 @@ impl<'a> Asked<'a> {
             if (along || drifts) && (tilts < DOUBTFUL || is_absurd || is_coarse) {
                 rivals.push(CLAMPING.to_owned());
             }
-            let others: Vec<usize> = match rivals.is_empty() {
+            let kept: Vec<usize> = selected.iter().copied().filter(|other| other != k).collect();
+            let others = match rivals.is_empty() {
                 true => (0..self.all.len()).filter(|other| other != k).collect(),
-                false => selected.iter().copied().filter(|other| other != k).collect(),
+                false => kept.clone(),
             };
-            let rms = |count: usize| self.mixed.rms_with(&self.of(&selected[..count])) * typical;
-            answer.causes.push(FoundCause {
-                cause: *cause,
+            let rms = |count: usize| self.mixed.rms_with(&self.of(&selected[..count])) * self.typical() * 1e3;
+            let parameters = self.numbers(*cause, place, own.len(), found);
+            causes.push(Found {
+                term: None,
+                effect: cause.id().to_owned(),
+                words: words::sentence(*cause, &parameters),
+                remedy: words::remedy(*cause, &parameters, tailstock_mm),
+                share_unique: self.share(&self.of(&kept), &self.of(selected), found),
+                share_alone: self.share(&[], own, found),
                 p: self.p(*k, &others),
-                numbers: self.numbers(*cause, place, own.len(), &found),
-                rivals,
-                rms_mm: [rms(rank), rms(rank + 1)],
+                parameters,
+                cannot_be_told_from: rivals,
+                nearest: Vec::new(),
+                rms_before_um: rms(rank),
+                rms_after_um: rms(rank + 1),
+                shrink_predicted: None,
             });
             place += own.len();
         }
-        answer.explained_mm = self.effect_mm(&selected, &found, |_| true).iter().copied().collect();
-        answer.unseen = self.unseen(held, &selected, &found, bar);
-        let is_refuted = answer.unseen.is_some_and(|unseen| unseen.rms_mm[1] > unseen.rms_mm[0]);
-        answer.verdict = match (selected.is_empty(), is_left) {
-            (true, false) => Verdict::NoGap,
-            (true, true) => Verdict::Unknown,
-            (false, _) if is_refuted || (is_left && share > 0.5) => Verdict::Unknown,
-            (false, true) => Verdict::Partial,
-            (false, false) if answer.causes.iter().any(|own| !own.rivals.is_empty()) => Verdict::Ambiguous,
-            (false, false) => Verdict::Named,
+        causes
+    }
+
+    /// Gap and what is left of it by row, each part at its own mean: its size is the tool's.
+    fn residuals(&self, explained_mm: Option<&DVector<f64>>) -> Vec<Residual> {
+        let rows = self.columns.rows;
+        let after_mm = |k: usize| rows[k].gap_mm - explained_mm.map_or(0.0, |all| all[k]);
+        let of = |k: usize| {
+            let same = |i: &usize| (rows[*i].part, rows[*i].tool) == (rows[k].part, rows[k].tool);
+            let own: Vec<usize> = (0..rows.len()).filter(same).collect();
+            let mean = |of: &dyn Fn(usize) -> f64| own.iter().map(|i| of(*i)).sum::<f64>() / own.len() as f64;
+            Residual {
+                row: k,
+                class: 0,
+                along: Vector::x(),
+                before_um: (rows[k].gap_mm - mean(&|i| rows[i].gap_mm)) * 1e3,
+                after_um: (after_mm(k) - mean(&after_mm)) * 1e3,
+            }
         };
-        answer
-    }
-
-    /// Every part's own lean, as a clamping makes it.
-    fn tilts(&self, parts: &[usize]) -> Vec<DVector<f64>> {
-        let own = self.columns.tilts(parts);
-        own.map(|column| DVector::from_fn(column.len(), |k, _| column[k] / self.weights[k])).collect()
-    }
-
-    /// Of the squares that are no noise, those that what is left explains.
-    fn leftover_share(&self, model: &[DVector<f64>], leftovers: &[DVector<f64>], found: &Fitted) -> f64 {
-        let own = self.independent(model);
-        let all: Vec<DVector<f64>> = own.iter().chain(leftovers).cloned().collect();
-        let (before, after) = (self.mixed.rms_with(&own), self.mixed.rms_with(&self.independent(&all)));
-        let gap = self.mixed.rms();
-        let signal = (gap * gap - found.noise * found.noise).max(f64::MIN_POSITIVE);
-        ((before * before - after * after) / signal).clamp(0.0, 1.0)
-    }
-
-    /// What may be a cause, and no column shows: what nobody wrote into the file.
-    fn unseen_rivals(
-        &self,
-        cause: Cause,
-        selected: &[usize],
-        found: &Fitted,
-        bar: Option<&Bar>,
-    ) -> Vec<String> {
-        let is_timed = self.columns.times.is_some();
-        let is = |own: Cause| self.all.iter().any(|(known, _)| *known == own);
-        let mut rivals: Vec<&'static str> = Vec::new();
-        // No spindle grows quite as the columns do: a little of the one beside much of the other may be its shape.
-        let is_little = |own: Cause, other: Cause| {
-            let [own, other] = [own, other].map(|cause| self.extent_mm(cause, selected, found));
-            own < LITTLE_DRIFT * other
-        };
-        match cause {
-            Cause::Wear if !is_timed || is_little(Cause::Wear, Cause::Growth) => {
-                rivals.push("spindle.growth")
-            }
-            Cause::Growth if !is(Cause::Wear) || is_little(Cause::Growth, Cause::Wear) => {
-                rivals.push("tool.wear");
-            }
-            Cause::Straightness if bar.is_none() => rivals.push("lathe.bending"),
-            Cause::Jaws => rivals.push("spindle.runout"),
-            Cause::Bending => rivals.extend(self.within_the_cut(cause, selected)),
-            Cause::Taper => {
-                rivals.extend(self.within_the_cut(cause, selected));
-                // Few places do not tell a slope from a curve, and a curve's slope is not sure.
-                if self.columns.degrees() < 2 || self.is_mostly_curve(selected, found) {
-                    rivals.push("straightness.EXZ");
-                }
-            }
-            _ => {}
-        }
-        rivals.into_iter().map(str::to_owned).collect()
-    }
-
-    /// What causes that were found do to each row, mm.
-    fn effect_mm(
-        &self,
-        selected: &[usize],
-        found: &Fitted,
-        is_asked: impl Fn(Cause) -> bool,
-    ) -> DVector<f64> {
-        let mut place = 0;
-        let mut sum = DVector::zeros(self.weights.len());
-        for k in selected {
-            let (own, columns) = &self.all[*k];
-            for (i, column) in columns.iter().enumerate().filter(|_| is_asked(*own)) {
-                let value = found.values[place + i];
-                sum += DVector::from_fn(column.len(), |row, _| column[row] * self.weights[row] * value);
-            }
-            place += columns.len();
-        }
-        sum
-    }
-
-    /// How much a cause that was found changes the radius, from least to most, mm.
-    fn extent_mm(&self, cause: Cause, selected: &[usize], found: &Fitted) -> f64 {
-        let sum = self.effect_mm(selected, found, |own| own == cause);
-        sum.max() - sum.min()
-    }
-
-    /// The curve that was found beside a taper is nearly as large: a part of it that these places do not resolve may be all
-    /// that the taper is.
-    fn is_mostly_curve(&self, selected: &[usize], found: &Fitted) -> bool {
-        let (mut place, mut taper_mm) = (0, 0.0);
-        let mut curve = DVector::zeros(self.columns.rows.len());
-        for k in selected {
-            let (cause, own) = &self.all[*k];
-            for (i, _) in own.iter().enumerate() {
-                let value = found.values[place + i];
-                match cause {
-                    Cause::Taper => taper_mm = value * (self.columns.along[1] - self.columns.along[0]),
-                    Cause::Straightness => curve += self.columns.legendre(i + 2) * value,
-                    _ => {}
-                }
-            }
-            place += own.len();
-        }
-        MOSTLY * (curve.max() - curve.min()) > taper_mm.abs()
-    }
-
-    /// Wear and growth go on while a part is cut, and look like its taper: as large as what parts differ by, at most.
-    fn within_the_cut(&self, cause: Cause, selected: &[usize]) -> Vec<&'static str> {
-        let is_timed = self.columns.times.is_some();
-        let with: Vec<usize> =
-            (0..self.all.len()).filter(|k| selected.contains(k) || self.all[*k].0 == Cause::Wear).collect();
-        let causes: Vec<Cause> =
-            with.iter().flat_map(|k| vec![self.all[*k].0; self.all[*k].1.len()]).collect();
-        let at = |own: Cause| causes.iter().position(|known| *known == own);
-        let (Some(place), Some(wear)) = (at(cause), at(Cause::Wear)) else {
-            // No tool is named: nothing tells by how much a tip recedes.
-            return if is_timed { vec!["tool.wear"] } else { vec!["spindle.growth", "tool.wear"] };
-        };
-        let columns = self.of(&with);
-        let fitted = self.mixed.fit(&columns);
-        let unit = DVector::from_fn(causes.len(), |i, _| f64::from(u8::from(i == wear)));
-        let own = DVector::from_fn(self.weights.len(), |k, _| columns[place][k] * self.weights[k]);
-        let along_mm = (fitted.values[place] * (own.max() - own.min())).abs();
-        let is_small = along_mm <= fitted.values[wear].abs() + fitted.u95(&unit);
-        match (is_small, is_timed) {
-            (false, _) => Vec::new(),
-            (true, true) => vec!["tool.wear"],
-            (true, false) => vec!["spindle.growth", "tool.wear"],
-        }
+        (0..rows.len()).map(of).collect()
     }
 
     /// * `place`, `count` – its columns in the model
-    fn numbers(&self, cause: Cause, place: usize, count: usize, found: &Fitted) -> Vec<Number> {
+    fn numbers(&self, cause: Cause, place: usize, count: usize, found: &Fitted) -> Vec<Parameter> {
         let size = found.values.len();
         let sum = |of: &[f64]| {
             DVector::from_fn(size, |i, _| {
@@ -449,7 +222,7 @@ impl<'a> Asked<'a> {
         };
         let number = |name: &'static str, of: &[f64]| {
             let row = sum(of);
-            Number { name, value: row.dot(&found.values), u95: found.u95(&row) }
+            Parameter { name: name.to_owned(), value: row.dot(&found.values), u95: Some(found.u95(&row)) }
         };
         match cause {
             // r falls where the axis leads to +X with growing Z.
@@ -491,7 +264,7 @@ impl<'a> Asked<'a> {
         selected: &[usize],
         found: &Fitted,
         bar: Option<&Bar>,
-    ) -> Option<Unseen> {
+    ) -> Option<Holdout> {
         if held.is_empty() || selected.is_empty() {
             return None;
         }
@@ -523,7 +296,8 @@ impl<'a> Asked<'a> {
         }
         let cells = mixed::basis(&[levels(held, |row| (row.part, row.tool)), centres(held)].concat());
         let gap = indicator(held, |row| row.gap_mm);
-        let rms = |of: &DVector<f64>| (mixed::beyond(of, &cells).norm_squared() / held.len() as f64).sqrt();
-        Some(Unseen { rows: held.len(), rms_mm: [rms(&gap), rms(&(&gap - predicted))] })
+        let rms =
+            |of: &DVector<f64>| 1e3 * (mixed::beyond(of, &cells).norm_squared() / held.len() as f64).sqrt();
+        Some(Holdout::new(held.len(), rms(&gap), rms(&(&gap - predicted))))
     }
 }

@@ -6,6 +6,7 @@ use jobs::diagnose::change::Change;
 use report::body::{Body, Fact, Table};
 use report::chart::{Bar, Matrix, Range, matrix, ranges, waterfall as waterfall_chart};
 use report::numbers::{count, figures, measured, number, percent, prose as said};
+use report::text::opening;
 
 use super::names::{cause_heading, named, prose};
 
@@ -35,7 +36,7 @@ pub(super) fn waterfall(out: &mut Body, d: &Diagnosis) {
 }
 
 /// Shares and numbers of the causes.
-pub(super) fn causes(out: &mut Body, d: &Diagnosis, changes: &[Vec<Change>]) {
+pub(in crate::diagnose) fn causes(out: &mut Body, d: &Diagnosis, changes: &[Vec<Change>]) {
     if d.causes.is_empty() {
         out.p(&both!("No cause is named.", "Причина не названа."));
         return absorber(out, d);
@@ -62,7 +63,7 @@ pub(super) fn causes(out: &mut Body, d: &Diagnosis, changes: &[Vec<Change>]) {
 
 fn one(out: &mut Body, c: &Cause, changes: &[Change]) {
     cause_heading(out, &named(&c.effect), &c.effect);
-    let words = said(&c.words);
+    let words = opening(&said(&c.words));
     out.p(&both!("{words}.", "{words:#}."));
     let parameter = |p: &Parameter| {
         let value = p.u95.map_or_else(
@@ -84,8 +85,8 @@ fn one(out: &mut Body, c: &Cause, changes: &[Change]) {
         let changes: Vec<Text> = changes.iter().map(Change::text).collect();
         facts.push(Fact::new(both!("change", "изменить"), &said(&Text::join(&changes, ", "))));
     }
-    facts.push(Fact::new(both!("what to do", "что делать"), &c.remedy));
     out.facts(facts);
+    out.typed(&said(&c.remedy));
 }
 
 fn probability(p: f64) -> Text {
@@ -195,11 +196,13 @@ pub(super) fn confounding(out: &mut Body, d: &Diagnosis) {
 }
 
 /// What to measure next.
-pub(super) fn next(out: &mut Body, d: &Diagnosis) {
+pub(in crate::diagnose) fn next(out: &mut Body, d: &Diagnosis) {
     if let Some(next) = &d.next_measurement {
         out.p(&prose(&next.text));
-        if next.expected_sigma > 0.0 {
-            let [one, other] = next.separates.each_ref().map(prose);
+        if let [one, other] = &next.separates[..]
+            && next.expected_sigma > 0.0
+        {
+            let [one, other] = [one, other].map(prose);
             let sigma = number(next.expected_sigma);
             out.muted(&both!(
                 "{one} and {other} would then lie {sigma} standard deviations apart.",

@@ -11,6 +11,7 @@ mod rows;
 mod unseen;
 mod viewer;
 
+pub(super) use causes::{causes, next};
 pub(super) use facts::Facts;
-pub(super) use names::cause_heading;
-pub(super) use page::Report;
+pub(super) use page::{Report, begun, gap};
+pub(super) use provenance::{facts, more};

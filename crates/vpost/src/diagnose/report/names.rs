@@ -8,13 +8,13 @@ use report::body::Body;
 use report::numbers::prose as said;
 use report::text::{opening, shown};
 
-/// The name of an effect; of what the library does not know, its id.
+/// The name of an effect of mills or of a cause of lathes; of what neither knows, its id.
 pub(super) fn named(id: &str) -> Text {
-    id.parse::<EffectKind>().map_or_else(|_| Text::same(id), |kind| effect_name(&kind))
+    id.parse::<EffectKind>().map_or_else(|_| calibration::turning::cause_name(id), |kind| effect_name(&kind))
 }
 
 /// The heading of a cause: its name, and the id that is typed where that is another.
-pub(in crate::diagnose) fn cause_heading(out: &mut Body, name: &Text, id: &str) {
+pub(super) fn cause_heading(out: &mut Body, name: &Text, id: &str) {
     let is_known = name.in_language(out.language()) != id;
     let opened = opening(name);
     let name = if is_known { opened.in_language(out.language()) } else { id };

@@ -5,6 +5,7 @@ use gap_diagnosis::{Diagnosis, Measurements, Verdict};
 use report::body::Body;
 use report::numbers::{count, number, percent, prose as said};
 use report::page::Page;
+use report::text::opening;
 
 use super::facts::Facts;
 use super::names::prose;
@@ -34,10 +35,9 @@ impl Report<'_> {
     /// The page.
     pub(in crate::diagnose) fn html(&self) -> String {
         let (d, data) = (self.diagnosis, self.data);
-        let (verdict, machine) = (d.verdict.words(), &self.facts.machine);
-        let title = both!("{verdict} \u{2013} {machine}", "{verdict:#} \u{2014} {machine}");
-        let mut page = Page::new(self.language, title, "diagnose", "vpost.diagnosis/1");
-        head(&mut page.head, d, self.facts);
+        let mut page = begun(self.language, d, self.facts);
+        page.head.p(&meaning(d.verdict));
+        gap(&mut page.head, d, self.facts);
         // Where too little was measured there is nothing to draw.
         let is_drawn = d.verdict != Verdict::Underpowered || !d.residuals.is_empty();
         if is_drawn {
@@ -69,7 +69,12 @@ impl Report<'_> {
     }
 }
 
-fn head(out: &mut Body, d: &Diagnosis, facts: &Facts) {
+/// A page with what the first screen says: in a word, in a sentence, in words.
+pub(in crate::diagnose) fn begun(language: Language, d: &Diagnosis, facts: &Facts) -> Page {
+    let (verdict, machine) = (d.verdict.words(), &facts.machine);
+    let title = both!("{verdict} \u{2013} {machine}", "{verdict:#} \u{2014} {machine}");
+    let mut page = Page::new(language, title, "diagnose", "vpost.diagnosis/1");
+    let out = &mut page.head;
     let (machine, file) = (&facts.machine, &facts.measurements.name);
     out.muted(&both!(
         "Simulation against reality: {machine}, {file}",
@@ -77,9 +82,13 @@ fn head(out: &mut Body, d: &Diagnosis, facts: &Facts) {
     ));
     out.verdict(&d.verdict.words(), &prose(&d.sentence));
     if let Some(words) = in_words(d) {
-        out.p(&words);
+        out.p(&opening(&words));
     }
-    out.p(&meaning(d.verdict));
+    page
+}
+
+/// How large the gap is, and what becomes of it.
+pub(in crate::diagnose) fn gap(out: &mut Body, d: &Diagnosis, facts: &Facts) {
     let g = &d.gap;
     if g.rms_um > 0.0 {
         let [rms, p95, largest, noise] = [g.rms_um, g.p95_um, g.max_um, g.noise_um].map(number);
@@ -111,8 +120,7 @@ fn in_words(d: &Diagnosis) -> Option<Text> {
 
 /// What a correction by the causes will bring, and what unseen rows say of it.
 fn gain(d: &Diagnosis) -> Option<Text> {
-    let s = d.causes.last()?.shrink_predicted;
-    let [low, mid, high] = [s.low, s.mid, s.high].map(percent);
+    let shrink = d.causes.last()?.shrink_predicted;
     let proof = match &d.holdout {
         Some(held) => {
             let kept = percent(held.shrink);
@@ -123,6 +131,8 @@ fn gain(d: &Diagnosis) -> Option<Text> {
             "Новыми строками это не проверено: добавьте --holdout FILE."
         ),
     };
+    let Some(s) = shrink else { return Some(proof) };
+    let [low, mid, high] = [s.low, s.mid, s.high].map(percent);
     Some(both!(
         "With the causes in the profile the gap is forecast to shrink by {mid} ({low} to {high}). {proof}",
         "С причинами в профиле расхождение, по прогнозу, уменьшится на {mid:#} (от {low:#} до {high:#}). {proof:#}"

@@ -12,10 +12,9 @@ use super::facts::Facts;
 const MOST: usize = 100;
 
 pub(super) fn unseen(out: &mut Body, d: &Diagnosis, holdout: Option<&Measurements>, facts: &Facts) {
-    let Some(last) = d.causes.last() else {
+    let Some(s) = d.causes.last().and_then(|last| last.shrink_predicted) else {
         return out.p(&both!("Without causes nothing is predicted.", "Без причин и прогноза нет."));
     };
-    let s = last.shrink_predicted;
     let forecast =
         Interval { low: s.low, mid: s.mid, high: s.high, achieved: d.holdout.as_ref().map(|h| h.shrink) };
     let title = both!("Shrinkage of the gap's RMS", "Уменьшение СКЗ расхождения");

@@ -1,6 +1,7 @@
 //! The diagnosis as a page in which the error moves: the rows as told, as measured, and without what the causes make.
 
 use diagnostic::{Language, both};
+use machine_model::effects::EffectTerm;
 use report::viewer::scene::{CAUSES, Cause, Displacement, Place, Scene};
 use report::viewer::{Figures, Kind, Viewer};
 
@@ -44,8 +45,10 @@ impl Report<'_> {
             .map(|cause| {
                 alignment.seen(|row| {
                     let measured = &self.data.rows[row];
-                    let mm = cause.term.displacement_mm(&measured.command, &measured.conditions);
-                    mm.unwrap_or_default() * 1e3
+                    let mm = |term: &EffectTerm| {
+                        term.displacement_mm(&measured.command, &measured.conditions).ok()
+                    };
+                    cause.term.as_ref().and_then(mm).unwrap_or_default() * 1e3
                 })
             })
             .collect();
@@ -114,7 +117,10 @@ impl Report<'_> {
             },
             facts: &[
                 ("fact_measurements", format!("{name} (BLAKE3 {})", facts.measurements.hash)),
-                ("fact_machine", format!("{}, {}", facts.machine, facts.chain)),
+                (
+                    "fact_machine",
+                    format!("{}, {}", facts.machine, facts.chain.as_deref().unwrap_or_default()),
+                ),
                 ("fact_calibrated", facts.origin.said().in_language(messages.language()).to_owned()),
                 ("fact_profile", format!("{} (BLAKE3 {})", facts.profile.name, facts.profile.hash)),
                 ("fact_engine", facts.engine.clone()),
