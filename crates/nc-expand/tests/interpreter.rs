@@ -7,7 +7,6 @@ use crate::common;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::Mutex;
 
 use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Dialect, Reader};
@@ -27,12 +26,8 @@ fn programs(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The interpreter does not always start beside another one.
-static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
-
 /// Canonical motion, without line numbers, comments and messages; `None` where the interpreter refuses.
 fn canonical(program: &Path, folder: &Path) -> Option<Vec<String>> {
-    let _alone = ONE_AT_A_TIME.lock();
     let work = tempfile::tempdir().expect("a temporary folder");
     let (variables, tools, out) = (work.path().join("var"), work.path().join("tbl"), work.path().join("out"));
     std::fs::write(&variables, "").expect("writable");
@@ -40,6 +35,8 @@ fn canonical(program: &Path, folder: &Path) -> Option<Vec<String>> {
         .expect("writable");
     let ran = Command::new("rs274")
         .current_dir(folder)
+        // It keeps its tools under HOME, and one beside another does not start.
+        .env("HOME", work.path())
         .args(["-t".as_ref(), tools.as_os_str(), "-v".as_ref(), variables.as_os_str(), "-g".as_ref()])
         .args([program.as_os_str(), out.as_os_str()])
         .stdin(Stdio::null())
