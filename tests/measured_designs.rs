@@ -184,3 +184,29 @@ fn a_slip_of_books_must_beat_the_best_cause() {
     let found = answer.number("scale.Y", "scale_um_per_m");
     assert!((found - 203.0).abs() < 5.0, "{found}");
 }
+
+/// Three edges of a cube whose corner lies some millimetres off the axes: an angle of thousands of µrad has a lever there, and
+/// stands for a squareness, or for one and a scale. The truth of the rows is in the comments.
+#[test]
+fn edges_of_a_cube_off_the_axes_are_squarenesses_and_scales() {
+    let of = |name: &str| {
+        Answer::of(&format!("tests/measurements/{name}.csv"), "tests/measurements/cube.toml", &[])
+    };
+    // Nothing but an XZ squareness of 400 µrad.
+    let one = of("cube_off_the_corner_one");
+    assert_eq!(one.effects(), ["squareness.XZ"], "{}", one.said);
+    assert!((one.number("squareness.XZ", "angle_urad") - 400.0).abs() < 20.0, "{}", one.said);
+    // Squarenesses of ∓400 µrad, scales of 140 µm/m; the set-up is turned by a tracker's frame.
+    let all = of("cube_off_the_corner");
+    for axes in ["XY", "XZ", "YZ"] {
+        let found = all.number(&format!("squareness.{axes}"), "angle_urad");
+        assert!((found.abs() - 400.0).abs() < 40.0, "{found} {}", all.said);
+    }
+    for axis in ["X", "Y", "Z"] {
+        let found = all.number(&format!("scale.{axis}"), "scale_um_per_m");
+        assert!((found - 140.0).abs() < 25.0, "{found} {}", all.said);
+    }
+    for answer in [one, all] {
+        assert!(answer.writes() && !answer.profile.contains("angular"), "{}", answer.said);
+    }
+}

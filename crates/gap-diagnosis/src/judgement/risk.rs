@@ -120,14 +120,17 @@ impl Assembly<'_> {
         for group in groups {
             let mut rest = parts.clone();
             group.iter().rev().for_each(|place| rest = without(&rest, *place));
-            let limit = score - 2.0 * units::math::ln(LEAST_WEIGHT);
+            // Whatever machines usually have, no model is likelier by that than one without a price.
+            let limit = score - 2.0 * (own_prior + units::math::ln(LEAST_WEIGHT));
             let scanned = model.space.scan(library, &rest, Asked::WithRivals);
             let is_other = |(part, _): &(Part, Fit)| {
                 !parts.contains(part) && unsupported(library, *part, &self.data.rows).is_none()
             };
-            for (part, _) in by_effect(scanned, limit).into_iter().filter(is_other) {
+            for (part, fit) in by_effect(scanned, limit).into_iter().filter(is_other) {
                 let with: Vec<Part> = rest.iter().copied().chain([part]).collect();
-                if prior(&with) - own_prior > units::math::ln(LEAST_WEIGHT) {
+                // What the rows say and what machines usually have, together: an angle that no carriage has may fit better.
+                let likelier = prior(&with) - own_prior - 0.5 * (fit.score - score);
+                if likelier > units::math::ln(LEAST_WEIGHT) {
                     found.push(self.explained(&with, Some((group[0], part))));
                 }
             }

@@ -15,7 +15,7 @@ use crate::search::state::State;
 /// With fewer runs one that is left out is an extrapolation: that an effect does not foretell it hides nothing.
 const ENOUGH_RUNS: usize = 8;
 /// Most causes named.
-const MOST_CAUSES: usize = 8;
+pub(super) const MOST_CAUSES: usize = 8;
 
 /// What a pass over the equations does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,6 +121,7 @@ impl State<'_, '_> {
                 }
             }
         }
+        self.straighten();
         self.prune();
         self.restrain();
     }
@@ -201,7 +202,7 @@ impl State<'_, '_> {
     }
 
     /// A model without those of its parts from `first` on whose absence makes it no worse.
-    fn what_is_needed(&mut self, mut with: Vec<Part>, first: usize) -> (Fit, Vec<Part>) {
+    pub(super) fn what_is_needed(&mut self, mut with: Vec<Part>, first: usize) -> (Fit, Vec<Part>) {
         self.complete(&with);
         let mut fit = self.space.fit(&self.library, &with);
         for place in (first..with.len()).rev() {

@@ -14,4 +14,5 @@ pub(crate) mod refine;
 pub(crate) mod shapes;
 pub(crate) mod space;
 pub(crate) mod state;
+pub(crate) mod straighten;
 pub(crate) mod trial;

@@ -1,0 +1,70 @@
+//! Angles that no carriage has give way to axes that lean or stretch.
+
+use machine_model::effects::EffectKind;
+
+use crate::library::candidates::Part;
+use crate::search::bounds::{is_straight, log_prior};
+use crate::search::climb::MOST_CAUSES;
+use crate::search::moves::without;
+use crate::search::space::Fit;
+use crate::search::state::State;
+
+impl State<'_, '_> {
+    /// Takes squarenesses and scales for the angles of carriages, all of them, two or one, where that is likelier: by what the
+    /// rows say together with what carriages do ([`log_prior`]).
+    ///
+    /// Where all lines pass near one corner the levers of angles are small, and one that is large enough stands for a squareness,
+    /// or for one and a scale: the fit hardly tells them apart, and one after the other they cannot be changed for the better.
+    pub(super) fn straighten(&mut self) {
+        while let Some((parts, fit)) = self.straightened() {
+            (self.parts, self.fit) = (parts, fit);
+            self.propose();
+        }
+    }
+
+    /// The likeliest model that has straight axes in the place of angles; `None` where the one there is likelier.
+    fn straightened(&mut self) -> Option<(Vec<Part>, Fit)> {
+        let bends =
+            |place: &usize| matches!(self.library.kind(self.parts[*place]), EffectKind::Angular { .. });
+        let angles: Vec<usize> = (0..self.parts.len()).filter(bends).collect();
+        let pairs =
+            angles.iter().flat_map(|b| angles.iter().filter(move |a| *a < b).map(move |a| vec![*a, *b]));
+        let groups: Vec<Vec<usize>> = [angles.clone()]
+            .into_iter()
+            .chain(pairs)
+            .chain(angles.iter().map(|place| vec![*place]))
+            .collect();
+        let own = self.unlikely(&self.parts, &self.fit);
+        let mut best: Option<(f64, Vec<Part>, Fit)> = None;
+        for group in groups.into_iter().filter(|group| !group.is_empty()) {
+            let rest = group.iter().rev().fold(self.parts.clone(), |rest, place| without(&rest, *place));
+            let with: Vec<Part> = rest.iter().copied().chain(self.straight_beside(&rest)).collect();
+            let (fit, with) = self.what_is_needed(with, rest.len());
+            let unlikely = self.unlikely(&with, &fit);
+            let limit = best.as_ref().map_or(own - self.space.allowance(), |(known, ..)| *known);
+            let passes = |place: usize| self.objection(&without(&with, place), with[place], &fit).is_none();
+            if with.len() <= MOST_CAUSES && unlikely < limit && (rest.len()..with.len()).all(passes) {
+                best = Some((unlikely, with, fit));
+            }
+        }
+        best.map(|(_, parts, fit)| (parts, fit))
+    }
+
+    /// Squarenesses and scales that a model does not have.
+    fn straight_beside(&self, rest: &[Part]) -> Vec<Part> {
+        let all = self.library.candidates.iter().enumerate().filter(|(_, own)| is_straight(own.kind));
+        let named = all.filter_map(|(candidate, own)| {
+            let variant = own.variants.iter().position(|form| !form.only_rival)?;
+            Some(Part { candidate, variant })
+        });
+        named.filter(|part| rest.iter().all(|other| other.candidate != part.candidate)).collect()
+    }
+
+    /// The score of a model with what machines usually have counted in.
+    fn unlikely(&self, parts: &[Part], fit: &Fit) -> f64 {
+        let sub = self.space.gram.select(&self.library.model_columns(parts));
+        let values = sub.coefficients(self.space.rho(fit.level));
+        let priors = sub.terms.iter().zip(values).skip(self.library.nuisances);
+        fit.score - 2.0 * priors.map(|(term, value)| log_prior(term, value)).sum::<f64>()
+    }
+}
