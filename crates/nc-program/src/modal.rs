@@ -2,8 +2,8 @@
 
 use crate::offset::Offset;
 use nc_syntax::Number;
-use nc_syntax::dialect::{CurveCode, CycleCode, GCode, Side};
-use toolpath::{Frame, Kinematics, Partial, Plane};
+use nc_syntax::dialect::{CurveCode, GCode, Side};
+use toolpath::{CycleKind, Frame, Kinematics, Partial, Plane};
 use units::decimal::Decimal;
 
 pub use crate::transform::Transform;
@@ -427,7 +427,7 @@ pub struct CycleState {
     /// Its code.
     pub code: GCode,
     /// What it does.
-    pub kind: CycleCode,
+    pub kind: CycleKind,
     /// The normal axis where the series of cycles was started.
     pub initial: Axis,
     /// R.

@@ -2,8 +2,8 @@
 
 use diagnostic::{Refusal, both};
 use nc_syntax::Span;
-use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
-use toolpath::{Kinematics, Plane};
+use nc_syntax::dialect::{Action, GCode, PlaneCode};
+use toolpath::{CycleKind, Kinematics, Plane};
 
 use crate::codes;
 use crate::environment::{BASE_FRAME, Demand, Environment, Owner};
@@ -21,7 +21,7 @@ use nc_syntax::Letters;
 #[derive(Default)]
 struct Wanted<'d> {
     motion: Option<MotionMode>,
-    cycle: Option<(CycleCode, GCode, u8)>,
+    cycle: Option<(CycleKind, GCode, u8)>,
     cancel_group: Option<u8>,
     probe_group: Option<u8>,
     offset: Option<(GCode, Option<&'d str>, Span)>,
