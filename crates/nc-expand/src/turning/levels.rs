@@ -10,6 +10,9 @@ use nc_syntax::dialect::Pockets;
 use super::contour::Point;
 use super::pieces::{MOST, Misfit, Round, SAME, SLACK, Segment, Stroke, length, sub};
 
+/// What a few dozen roundings of lengths below a metre come to, mm.
+const LAST_DIGITS: f64 = 1e-9;
+
 /// Passes of a depth down to a contour, the first piece of which dives.
 pub(super) fn cut(
     segments: &[Segment],
@@ -21,6 +24,19 @@ pub(super) fn cut(
     let mut cut = Cut { segments, at, strokes: vec![Stroke::Rapid(at)], depth, escape };
     cut.down(pockets)?;
     Ok(cut.strokes)
+}
+
+/// A level and a place of the contour differ by the last digits of both: whether a pass is cut there depends on how the
+/// interpreter rounds on its way to either. A contour as written is the same number to everybody; one moved off is not.
+pub(super) fn levels_hang_on_rounding(segments: &[Segment], depth: f64) -> bool {
+    let heights = || segments.iter().map(|segment| segment.end[1]);
+    let lowest = heights().fold(f64::INFINITY, f64::min) - LAST_DIGITS;
+    // As the interpreter steps down: not a product, whose last digits are others.
+    let levels = std::iter::successors(Some(segments[0].start[1]), |level| Some(level - depth));
+    levels
+        .take_while(|level| *level >= lowest)
+        .take(MOST)
+        .any(|level| heights().any(|height| level != height && (level - height).abs() < LAST_DIGITS))
 }
 
 /// Passes on their way.

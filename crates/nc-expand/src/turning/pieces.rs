@@ -24,6 +24,8 @@ pub(super) enum Misfit {
     Straight,
     /// The passes come to no end, or there are too many.
     Endless,
+    /// A pass lies at the height of a place of the contour but for the last digits of both.
+    Level,
     /// A climbing piece does not begin where the one before ends.
     Apart,
 }

@@ -16,7 +16,7 @@
 use nc_syntax::dialect::Pockets;
 
 use super::contour::Point;
-use super::levels::cut;
+use super::levels::{cut, levels_hang_on_rounding};
 use super::pieces::{MOST, Misfit, Round, SAME, Segment, Stroke, along, cross, dot, length, middle, sub};
 
 /// Pieces that part by more along the first axis get an arc between them.
@@ -166,6 +166,9 @@ impl Profile {
         if last[1] < start[1] {
             let out = Segment { start: last, end: [last[0], start[1]], round: None };
             self.segments.push(out);
+        }
+        if distance != 0.0 && levels_hang_on_rounding(&self.segments, depth) {
+            return Err(Misfit::Level);
         }
         let strokes = cut(&self.segments, pockets, depth, escape)?;
         Ok(self.told(strokes))

@@ -250,6 +250,16 @@ impl Misfit {
                     "на какой-то глубине у контура нет точки, или глубина слишком мала"
                 ),
             ),
+            Self::Level => (
+                both!(
+                    "a pass lies as deep as a place of the contour, but for the last digits of both",
+                    "проход лежит на глубине точки контура с точностью до последних знаков"
+                ),
+                both!(
+                    "whether the interpreter cuts there hangs on its rounding: take I or D a thousandth larger",
+                    "режет ли там интерпретатор, зависит от его округления: увеличьте I или D на тысячную"
+                ),
+            ),
             Self::Apart => (
                 both!(
                     "the contour has a place that the passes do not reach",
