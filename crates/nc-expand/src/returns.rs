@@ -17,8 +17,8 @@ use nc_syntax::dialect::{Action, CycleBack, WrittenCycles};
 use nc_syntax::{Block, Dialect, ItemKind, Letters, Span, Value};
 use toolpath::{CycleKind, MOST_PECKS, Plane, Retreat, Stroke, peck_depths, strokes, whole_pecks};
 
-use crate::known::Rewriting;
-use crate::lowering::{Came, Fault, Lower};
+use crate::came::{Came, Fault};
+use crate::known::{Lower, Rewriting};
 use crate::refusals::called as refusal;
 use crate::shorthand::{AXES, Words, actions, add, line_of, number, shown};
 

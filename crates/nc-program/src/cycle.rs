@@ -8,9 +8,10 @@ use units::decimal::Decimal;
 
 use crate::codes;
 use crate::environment::Environment;
-use crate::frames::settle;
+use crate::feed::{own_feed, rate};
+use crate::frame_state::settle;
 use crate::modal::{Axes, Axis, CycleState, Distance, FeedMode, Level, Modal, ReturnLevel, Units};
-use crate::motion::{Motions, own_feed, rate};
+use crate::moved::Motions;
 use crate::position::{end, increment_base, require_frame, require_known};
 use crate::refusals::cycle as refusal;
 use crate::words::{AXIS_LETTERS, CENTRE_LETTERS, LINEAR, Outcome, ROTARY_LETTERS, Words};

@@ -12,9 +12,9 @@ use diagnostic::Refusal;
 use nc_syntax::Span;
 use units::math;
 
-use super::emit::Code;
+use super::place::Code;
 use super::{MILLION, Spot, Writer};
-use crate::lowering::Fault;
+use crate::came::Fault;
 use crate::refusals::threads as refusal;
 
 /// Passes of one thread; more are a wrong infeed.

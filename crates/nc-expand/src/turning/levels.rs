@@ -7,8 +7,8 @@
 
 use nc_syntax::dialect::Pockets;
 
-use super::contour::Point;
 use super::pieces::{MOST, Misfit, Round, SAME, SLACK, Segment, Stroke, length, sub};
+use super::place::Point;
 
 /// What a few dozen roundings of lengths below a metre come to, mm.
 const LAST_DIGITS: f64 = 1e-9;

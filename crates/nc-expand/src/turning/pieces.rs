@@ -2,7 +2,7 @@
 
 use units::math;
 
-use super::contour::Point;
+use super::place::Point;
 
 /// Largest reversal inside one piece; moves shorter than this are dropped.
 pub(super) const SLACK: f64 = 1e-3;

@@ -15,9 +15,9 @@
 
 use nc_syntax::dialect::Pockets;
 
-use super::contour::Point;
 use super::levels::{cut, levels_hang_on_rounding};
 use super::pieces::{MOST, Misfit, Round, SAME, Segment, Stroke, along, cross, dot, length, middle, sub};
+use super::place::Point;
 
 /// Pieces that part by more along the first axis get an arc between them.
 const GAP: f64 = 1e-2;

@@ -17,11 +17,11 @@ use nc_syntax::{ItemKind, Span, Value};
 
 use toolpath::Plane;
 
-use super::emit::Code;
 use super::pieces::{Misfit, Round, Segment, Stroke};
+use super::place::Code;
 use super::profile::Profile;
 use super::{MILLION, Spot, Writer};
-use crate::lowering::Fault;
+use crate::came::Fault;
 use crate::refusals::routines as refusal;
 use crate::shorthand::{Words, numbers, shown};
 
