@@ -62,10 +62,13 @@ impl Kept {
         pecks.into_iter().chain(self.out_again(machine, limit_mm)).fold(verdict, worse)
     }
 
-    /// The same for the way out of a hole that is left at feed, on a machine that goes out another way than it came in.
+    /// The same for the way out of a hole that is left at feed: on to above R, or on a machine that goes out another way than
+    /// it came in.
     fn out_again(&self, machine: &Machine<'_>, limit_mm: f64) -> Option<Verdict> {
-        let FedOut { normal, wanted, commanded } =
-            self.feeds_out.filter(|_| machine.model.depends_on_direction())?;
+        // Back to where it came in from, the same way is proven already.
+        let proven =
+            |out: &FedOut| out.wanted == self.wanted.at(0.0) && !machine.model.depends_on_direction();
+        let FedOut { normal, wanted, commanded } = self.feeds_out.filter(|out| !proven(out))?;
         let mut out = machine.clone();
         out.state.direction[normal] = -out.state.direction[normal];
         // While its own play is taken up the tool is late on the hole's line, which is no deviation from it.
