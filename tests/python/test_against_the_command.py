@@ -232,6 +232,44 @@ def test_the_map_is_the_command_s_rows(tmp_path):
         assert [fixed(v, 6) for v in found.error_um[x, y, z]] == [line[k] for k in ("dx_um", "dy_um", "dz_um")]
 
 
+def test_the_map_s_figures_are_the_command_s(tmp_path):
+    words = ["--grid", "5x4x3", "--within", "50", "--region", "left=0..200,0..280,0..200", "--plane", "XY=100"]
+    words += ["--part-box", "10..90,10..60,5..40", "--clamp", "100,80,40", "--tool-vector", "0,0,-50", "--second-order"]
+    command = run("map", "-m", STAN, *words, "--json", tmp_path / "map.json")
+    assert command.returncode == 0, command.stderr.decode()
+    found = vpost.map(
+        STAN,
+        grid=(5, 4, 3),
+        within_um=50,
+        region={"left": "0..200,0..280,0..200"},
+        plane=["XY=100"],
+        part_box="10..90,10..60,5..40",
+        clamp_mm=(100, 80, 40),
+        tool_mm=(0, 0, -50),
+        second_order=True,
+    )
+    assert found.summary == json.loads((tmp_path / "map.json").read_text())
+    assert [part["name"] for part in found.summary["parts"]] == ["volume", "left", "XY at Z 100", "part box"]
+    with pytest.raises(vpost.Refused) as caught:
+        vpost.map(STAN, grid="0:5000:100,0:100:50,0:100:50")
+    assert caught.value.codes == ["VP0909"]
+
+
+def test_the_budget_is_the_command_s(tmp_path):
+    words = ["--grid", "4x4x3", "--target", "300", "--keep", "EXX,EYY", "--tool-vector", "0,0,-50"]
+    command = run("budget", "-m", STAN, *words, "--json", tmp_path / "budget.json")
+    assert command.returncode == 0, command.stderr.decode()
+    found = vpost.budget(STAN, grid=(4, 4, 3), target_um=300, keep=["EXX", "EYY"], tool_mm=(0, 0, -50))
+    assert found.json == (tmp_path / "budget.json").read_text()
+    assert "".join(f"{warning}\n" for warning in found.warnings) == command.stderr.decode()
+    points = as_csv(np.array([[10.0, 20.0, 30.0], [300.0, 200.0, 150.0]]))
+    run("budget", "-m", STAN, "--points", "-", "--json", tmp_path / "points.json", stdin=points)
+    assert vpost.budget(STAN, points=points).json == (tmp_path / "points.json").read_text()
+    with pytest.raises(vpost.Refused) as caught:
+        vpost.budget(STAN, keep=["EXX"])
+    assert caught.value.codes == ["VP0002"]
+
+
 @pytest.mark.parametrize("job", [vpost.predict, vpost.solve])
 def test_wrong_arrays_have_an_exception_each(job):
     for shape in ((3,), (2, 2), (2, 3, 1), (0,)):

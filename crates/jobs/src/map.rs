@@ -4,6 +4,8 @@ pub mod asked;
 pub mod curves;
 pub mod deformation;
 pub mod dominant;
+pub mod drawn;
+pub mod json;
 pub mod second_order;
 pub mod study;
 
@@ -13,10 +15,37 @@ use machine_model::{Command, Engine, PathModel, Range, SolveError, Vector, Volum
 use machine_profile::Profile;
 use rayon::prelude::*;
 
+use crate::conditions;
+use crate::datums::of_offsets;
 use crate::message::{Failure, OPTION, Report, notice};
 use crate::options::{JobOptions, Outside};
 use crate::predict::{POINT_OUTSIDE, other_tool};
 use crate::values::{Given, Lattice, Rotary, ToolVector};
+use asked::{Asked, MapOptions};
+use study::Study;
+
+/// The map of a machine.
+///
+/// * `warnings` – what is to be said of it, also where it fails
+///
+/// # Errors
+/// What is asked for cannot be: nodes outside the volume, a tool or angles that the machine has not.
+pub fn of(
+    options: &JobOptions,
+    profile: &Profile,
+    engine: &dyn Engine,
+    asked: &MapOptions,
+    warnings: &mut Vec<Report>,
+) -> Result<Study, Failure> {
+    let model = model(engine)?;
+    let asked = Asked::of(asked, options, profile, model.volume())?;
+    require_tool(model, asked.tool_mm)?;
+    warnings.extend(conditions::doubts(profile, engine.id()));
+    let grid_mm = asked.grid.axes().each_ref().map(Nodes::range_mm);
+    warnings.extend(outside(asked.part_box_mm.into_iter().chain([grid_mm]), model.volume(), options)?);
+    let offsets = of_offsets(options, profile, engine)?;
+    Study::new(profile, engine.id(), model, offsets, asked)
+}
 
 /// The engine as a model of paths, which says errors.
 ///
@@ -34,10 +63,7 @@ pub fn model(engine: &dyn Engine) -> Result<&dyn PathModel, Failure> {
 }
 
 /// Refuses a tool vector of which the model knows nothing.
-///
-/// # Errors
-/// Which it knows.
-pub fn require_tool(model: &dyn PathModel, tool_mm: Vector) -> Result<(), Failure> {
+fn require_tool(model: &dyn PathModel, tool_mm: Vector) -> Result<(), Failure> {
     match model.knows(&Command { tool_mm, ..Command::default() }) {
         Err(error @ SolveError::OtherTool { .. }) => {
             let help = both!(
@@ -51,10 +77,7 @@ pub fn require_tool(model: &dyn PathModel, tool_mm: Vector) -> Result<(), Failur
 }
 
 /// Boxes of nodes that reach outside the calibrated volume: refused, unless the nearest point's error is asked for.
-///
-/// # Errors
-/// The first that reaches outside.
-pub fn outside(
+pub(crate) fn outside(
     boxes_mm: impl IntoIterator<Item = [Range; 3]>,
     volume: Volume,
     options: &JobOptions,
@@ -93,18 +116,14 @@ pub fn outside(
 }
 
 /// The map of a grid, on all cores; each node is computed by itself, so their number changes nothing.
-#[must_use]
-pub fn evaluated(grid: Grid, error_mm: impl Fn(&Vector) -> Vector + Sync) -> ErrorMap {
+fn evaluated(grid: Grid, error_mm: impl Fn(&Vector) -> Vector + Sync) -> ErrorMap {
     let errors = (0..grid.len()).into_par_iter().with_min_len(256).map(|i| error_mm(&grid.place_mm(i)));
     let errors = errors.collect();
     ErrorMap::new(grid, errors)
 }
 
 /// Nodes over the volume, or where they were said to be.
-///
-/// # Errors
-/// Nodes that cannot be.
-pub fn grid(given: &Given<Lattice>, volume: Volume) -> Result<Grid, Failure> {
+pub(crate) fn grid(given: &Given<Lattice>, volume: Volume) -> Result<Grid, Failure> {
     let refuse = |why: Text| {
         Failure::usage(notice!(OPTION;
             "`--grid {given}`: {why}", "`--grid {given}`: {why:#}";
@@ -122,10 +141,7 @@ pub fn grid(given: &Given<Lattice>, volume: Volume) -> Result<Grid, Failure> {
 }
 
 /// An H number stands for minus its length vector, as under G43.
-///
-/// # Errors
-/// Nobody gave that number a length.
-pub fn tool(
+pub(crate) fn tool(
     given: Option<&Given<ToolVector>>,
     options: &JobOptions,
     profile: &Profile,
@@ -150,10 +166,7 @@ pub fn tool(
 }
 
 /// Where the rotary axes stand, rad; those that are not named stand at 0.
-///
-/// # Errors
-/// An axis that the machine has not, an angle outside its travel.
-pub fn rotary(given: Option<&Given<Rotary>>, profile: &Profile) -> Result<Vector, Failure> {
+pub(crate) fn rotary(given: Option<&Given<Rotary>>, profile: &Profile) -> Result<Vector, Failure> {
     let Some(given) = given else { return Ok(Vector::zeros()) };
     for (axis, angle) in given.0.iter().enumerate() {
         if angle.is_some() && !profile.has_rotary()[axis] {

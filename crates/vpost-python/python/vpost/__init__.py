@@ -7,10 +7,11 @@ Lengths are millimetres, errors micrometres, angles of axes degrees; the name of
 
 from ._diagnosis import Cause, Change, Diagnosis, Gap, Parameter, diagnose
 from ._messages import Error, Message, NotFiniteError, Refused, ShapeError, UnitsError
-from ._points import ErrorMap, Predicted, Solved, map, predict, solve
+from ._points import Budget, ErrorMap, Predicted, Solved, budget, map, predict, solve
 from ._programs import Checked, Corrected, check, correct
 
 __all__ = [
+    "Budget",
     "Cause",
     "Change",
     "Checked",
@@ -27,6 +28,7 @@ __all__ = [
     "ShapeError",
     "Solved",
     "UnitsError",
+    "budget",
     "check",
     "correct",
     "diagnose",

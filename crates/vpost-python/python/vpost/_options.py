@@ -81,3 +81,21 @@ def options(
     words.extend(["--strict"] if strict else [])
     words.extend(["--guard"] if guard else [])
     return words
+
+
+def spelt(**asked: Union[None, bool, float, str, Sequence[str]]) -> List[str]:
+    """The words of options that one job has: a list is an option that repeats, None and False are not asked for."""
+    words = []
+    for name, value in asked.items():
+        option = f"--{name.replace('_', '-')}"
+        if value is None or value is False:
+            continue
+        if value is True:
+            words.append(option)
+        elif isinstance(value, int):
+            words.append(f"{option}={value}")
+        elif isinstance(value, float):
+            words.append(f"{option}={number(value, name)}")
+        else:
+            words.extend(f"{option}={one}" for one in ([value] if isinstance(value, str) else value))
+    return words
