@@ -5,9 +5,12 @@ pub mod curves;
 pub mod deformation;
 pub mod dominant;
 pub mod drawn;
+mod job;
 pub mod json;
 pub mod second_order;
 pub mod study;
+
+pub use job::of;
 
 use diagnostic::{Speaks, Text, both};
 use error_map::{ErrorMap, Grid, Nodes};
@@ -15,37 +18,10 @@ use machine_model::{Command, Engine, PathModel, Range, SolveError, Vector, Volum
 use machine_profile::Profile;
 use rayon::prelude::*;
 
-use crate::conditions;
-use crate::datums::of_offsets;
 use crate::message::{Failure, OPTION, Report, notice};
 use crate::options::{JobOptions, Outside};
 use crate::predict::{POINT_OUTSIDE, other_tool};
 use crate::values::{Given, Lattice, Rotary, ToolVector};
-use asked::{Asked, MapOptions};
-use study::Study;
-
-/// The map of a machine.
-///
-/// * `warnings` – what is to be said of it, also where it fails
-///
-/// # Errors
-/// What is asked for cannot be: nodes outside the volume, a tool or angles that the machine has not.
-pub fn of(
-    options: &JobOptions,
-    profile: &Profile,
-    engine: &dyn Engine,
-    asked: &MapOptions,
-    warnings: &mut Vec<Report>,
-) -> Result<Study, Failure> {
-    let model = model(engine)?;
-    let asked = Asked::of(asked, options, profile, model.volume())?;
-    require_tool(model, asked.tool_mm)?;
-    warnings.extend(conditions::doubts(profile, engine.id()));
-    let grid_mm = asked.grid.axes().each_ref().map(Nodes::range_mm);
-    warnings.extend(outside(asked.part_box_mm.into_iter().chain([grid_mm]), model.volume(), options)?);
-    let offsets = of_offsets(options, profile, engine)?;
-    Study::new(profile, engine.id(), model, offsets, asked)
-}
 
 /// The engine as a model of paths, which says errors.
 ///
