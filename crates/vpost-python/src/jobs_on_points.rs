@@ -4,8 +4,9 @@ use std::ffi::OsString;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use diagnostic::{Diagnostic, Severity, both};
+use diagnostic::{Diagnostic, Language, Severity, both};
 use jobs::budget::BudgetOptions;
+use jobs::calibrate::{Calibrate, Calibration, Said, Setting};
 use jobs::conditions;
 use jobs::diagnose::{Books, Model};
 use jobs::map::asked::MapOptions;
@@ -208,4 +209,37 @@ pub(crate) fn budget(
     };
     let (json, warnings) = py.detach(work).map_err(|failure| raised(py, &failure))?;
     Ok((json, told(&warnings)))
+}
+
+/// What a calibration says and makes: its report; the profile, its tables' folder and their texts; the JSON of `--json`;
+/// warnings.
+type Calibrated = (String, Option<(String, String, Vec<(String, Vec<u8>)>)>, Option<String>, Vec<Told>);
+
+/// `vpost calibrate INSTRUMENT …`
+#[pyfunction]
+pub(crate) fn calibrate(py: Python<'_>, files: Vec<Text>, options: Vec<OsString>) -> PyResult<Calibrated> {
+    let work = || -> Result<Calibration, Failure> {
+        let Whole { job, own } = options::read::<Whole<Calibrate>>(options)?;
+        let read = read_of(&files);
+        let setting = Setting { options: &job, read: &read, language: Language::English, command: None };
+        let made = jobs::calibrate::of(&own.command, &setting);
+        match made.refused {
+            Some(refused) => Err(refused),
+            None => Ok(made),
+        }
+    };
+    let made = py.detach(work).map_err(|failure| raised(py, &failure))?;
+    let profile = made.profile.map(|made| {
+        let folder = made.folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        (made.text, folder, made.tables)
+    });
+    let json = made.results.into_iter().next().map(|(_, bytes)| text(bytes));
+    let (mut report, mut warnings) = (String::new(), Vec::new());
+    for said in made.said {
+        match said {
+            Said::Result(text) => report.push_str(text.english()),
+            Said::Warning(warning) => warnings.push(warning),
+        }
+    }
+    Ok((report, profile, json, told(&warnings)))
 }

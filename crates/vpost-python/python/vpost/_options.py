@@ -32,7 +32,7 @@ def three(values: Sequence[float], what: str) -> str:
 
 
 def options(
-    profile: Path,
+    profile: Optional[Path],
     *,
     dialect: Optional[Path] = None,
     engine: Optional[str] = None,
@@ -51,7 +51,7 @@ def options(
     guard: bool = False,
 ) -> List[str]:
     """The words of a command line."""
-    words = [f"--machine={os.fspath(profile)}"]
+    words = [] if profile is None else [f"--machine={os.fspath(profile)}"]
     if dialect is not None:
         words.append(f"--dialect={os.fspath(dialect)}")
     if engine is not None:
