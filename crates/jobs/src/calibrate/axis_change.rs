@@ -142,8 +142,8 @@ impl Session {
         }
     }
 
-    fn machine(&self, description: Description, temperature_c: Option<f64>) -> Result<WithEffects, Failure> {
-        let body = body(&description)?;
+    fn machine(&self, description: &Description, temperature_c: Option<f64>) -> Result<WithEffects, Failure> {
+        let body = body(description)?;
         let mut conditions = self.conditions;
         if let Some(temperature) = temperature_c {
             conditions.temp_c = [Some(temperature); 3];
@@ -189,7 +189,7 @@ impl Session {
                 let at = match machines.iter().position(|(known, _)| *known == temperature) {
                     Some(at) => at,
                     None => {
-                        machines.push((temperature, self.machine(description.clone(), temperature)?));
+                        machines.push((temperature, self.machine(&description, temperature)?));
                         machines.len() - 1
                     }
                 };
@@ -259,7 +259,7 @@ impl Session {
         asked: &Asked,
         temperature_c: Option<f64>,
     ) -> Result<Squareness, Failure> {
-        let before = self.machine(self.description.clone(), temperature_c)?;
+        let before = self.machine(&self.description, temperature_c)?;
         let known = angles_between(&self.lines, &self.targets_mm, &before);
         let wanted: [f64; 3] = std::array::from_fn(|k| asked.rad[k].unwrap_or(known[k]));
         let mut after = self.description.clone();
@@ -271,7 +271,7 @@ impl Session {
             }
         }
         squareness_for(&self.lines, &self.targets_mm, wanted, after.squareness, |squareness| {
-            self.machine(Description { squareness, ..after.clone() }, temperature_c)
+            self.machine(&Description { squareness, ..after.clone() }, temperature_c)
         })
     }
 
