@@ -5,15 +5,15 @@ use std::path::PathBuf;
 use diagnostic::{Text, both};
 use report::body::{Body, Fact};
 use report::numbers::digits;
+use report::text::{MACHINE, MEASUREMENTS};
 use serde_json::{Value, json};
 
-use crate::arguments::Shared;
-use crate::figures::round;
+use crate::figures::{celsius, round};
 use crate::message::Failure;
-use crate::origin::{MACHINE, MEASUREMENTS, celsius, command, command_fact};
-use crate::{file, profile};
+use crate::{lines, profile};
 
 use super::super::output::Target;
+use super::super::work::Work;
 
 /// What the JSON is called.
 pub(super) const SCHEMA: &str = "vpost.calibration/1";
@@ -42,7 +42,7 @@ pub(in super::super) struct Facts {
     date: Option<String>,
     temperature_c: Option<f64>,
     uncertainty_um: Option<f64>,
-    command: String,
+    command: Option<String>,
 }
 
 impl Facts {
@@ -52,7 +52,7 @@ impl Facts {
     /// * `uncertainty_mm` – what the deviation keeps at 95 % of the places of the volume, where that is known
     pub(in super::super) fn new(
         target: &Target,
-        shared: &Shared,
+        work: &Work<'_>,
         files: &[PathBuf],
         temperature_c: Option<f64>,
         uncertainty_mm: Option<f64>,
@@ -60,22 +60,19 @@ impl Facts {
         let named = |path: &PathBuf| -> Result<Named, Failure> {
             let hash = match path.as_os_str() == "-" {
                 true => None,
-                false => Some(blake3::hash(&file::read(path)?).to_string()),
+                false => Some(blake3::hash(&work.read(path)?.1).to_string()),
             };
-            Ok(Named { name: file::name(path), hash })
+            Ok(Named { name: lines::name(path), hash })
         };
-        let base = match &shared.job.machine {
+        let base = match &work.options.machine {
             Some(path) => {
                 let loaded = profile::load(path)?;
-                let named = Named { name: file::name(path), hash: Some(loaded.hash.to_string()) };
+                let named = Named { name: lines::name(path), hash: Some(loaded.hash.to_string()) };
                 Some((loaded.profile.name, named))
             }
             None => None,
         };
-        let written_hash = match &target.output {
-            Some(path) => Some(profile::load(path)?.hash.to_string()),
-            None => None,
-        };
+        let written_hash = work.made.borrow().profile.as_ref().map(|written| written.hash.to_string());
         Ok(Self {
             files: files.iter().map(named).collect::<Result<_, _>>()?,
             base,
@@ -85,7 +82,7 @@ impl Facts {
             date: target.date.clone(),
             temperature_c,
             uncertainty_um: uncertainty_mm.map(|u| round(u * 1e3, 3)),
-            command: command(),
+            command: work.setting.command.clone(),
         })
     }
 
@@ -105,7 +102,7 @@ impl Facts {
             "files": self.files.iter().map(file).collect::<Vec<_>>(),
             "base": self.base.as_ref().map(|(_, base)| file(base)),
             "profile": self.written.as_ref().map(|path| json!({
-                "name": file::name(path),
+                "name": lines::name(path),
                 "blake3": self.written_hash,
             })),
             "instrument": self.instrument,
@@ -121,7 +118,7 @@ impl Facts {
     /// Whether there is a profile to correct by.
     pub(in super::super) fn say_written(&self, out: &mut Body) {
         match &self.written {
-            Some(path) => out.p(&both!("Written to {}.", "Записано в {}.", file::name(path))),
+            Some(path) => out.p(&both!("Written to {}.", "Записано в {}.", lines::name(path))),
             None => out.muted(&both!(
                 "No profile was written: add -o PROFILE.toml to correct by these readings.",
                 "Профиль не записан: чтобы исправлять по этим измерениям, добавьте -o PROFILE.toml."
@@ -142,7 +139,7 @@ impl Facts {
         }
         if let (Some(path), Some(hash)) = (&self.written, &self.written_hash) {
             let name = both!("profile written, with its tables", "записанный профиль с таблицами");
-            all.push(Fact::file(name, &file::name(path), Some(hash.clone())));
+            all.push(Fact::file(name, &lines::name(path), Some(hash.clone())));
         }
         let [instrument, date] = [&self.instrument, &self.date].map(|value| value.as_ref().map(Text::same));
         all.push(said(both!("instrument", "прибор"), instrument, "--instrument"));
@@ -157,7 +154,8 @@ impl Facts {
             );
             Fact::new(both!("uncertainty", "неопределённость"), &kept)
         }));
-        all.push(command_fact());
+        let command = self.command.as_ref();
+        all.extend(command.map(|typed| Fact::typed(both!("command", "команда"), typed.clone())));
         all
     }
 }

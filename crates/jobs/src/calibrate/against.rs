@@ -3,20 +3,20 @@
 use std::path::Path;
 
 use calibration::change::{by_function, compare};
-use diagnostic::{Language, Text, both};
+use diagnostic::{Text, both};
 use machine_model::{Range, Vector, Volume};
 use machine_profile::Profile;
 use measurement_files::micro;
 
 use crate::message::{Failure, notice};
-use crate::{file, profile};
+use crate::{lines, profile};
 
 use super::codes::QUESTION;
 use crate::figures::short;
 
-/// Prints the comparison.
-pub(super) fn report(old: &Path, new: &Profile, language: Language) -> Result<(), Failure> {
-    let name = file::name(old);
+/// The comparison.
+pub(super) fn report(old: &Path, new: &Profile) -> Result<Text, Failure> {
+    let name = lines::name(old);
     let old = profile::load_mill(old)?.profile;
     let (a, b) = (old.volume(), new.volume());
     let volume = Volume(
@@ -49,7 +49,7 @@ pub(super) fn report(old: &Path, new: &Profile, language: Language) -> Result<()
             "  not decided: a profile does not say `uncertainty_um` in `calibrated`\n",
             "  не решено: в одном из профилей нет `uncertainty_um` в `calibrated`\n"
         ));
-        return file::print(text.in_language(language).as_bytes());
+        return Ok(text);
     };
     let verdict = match is_beyond {
         true => both!("the machine has changed", "станок изменился"),
@@ -63,7 +63,7 @@ pub(super) fn report(old: &Path, new: &Profile, language: Language) -> Result<()
     if is_beyond {
         text.push(&functions(&old, new, u, &volume));
     }
-    file::print(text.in_language(language).as_bytes())
+    Ok(text)
 }
 
 /// What changed, function by function: place and amount at the tables' nodes, and the reversal value.

@@ -61,7 +61,7 @@ pub struct Interferometer {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, help_heading = "Tables")]
     pub optics: Option<Given<Point3>>,
     /// Write finer tables, with this step.
-    #[arg(long, value_name = "MM", value_parser = crate::arguments::size, help_heading = "Tables")]
+    #[arg(long, value_name = "MM", value_parser = crate::options::size, help_heading = "Tables")]
     pub refine: Option<f64>,
     /// Between targets: linear, monotone.
     ///
@@ -69,7 +69,7 @@ pub struct Interferometer {
     #[arg(long, value_name = "HOW", value_enum, default_value_t = Between::Linear, hide_possible_values = true, hide_default_value = true, help_heading = "Tables")]
     pub interpolation: Between,
     /// Standard uncertainty of the instrument, µm/m; 0.5.
-    #[arg(long, value_name = "U", default_value_t = 0.5, value_parser = crate::arguments::size_or_zero, hide_default_value = true, help_heading = "Tables")]
+    #[arg(long, value_name = "U", default_value_t = 0.5, value_parser = crate::options::size_or_zero, hide_default_value = true, help_heading = "Tables")]
     pub u_um_per_m: f64,
     #[command(flatten)]
     pub shown: Shown,

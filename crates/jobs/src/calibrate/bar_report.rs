@@ -8,6 +8,8 @@ use diagnostic::{Text, both};
 use machine_model::{Axis, Description, Vector};
 use measurement_files::micro;
 
+use super::sources::line;
+
 /// The pairs of axes of the planes XY, ZX, YZ.
 pub(super) const SCALES: [&str; 3] = ["X-Y", "Z-X", "Y-Z"];
 
@@ -42,30 +44,24 @@ pub(super) fn rotary_report(found: &RotaryCalibration, tests: &[Test], descripti
         head(published.is_some(), Text::pair("   in sequence", "   по очереди ")),
         head(based, Text::pair("        base", "       исх. "))
     ));
+    let columns = |value: f64, half: f64, by: Option<f64>, base: Text| {
+        let by = by.map_or_else(String::new, |by| format!(" {by:>10.3}"));
+        format!("{value:>10.3} ± {half:>8.3}{by}{}", if based { base } else { Text::EMPTY })
+    };
     for (k, f) in found.locations.iter().enumerate() {
         let (scale, unit) = micro(f.location.is_length);
-        let mut row =
-            format!("  {}  {:>10.3} ± {:>8.3}", f.location.name(), f.value * scale, f.half_width_95 * scale);
-        if let Some(by) = &published {
-            row.push_str(&format!(" {:>10.3}", by.piges[k] * scale));
-        }
-        if based {
-            row.push_str(&format!(" {:>11.3}", f.base * scale));
-        }
-        out.push(&both!("{row} {unit}\n", "{row} {unit:#}\n"));
+        let by = published.as_ref().map(|by| by.piges[k] * scale);
+        let base = Text::same(format!(" {:>11.3}", f.base * scale));
+        let row = columns(f.value * scale, f.half_width_95 * scale, by, base);
+        out.push(&line(format_args!("  {}  {row}", f.location.name()), &unit));
     }
     for (k, name) in ["eX", "eY"].into_iter().enumerate() {
+        let by = published.as_ref().map(|by| by.cup_mm[k] * 1e3);
         let (value, half) = (found.cup_mm[k] * 1e3, found.cup_half_width_95_mm[k] * 1e3);
-        let mut row = format!("  {name}    {value:>10.3} ± {half:>8.3}");
-        if let Some(by) = &published {
-            row.push_str(&format!(" {:>10.3}", by.cup_mm[k] * 1e3));
-        }
-        if based {
-            row.push_str("            ");
-        }
+        let row = columns(value, half, by, Text::same("            "));
         out.push(&both!(
-            "{row} um (tool ball against the spindle axis)\n",
-            "{row} мкм (шарик инструмента относительно оси шпинделя)\n"
+            "  {name}    {row} um (tool ball against the spindle axis)\n",
+            "  {name}    {row} мкм (шарик инструмента относительно оси шпинделя)\n"
         ));
     }
     if let Some(off) = crossing.and_then(|at| approximation_mm(tests, &at, found)) {
@@ -86,7 +82,7 @@ pub(super) fn before_and_after(before: &RotaryCalibration, after: &RotaryCalibra
         let Some(g) = after.locations.iter().find(|g| g.location == f.location) else { continue };
         let (scale, unit) = micro(f.location.is_length);
         let row = format!("  {}  {:>9.2}  {:>9.2}", f.location.name(), f.value * scale, g.value * scale);
-        out.push(&both!("{row} {unit}\n", "{row} {unit:#}\n"));
+        out.push(&line(row, &unit));
         if f.location.is_length {
             largest[0] = largest[0].max(f.value.abs() * scale);
             largest[1] = largest[1].max(g.value.abs() * scale);
@@ -112,7 +108,7 @@ pub(super) fn circle_report(found: &CircleCalibration) -> Text {
         "circles, {readings} readings, {left_um:.3} um left (standard deviation)\n",
         "окружности, отсчётов {readings}, остаток {left_um:.3} мкм (стандартное отклонение)\n"
     );
-    let line = |name: Text, t: Term, (scale, unit): (f64, Text), behind: Text| {
+    let term = |name: Text, t: Term, (scale, unit): (f64, Text), behind: Text| {
         let (value, half) = (t.value * scale, t.half_width_95 * scale);
         both!(
             "  {name:<12}{value:>9.2} ± {half:.2} {unit}{behind}\n",
@@ -124,27 +120,27 @@ pub(super) fn circle_report(found: &CircleCalibration) -> Text {
         value => both!(" (base {value:.2})", " (исходный {value:.2})"),
     };
     let ratio = || (1e6, both!("um/m", "мкм/м"));
-    for (name, term) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().zip(found.squareness_rad) {
-        if let Some(t) = term {
-            out.push(&line(Text::same(name), t, micro(false), base(t.base * 1e6)));
+    for (name, found) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().zip(found.squareness_rad) {
+        if let Some(t) = found {
+            out.push(&term(Text::same(name), t, micro(false), base(t.base * 1e6)));
         }
     }
-    for (name, term) in SCALES.into_iter().zip(found.mismatch) {
-        if let Some(t) = term {
+    for (name, found) in SCALES.into_iter().zip(found.mismatch) {
+        if let Some(t) = found {
             let why = both!(
                 " (one axis against the other: a bar sees no common scale)",
                 " (одна ось относительно другой: общего масштаба измеритель не видит)"
             );
-            out.push(&line(both!("scale {name}", "масшт. {name}"), t, ratio(), why));
+            out.push(&term(both!("scale {name}", "масшт. {name}"), t, ratio(), why));
         }
     }
     if let Some(sum) = found.closure {
         let why = both!(" (the three must add up to 0)", " (три вместе должны дать 0)");
-        out.push(&line(both!("closure", "сумма"), sum, ratio(), why));
+        out.push(&term(both!("closure", "сумма"), sum, ratio(), why));
     }
-    for (axis, term) in Axis::ALL.iter().zip(found.backlash_mm) {
-        out.push(&match term {
-            Some(t) => line(both!("backlash {axis}", "люфт {axis}"), t, micro(true), base(t.base * 1e3)),
+    for (axis, found) in Axis::ALL.iter().zip(found.backlash_mm) {
+        out.push(&match found {
+            Some(t) => term(both!("backlash {axis}", "люфт {axis}"), t, micro(true), base(t.base * 1e3)),
             None => both!(
                 "  backlash {axis}  not seen: no reading says the direction of {axis} both ways\n",
                 "  люфт {axis}      не виден: нет отсчётов с направлением {axis} в обе стороны\n"

@@ -8,7 +8,7 @@ use machine_model::{Axis, Command, RigidBody, Vector};
 use machine_profile::Profile;
 use measurement_files::{Row, Sheet, numbered};
 
-use crate::arguments::Shared;
+use super::super::work::Work;
 use crate::calibrate::codes::{AXES, CELL, QUESTION, UNITS};
 use crate::calibrate::options::RTest;
 use crate::calibrate::output::Output;
@@ -53,14 +53,14 @@ impl Rows {
         arguments: &RTest,
         profile: &Profile,
         output: &Output,
-        shared: &Shared,
+        work: &Work<'_>,
     ) -> Result<Self, Failure> {
         let mut all = Self::default();
-        let said = conditions(&shared.job)?;
+        let said = conditions(work.options)?;
         let machine = profile.rigid_body_without_effects();
         let Self { read, runs, nominal_mm } = &mut all;
         for path in files {
-            let sheet = sources::sheet(path, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;
+            let sheet = sources::sheet(work.read(path)?, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;
             columns(&sheet, arguments.sphere, profile)?;
             let file = sheet.name().to_owned();
             read.add(sheet, |row| {

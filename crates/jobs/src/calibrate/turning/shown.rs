@@ -11,7 +11,7 @@ use report::text::opening;
 use serde_json::Value;
 
 use super::super::page::{Facts, Found};
-use super::{Outcome, named, owner};
+use super::found::{Outcome, named, owner};
 use crate::turned::judged::{Form, Lead, mm, um};
 
 /// Places of the fitted curve.

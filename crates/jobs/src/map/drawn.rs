@@ -2,20 +2,23 @@
 
 use machine_model::Vector;
 
-use jobs::map::study::Study;
+use super::study::Study;
 
 /// Classes of the histogram.
 const CLASSES: usize = 40;
 
 /// How many nodes have an error of which size, before and after the shift by the geometric median.
-pub(super) struct Classes {
+pub struct Classes {
     /// Width of a class, mm.
     pub width_mm: f64,
+    /// Nodes by class, as they are.
     pub before: Vec<u64>,
+    /// The same after the shift.
     pub after: Vec<u64>,
 }
 
-pub(super) fn classes(study: &Study) -> Classes {
+/// Of the volume.
+pub fn classes(study: &Study) -> Classes {
     let median = study.parts[0].median();
     let largest = study.parts[0].figures.magnitude_mm.high.max(median.figures.magnitude_mm.high);
     let width_mm = report::scale::nice(largest.max(1e-9) / CLASSES as f64);

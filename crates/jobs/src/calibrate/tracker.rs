@@ -10,17 +10,17 @@ use clap::{Args, ValueEnum};
 use diagnostic::{Diagnostic, Text, both};
 use machine_model::effects::Conditions;
 use machine_model::{Axis, Command, Vector};
-use measurement_files::Sheet;
+use measurement_files::{Sheet, micro};
 
-use crate::arguments::Shared;
 use crate::conditions::conditions;
-use crate::file;
-use crate::message::{Failure, Messages, Report, notice};
+use crate::message::{Failure, Report, notice};
+use crate::profile::load_mill;
 
 use super::codes::{DOUBTFUL, MISSING, QUESTION, UNFIT, failure};
 use super::output::{Output, Target};
-use super::sources::{self, span, three};
+use super::sources::{self, line, span, three};
 use super::volumetric::moved;
+use super::work::Work;
 use crate::figures::short;
 
 /// `vpost calibrate tracker X.csv Y.csv Z.csv -o PROFILE`
@@ -35,10 +35,10 @@ pub struct Tracker {
     #[arg(long, value_enum, default_value_t = FrameName::Fit)]
     pub frame: FrameName,
     /// Standard uncertainty of one reading, µm; default: from the repeats, or from the roughness of the lines.
-    #[arg(long = "u-um", value_name = "UM", value_parser = crate::arguments::size)]
+    #[arg(long = "u-um", value_name = "UM", value_parser = crate::options::size)]
     pub u_um: Option<f64>,
     /// Use nodes this far apart only: longer chords know their directions better.
-    #[arg(long, value_name = "MM", value_parser = crate::arguments::size)]
+    #[arg(long, value_name = "MM", value_parser = crate::options::size)]
     pub chord_mm: Option<f64>,
     /// Interval whose directions make G and r01, from 0.
     #[arg(long, value_name = "K", default_value_t = 1)]
@@ -96,12 +96,12 @@ fn read(
     arguments: &Tracker,
     said: Conditions,
     output: Option<&Output>,
-    messages: &Messages,
+    work: &Work<'_>,
 ) -> Result<([MeanTraverse; 3], Vec<Point>, AllRead), Failure> {
     let given_mm = arguments.u_um.map(|u| u * 1e-3);
     let (mut traverses, mut points, mut read) = (Vec::new(), Vec::new(), sources::Read::default());
     for (axis, path) in arguments.traverses.iter().enumerate() {
-        let sheet = sources::sheet(path, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;
+        let sheet = sources::sheet(work.read(path)?, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;
         let (name, text) = (sheet.name().to_owned(), sheet.text().to_owned());
         let first = read.rows.len();
         readings(&mut read, sheet, axis)?;
@@ -109,7 +109,7 @@ fn read(
         let readings: Vec<Reading> = rows.iter().map(|(reading, _)| *reading).collect();
         let mean = MeanTraverse::new(axis, &readings, given_mm)
             .map_err(|error| failure(&name, text.as_bytes(), &error))?;
-        warn_of_gaps(&name, &mean, messages);
+        warn_of_gaps(&name, &mean, work);
         // A line read once shows its scatter by its roughness only.
         let rough_mm = (mean.noise == Noise::Roughness).then(|| mean.scatter_mm.norm() / 3f64.sqrt());
         traverses.push(match arguments.chord_mm {
@@ -141,41 +141,41 @@ fn read(
 }
 
 /// `vpost calibrate tracker`
-pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Tracker, work: &Work<'_>) -> Result<(), Failure> {
     let Target { chain, .. } = &arguments.target;
-    let is_known = arguments.target.writes() || shared.job.machine.is_some() || chain.is_some();
-    let mut output = is_known.then(|| Output::start(&arguments.target, shared)).transpose()?;
-    let (traverses, points, read) = read(arguments, conditions(&shared.job)?, output.as_ref(), messages)?;
+    let is_known = arguments.target.writes() || work.options.machine.is_some() || chain.is_some();
+    let output = is_known.then(|| Output::start(&arguments.target, work, load_mill)).transpose()?;
+    let (traverses, points, read) = read(arguments, conditions(work.options)?, output.as_ref(), work)?;
     let frame = match arguments.frame {
         FrameName::AsMeasured => Frame::AsMeasured,
         FrameName::Fit => Frame::Fitted,
     };
     let found = calibrate(traverses, frame).map_err(|error| failure("", &[], &error))?;
-    let Some(output) = &mut output else {
-        file::print(report(&found, None, arguments)?.in_language(messages.language()).as_bytes())?;
-        return judge_chords(&found, shared, messages);
+    let Some(mut output) = output else {
+        work.print(&report(&found, None, arguments)?);
+        return judge_chords(&found, work);
     };
     let base = output.measured_from(&arguments.target)?;
     let changed = machine(&points, &base, &found, frame).map_err(|error| read.refused("x_mm", &error))?;
     let text = report(&found, Some(&changed), arguments)?;
-    file::print(text.in_language(messages.language()).as_bytes())?;
-    judge(&changed, base.is_known, messages)?;
-    judge_chords(&found, shared, messages)?;
+    work.print(&text);
+    judge(&changed, base.is_known, work)?;
+    judge_chords(&found, work)?;
     if !arguments.target.writes() {
         return Ok(());
     }
-    write_profile(output, &found, arguments.as_published);
+    write_profile(&mut output, &found, arguments.as_published);
     output.changed(&base, &changed.axes, &changed.description);
     output.set_up(&changed.setups);
     let scatter_mm = found.traverses.iter().map(|t| t.scatter_mm.max()).fold(0.0, f64::max);
     let known_mm = [Some(scatter_mm), Some(changed.field_u95_mm)];
-    output.write(&arguments.target, messages, read.temperature_c(), known_mm)
+    output.write(&arguments.target, work, read.temperature_c(), known_mm)
 }
 
-fn warn_of_gaps(name: &str, mean: &MeanTraverse, messages: &Messages) {
+fn warn_of_gaps(name: &str, mean: &MeanTraverse, work: &Work<'_>) {
     let say = |said: Diagnostic| {
         let source = Some(crate::message::Source::whole(name, []));
-        messages.report(&Report { source, ..Report::warning(said) });
+        work.report(Report { source, ..Report::warning(said) });
     };
     if let Some((at, found, usual)) = mean.short_of_runs.first() {
         say(notice!(MISSING;
@@ -197,7 +197,7 @@ fn warn_of_gaps(name: &str, mean: &MeanTraverse, messages: &Messages) {
 }
 
 /// Refuses a field that is known worse than it deviates.
-fn judge(changed: &TrackerMachine, has_base: bool, messages: &Messages) -> Result<(), Failure> {
+fn judge(changed: &TrackerMachine, has_base: bool, work: &Work<'_>) -> Result<(), Failure> {
     let [known, found] = [changed.field_u95_mm, changed.field_p95_mm].map(|mm| short(mm * 1e3, 1));
     let field = both!(
         "the field is known to ±{known} um (95 % of the volume's points), the deviations found are {found} um",
@@ -212,16 +212,16 @@ fn judge(changed: &TrackerMachine, has_base: bool, messages: &Messages) -> Resul
         )));
     }
     if !has_base && changed.field_u95_mm > 0.5 * changed.field_p95_mm {
-        messages.warn(DOUBTFUL, field, help);
+        work.warn(DOUBTFUL, field, help);
     }
     Ok(())
 }
 
 /// Refuses chords that cannot carry a correction, for the engines that carry one through the volume.
-fn judge_chords(found: &TrackerCalibration, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+fn judge_chords(found: &TrackerCalibration, work: &Work<'_>) -> Result<(), Failure> {
     let um = |mm: f64| format!("{:.0}", mm * 1e3);
     let far = &found.far_corner;
-    let tangential = shared.job.engine().is_some_and(|id| id.name().starts_with("tangential"));
+    let tangential = work.options.engine().is_some_and(|id| id.name().starts_with("tangential"));
     if !tangential || far.verdict() == Verdict::Sound {
         return Ok(());
     }
@@ -239,7 +239,7 @@ fn judge_chords(found: &TrackerCalibration, shared: &Shared, messages: &Messages
         short(needed, 3)
     );
     if far.verdict() == Verdict::Doubtful {
-        messages.warn(DOUBTFUL, message, help);
+        work.warn(DOUBTFUL, message, help);
         return Ok(());
     }
     Err(Failure::unfit(notice!(UNFIT;
@@ -335,10 +335,7 @@ fn report(
     let angles = [("EC0Y", s.ec0y_rad), ("EB0Z", s.eb0z_rad), ("EA0Z", s.ea0z_rad)];
     for ((name, angle), u) in angles.into_iter().zip(found.squareness_uncertainty_rad) {
         let (angle, half) = (angle * 1e6, factor * u * 1e6);
-        out.push(&both!(
-            "  {name}       {angle:+.1} ± {half:.1} urad\n",
-            "  {name}       {angle:+.1} ± {half:.1} мкрад\n"
-        ));
+        out.push(&line(format_args!("  {name}       {angle:+.1} ± {half:.1}"), &micro(false).1));
     }
     if let Some(changed) = changed {
         out.push(&of_machine(changed));
@@ -411,10 +408,7 @@ fn of_machine(changed: &TrackerMachine) -> Text {
         for direction in 0..3 {
             let (low, high) = span(own.errors.iter().map(|row| row[direction] * 1e3));
             let name = Axis::ALL[direction];
-            out.push(&both!(
-                "  E{name}{letter}        {low:.1} … {high:.1} um\n",
-                "  E{name}{letter}        {low:.1} … {high:.1} мкм\n"
-            ));
+            out.push(&line(format_args!("  E{name}{letter}        {low:.1} … {high:.1}"), &micro(true).1));
         }
         if let Some((value, half)) = changed.play_mm[axis] {
             let (value, half) = (value * 1e3, half * 1e3);

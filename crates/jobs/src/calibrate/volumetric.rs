@@ -10,14 +10,14 @@ use diagnostic::{Text, both};
 use machine_model::{Axis, Vector};
 use measurement_files::{Row, micro, numbered};
 
-use crate::arguments::Shared;
 use crate::conditions::conditions;
-use crate::file;
-use crate::message::{Failure, Messages, notice};
+use crate::message::{Failure, notice};
+use crate::profile::load_mill;
 
 use super::codes::{DOUBTFUL, QUESTION, UNFIT};
 use super::output::{Output, Target};
-use super::sources::{self, span, three};
+use super::sources::{self, line, span, three};
+use super::work::Work;
 
 /// `vpost calibrate volumetric FILES… -o PROFILE`
 #[derive(Debug, Args)]
@@ -46,13 +46,13 @@ const EXPECTED: Text = Text::pair(
 /// The points of all files, and the names of their runs, with the file where there are several.
 fn read(
     arguments: &Volumetric,
-    shared: &Shared,
+    work: &Work<'_>,
     output: &Output,
 ) -> Result<(sources::Read<Point>, Vec<String>), Failure> {
     let (mut all, mut runs) = (sources::Read::default(), Vec::new());
-    let said = conditions(&shared.job)?;
+    let said = conditions(work.options)?;
     for path in &arguments.files {
-        let sheet = sources::sheet(path, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;
+        let sheet = sources::sheet(work.read(path)?, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;
         sheet.need(
             &["x_mm", "y_mm", "z_mm"],
             both!(
@@ -112,22 +112,22 @@ fn point(row: &Row<'_>, run: usize, output: &Output) -> Result<Point, Failure> {
 }
 
 /// `vpost calibrate volumetric`
-pub(super) fn run(arguments: &Volumetric, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let mut output = Output::start(&arguments.target, shared)?;
+pub(super) fn run(arguments: &Volumetric, work: &Work<'_>) -> Result<(), Failure> {
+    let mut output = Output::start(&arguments.target, work, load_mill)?;
     let base = output.measured_from(&arguments.target)?;
-    let (read, runs) = read(arguments, shared, &output)?;
+    let (read, runs) = read(arguments, work, &output)?;
     let options = Options { nodes: arguments.nodes, holdout_every: arguments.holdout_every };
     let found = calibrate(&read.rows, &base, options).map_err(|error| read.refused("x_mm", &error))?;
-    file::print(report(&found, &runs).in_language(messages.language()).as_bytes())?;
-    judge(&found, messages)?;
+    work.print(&report(&found, &runs));
+    judge(&found, work)?;
     output.changed(&base, &found.axes, &found.description);
     output.set_up(&found.setups);
     let known_mm = [Some(found.estimate.rms()), Some(found.field_u95_mm)];
-    output.write(&arguments.target, messages, read.temperature_c(), known_mm)
+    output.write(&arguments.target, work, read.temperature_c(), known_mm)
 }
 
 /// Refuses what held-out readings refute; warns where the readings scatter more than they state.
-fn judge(found: &VolumetricCalibration, messages: &Messages) -> Result<(), Failure> {
+fn judge(found: &VolumetricCalibration, work: &Work<'_>) -> Result<(), Failure> {
     let misfit = found.estimate.misfit;
     let stated = found.estimate.degrees_of_freedom.is_none();
     if let Some(([before, after], count)) = found.holdout
@@ -150,7 +150,7 @@ fn judge(found: &VolumetricCalibration, messages: &Messages) -> Result<(), Failu
         )));
     }
     if stated && misfit > ROUGH {
-        messages.warning(notice!(DOUBTFUL;
+        work.warning(notice!(DOUBTFUL;
             "the best machine leaves {misfit:.1} times what `u_um` states: uncertainties are widened by as much",
             "лучший станок оставляет в {misfit:.1} раза больше, чем говорит `u_um`: неопределённости увеличены во столько же раз";
             "give more `--nodes`, or state what the readings really scatter",
@@ -182,15 +182,12 @@ fn report(found: &VolumetricCalibration, runs: &[String]) -> Text {
         let (low, high) = span(f.values.iter().map(|value| value * scale));
         let u = f.half_widths_95.iter().copied().fold(0.0, f64::max) * scale;
         let (function, axis) = (Axis::ALL[f.function], Axis::ALL[f.axis]);
-        out.push(&both!(
-            "E{function}{axis}    {low:.2} … {high:.2} ± {u:.2} {unit}\n",
-            "E{function}{axis}    {low:.2} … {high:.2} ± {u:.2} {unit:#}\n"
-        ));
+        out.push(&line(format_args!("E{function}{axis}    {low:.2} … {high:.2} ± {u:.2}"), &unit));
     }
     out.push(&Text::pair("machine\n", "станок\n"));
     for (name, (value, half)) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().zip(found.squareness_rad) {
-        let (value, half) = (value * 1e6, half * 1e6);
-        out.push(&both!("{name}   {value:.2} ± {half:.2} urad\n", "{name}   {value:.2} ± {half:.2} мкрад\n"));
+        let (scale, unit) = micro(false);
+        out.push(&line(format_args!("{name}   {:.2} ± {:.2}", value * scale, half * scale), &unit));
     }
     for (axis, play) in found.play_mm.iter().enumerate() {
         if let Some((value, half)) = play {

@@ -1,13 +1,13 @@
 //! `vpost calibrate turning`.
 
+mod found;
 mod shown;
 
 use std::path::{Path, PathBuf};
 
 use calibration::CalibrationError;
 use calibration::turning::{
-    Feature, FoundTerm, HeldOut, LEVEL, Term, TurnedReading, TurningBase, TurningCalibration, Uncertainty,
-    calibrate,
+    Change, Feature, Stretch, TurnedReading, TurningBase, TurningCalibration, calibrate,
 };
 use clap::Args;
 use diagnostic::{Speaks, Text, both};
@@ -19,11 +19,12 @@ use super::codes::{AXES, CELL, QUESTION, UNFIT, UNITS, failure};
 use super::output::{Output, Target};
 use super::page::Shown;
 use super::sources;
-use crate::arguments::Shared;
 use crate::conditions::conditions;
-use crate::file;
-use crate::message::{Failure, Messages, OPTION, notice};
+use crate::message::{Failure, OPTION, notice};
+use crate::options::JobOptions;
 
+use super::work::Work;
+use found::{Names, Outcome};
 use shown::Pieces;
 
 /// `vpost calibrate turning PARTS… -m LATHE -o PROFILE`
@@ -45,23 +46,11 @@ pub struct Turning {
     pub html: Option<PathBuf>,
 }
 
-/// What was found of the parts, and what that rests on.
-struct Outcome<'a> {
-    found: &'a TurningCalibration,
-    holdout: Option<HeldOut>,
-    base: &'a TurningBase,
-    names: &'a Names,
-    /// Readings that the adjustment saw.
-    rows: &'a [TurnedReading],
-    /// All diameters say when they were cut.
-    timed: bool,
-}
-
 const COLUMNS: &str = "part feature z_mm diameter_mm d_um time_s tool u_um temp_c note";
 const EXPECTED: Text =
     Text::pair("expected: part,z_mm,diameter_mm,d_um", "ожидалось: part,z_mm,diameter_mm,d_um");
 /// No lathe turns so wrong, µm.
-pub(crate) const MOST_UM: f64 = 2000.0;
+pub const MOST_UM: f64 = 2000.0;
 
 #[derive(Default)]
 struct Parts {
@@ -69,16 +58,12 @@ struct Parts {
     names: Names,
 }
 
-/// Names of parts and tools, by their numbers.
-#[derive(Default)]
-struct Names {
-    parts: Vec<String>,
-    tools: Vec<String>,
-}
-
 /// From the gauge point to the tip of the tool of this name, mm: `H1`, or `T0101` whose offset is H1, an edge's name behind it;
 /// else what the user can do. Any name where the profile has no tools.
-pub(crate) fn vector_mm(profile: &Profile, tool: &str) -> Result<Vector, Text> {
+///
+/// # Errors
+/// What the user can do.
+pub fn vector_mm(profile: &Profile, tool: &str) -> Result<Vector, Text> {
     if profile.tools.is_empty() {
         return Ok(Vector::from(profile.default_tool_mm));
     }
@@ -105,7 +90,10 @@ pub(crate) fn vector_mm(profile: &Profile, tool: &str) -> Result<Vector, Text> {
 }
 
 /// The part that a row was read on.
-pub(crate) fn part_name<'s>(row: &Row<'s>) -> Result<std::borrow::Cow<'s, str>, Failure> {
+///
+/// # Errors
+/// The row names none.
+pub fn part_name<'s>(row: &Row<'s>) -> Result<std::borrow::Cow<'s, str>, Failure> {
     let name = row.text("part");
     if name.is_empty() {
         return Err(Failure::at_cell(row, "part")(notice!(CELL;
@@ -118,7 +106,10 @@ pub(crate) fn part_name<'s>(row: &Row<'s>) -> Result<std::borrow::Cow<'s, str>, 
 }
 
 /// Where the carriage stood that cut a diameter, both mm.
-pub(crate) fn stood_at(
+///
+/// # Errors
+/// It stands where the profile does not reach.
+pub fn stood_at(
     row: &Row<'_>,
     profile: &Profile,
     tool_mm: Vector,
@@ -139,8 +130,14 @@ pub(crate) fn stood_at(
 }
 
 impl Parts {
-    fn read(&mut self, path: &Path, profile: &Profile, ignore: &[String]) -> Result<(), Failure> {
-        let sheet = sources::sheet(path, COLUMNS, EXPECTED, ignore)?;
+    fn read(
+        &mut self,
+        path: &Path,
+        profile: &Profile,
+        ignore: &[String],
+        work: &Work<'_>,
+    ) -> Result<(), Failure> {
+        let sheet = sources::sheet(work.read(path)?, COLUMNS, EXPECTED, ignore)?;
         sheet.need(&["part", "z_mm", "diameter_mm", "d_um"], EXPECTED)?;
         let names = &mut self.names;
         self.read.add(sheet, |row| names.reading(row, profile))
@@ -204,32 +201,16 @@ impl Names {
     }
 }
 
-/// Name in the profile, what the base says, and from the unit of the adjustment.
-fn named(term: Term, base: &TurningBase) -> (&'static str, f64, f64) {
-    match term {
-        Term::Axis => match base.spindle.tailstock {
-            Some(tailstock) => ("tailstock.offset_um.X", tailstock.offset_mm[0], 1e3),
-            None => ("spindle.EB0S_urad", base.spindle.tilt_rad[1], 1e6),
-        },
-        Term::Squareness => ("squareness.EB0Z_urad", base.description.squareness.eb0z_rad, 1e6),
-        Term::Growth => ("growth_um_per_h", 0.0, 1e3),
-        Term::Wear => ("wear_um_per_part", 0.0, 1e3),
-        Term::Bow => ("axis.Z.EXZ_bow_um", 0.0, 1e3),
-        Term::FourthOrder => ("axis.Z.EXZ_order4_um", 0.0, 1e3),
-        Term::PartToPart => ("change_um_per_part", 0.0, 1e3),
-    }
-}
-
 /// `vpost calibrate turning`
-pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Turning, work: &Work<'_>) -> Result<(), Failure> {
     let unknown = || {
         Failure::usage(notice!(QUESTION;
             "which lathe? its profile is not known", "какой токарный станок? его профиль неизвестен";
             "add `-m LATHE.toml`", "добавьте `-m LATHE.toml`"
         ))
     };
-    shared.job.machine.as_ref().ok_or_else(unknown)?;
-    let mut output = Output::start_any(&arguments.target, shared)?;
+    work.options.machine.as_ref().ok_or_else(unknown)?;
+    let mut output = Output::start(&arguments.target, work, crate::profile::load)?;
     let profile = output.base.clone().ok_or_else(unknown)?;
     let Some(lathe) = profile.lathe.clone() else {
         return Err(Failure::usage(notice!(OPTION;
@@ -243,13 +224,13 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
     let ignore = &arguments.target.ignore_column;
     let mut parts = Parts::default();
     for path in &arguments.files {
-        parts.read(path, &profile, ignore)?;
+        parts.read(path, &profile, ignore, work)?;
     }
     let trained = parts.read.rows.len();
     if let Some(path) = &arguments.holdout {
-        parts.read(path, &profile, ignore)?;
+        parts.read(path, &profile, ignore, work)?;
     }
-    by_effects(&mut parts.read.rows, &profile, &base, shared)?;
+    by_effects(&mut parts.read.rows, &profile, &base, work.options)?;
     let (rows, held) = parts.read.rows.split_at(trained);
     let stated = rows.iter().filter(|row| row.uncertainty_mm.is_some()).count();
     sources::all_state_or_none(stated, rows.len())?;
@@ -259,10 +240,8 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
     let holdout = holdout.map_err(|error| parts.read.refused("d_um", &error))?;
     let timed = rows.iter().all(|row| row.feature != Feature::Diameter || row.time_s.is_some());
     let outcome = Outcome { found: &found, holdout, base: &base, names: &parts.names, rows, timed };
-    file::print(outcome.report().in_language(messages.language()).as_bytes())?;
-    if let Some(path) = &arguments.json {
-        file::write(path, &jobs::summary::json(&outcome.json()))?;
-    }
+    work.print(&outcome.report());
+    work.show(arguments.json.as_ref(), || crate::summary::json(&outcome.json()));
     let refuted = holdout.filter(|judged| judged.rms_after_mm > judged.rms_before_mm + 1e-9);
     let page = |target: &Target, uncertainty_mm: Option<f64>| {
         let page = Pieces::new(&outcome, held, refuted.is_some());
@@ -270,7 +249,7 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
         let shown = Shown { html: arguments.html.clone(), ..Shown::default() };
         let mut files = arguments.files.clone();
         files.extend(arguments.holdout.clone());
-        shown.write(&page, &files, target, shared, parts.read.temperature_c(), uncertainty_mm)
+        shown.write(&page, &files, target, work, parts.read.temperature_c(), uncertainty_mm)
     };
     if let Some(judged) = refuted {
         page(&Target { output: None, ..arguments.target.clone() }, None)?;
@@ -283,14 +262,15 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
         )));
     }
     write(&mut output, &found, &base);
-    let uncertainty_mm = output.with_base_mm(found.field_u95_mm, messages);
+    let uncertainty_mm = output.with_base_mm(found.field_u95_mm, work);
     let known_mm = [Some(found.noise_mm), Some(uncertainty_mm)];
-    output.write(&arguments.target, messages, parts.read.temperature_c(), known_mm)?;
+    output.write(&arguments.target, work, parts.read.temperature_c(), known_mm)?;
     page(&arguments.target, Some(uncertainty_mm))
 }
 
 /// The lathe as its profile knows it.
-pub(crate) fn base_of(profile: &Profile, lathe: &LatheParts) -> TurningBase {
+#[must_use]
+pub fn base_of(profile: &Profile, lathe: &LatheParts) -> TurningBase {
     TurningBase {
         description: profile.description.clone(),
         interpolation: profile.interpolation,
@@ -302,25 +282,26 @@ pub(crate) fn base_of(profile: &Profile, lathe: &LatheParts) -> TurningBase {
 }
 
 /// What the profile's effects do of each reading: the whole lathe less its tables and spindle.
-pub(crate) fn by_effects(
+///
+/// # Errors
+/// Conditions that the effects need.
+pub fn by_effects(
     rows: &mut [TurnedReading],
     profile: &Profile,
     base: &TurningBase,
-    shared: &Shared,
+    options: &JobOptions,
 ) -> Result<(), Failure> {
     if profile.effects.is_empty() {
         return Ok(());
     }
-    let whole =
-        profile.lathe(&conditions(&shared.job)?).map_err(|error| crate::conditions::failure(&error))?;
-    let stretch = calibration::turning::Stretch { low_mm: 0.0, high_mm: 1.0 };
-    let bare =
-        base.predicted_mm(&calibration::turning::Change::default(), stretch, rows).map_err(|error| {
-            Failure::usage(notice!(QUESTION;
-                error.text();
-                "run `vpost profile check` on it", "запустите для него `vpost profile check`"
-            ))
-        })?;
+    let whole = profile.lathe(&conditions(options)?).map_err(|error| crate::conditions::failure(&error))?;
+    let stretch = Stretch { low_mm: 0.0, high_mm: 1.0 };
+    let bare = base.predicted_mm(&Change::default(), stretch, rows).map_err(|error| {
+        Failure::usage(notice!(QUESTION;
+            error.text();
+            "run `vpost profile check` on it", "запустите для него `vpost profile check`"
+        ))
+    })?;
     let Some(whole) = whole else { return Ok(()) };
     for (row, bare) in rows.iter_mut().zip(bare) {
         let error_mm = whole.error_mm(&row.command);
@@ -354,151 +335,5 @@ fn write(output: &mut Output, found: &TurningCalibration, base: &TurningBase) {
     if let Some(tables) = base.z_tables(change, found.stretch) {
         let both_ways = [Some(&tables.errors), tables.negative.as_ref()];
         output.tables(Axis::Z, &tables.positions_mm, tables.given, both_ways);
-    }
-}
-
-/// Name of a tool or, where there is none, of its part.
-fn owner(found: &calibration::turning::Offset, names: &Names) -> String {
-    match found.tool {
-        Some(tool) => names.tools[tool].clone(),
-        None => names.parts[found.part].clone(),
-    }
-}
-
-impl Outcome<'_> {
-    fn report(&self) -> Text {
-        let Self { found, holdout, base, names, .. } = *self;
-        let parts = found.shared_mm.map(|mm| mm * 1e3).map_or_else(
-            || both!("are too few to tell by how much they differ", "неизвестно: их слишком мало"),
-            |um| both!("by {um:.3} um beyond that", "сверх того {um:.3} мкм"),
-        );
-        let mut out = both!(
-            "test pieces: diameters scatter by {:.3} um (standard deviation), parts {parts}\n",
-            "образцы: разброс диаметров {:.3} мкм (стандартное отклонение), между образцами {parts:#}\n",
-            found.noise_mm * 1e3
-        );
-        for own in found.terms.iter().chain(&found.not_there) {
-            let (key, before, scale) = named(own.term, base);
-            let said = match (own.is_significant, own.term.is_geometry()) {
-                (false, _) => Text::pair("not significant, not written", "незначимо, не записано"),
-                (true, true) => Text::pair("written", "записано"),
-                (true, false) => Text::pair("in the report only", "только в отчёте"),
-            };
-            let (value, half) = ((before + own.value) * scale, own.u.half_width_95() * scale);
-            let name = own.term.words();
-            out.push(&both!(
-                "  {name:<10} {key} {value:.3} ± {half:.3}, {said}\n",
-                "  {name:<#10} {key} {value:.3} ± {half:.3}, {said:#}\n"
-            ));
-        }
-        out.push(&both!(
-            "  level of the F tests: {} %; intervals are 95 %\n",
-            "  уровень F-критериев: {} %; интервалы 95-процентные\n",
-            LEVEL * 100.0
-        ));
-        for open in self.not_told_apart() {
-            out.push(&both!("  {open}\n", "  {open:#}\n"));
-        }
-        for offset in &found.offsets {
-            let interval =
-                offset.u.map_or_else(String::new, |u| format!(" ± {:.3}", u.half_width_95() * 1e3));
-            let (owner, radius_um) = (owner(offset, names), offset.radius_mm * 1e3);
-            let wear_mm = -2.0 * offset.radius_mm;
-            out.push(&both!(
-                "  size of {owner}: {radius_um:.3}{interval} um on the radius; with this profile enter {wear_mm:.4} mm as wear of X on the diameter\n",
-                "  размер {owner}: {radius_um:.3}{interval} мкм на радиус; с этим профилем введите износ по X {wear_mm:.4} мм на диаметр\n"
-            ));
-        }
-        if found.unseen_blunder_mm > 0.0 {
-            out.push(&both!(
-                "  one reading that is wrong by less than {:.1} um may have passed: more places or parts would show it\n",
-                "  мог пройти один отсчёт с ошибкой меньше {:.1} мкм: его показали бы другие места или образцы\n",
-                found.unseen_blunder_mm * 1e3
-            ));
-        }
-        let [before, after] = found.rms_mm.map(|mm| mm * 1e3);
-        out.push(&both!(
-            "fitted {before:.3} -> {after:.3} um RMS on the diameter\n",
-            "подгонка: СКЗ {before:.3} -> {after:.3} мкм на диаметр\n"
-        ));
-        if let Some(HeldOut { rows, rms_before_mm, rms_after_mm, max_after_mm }) = holdout {
-            let [before, after, most] = [rms_before_mm, rms_after_mm, max_after_mm].map(|mm| mm * 1e3);
-            out.push(&both!(
-                "held out {before:.3} -> {after:.3} um RMS, at most {most:.3} um ({rows} diameters, each part at its own size)\n",
-                "контрольные: СКЗ {before:.3} -> {after:.3} мкм, не больше {most:.3} мкм (диаметров {rows}, каждый образец по своему размеру)\n"
-            ));
-        }
-        out
-    }
-
-    /// Pairs of causes that these parts leave open, and what would settle each.
-    fn not_told_apart(&self) -> Vec<Text> {
-        let one = |[a, b]: &[Text; 2]| {
-            let help = match (a.english(), b.english()) {
-                ("growth", "wear") | ("wear", "growth") if !self.timed => {
-                    Text::pair(": add the column time_s", "; добавьте столбец time_s")
-                }
-                ("growth", "wear") | ("wear", "growth") => Text::pair(
-                    ": measure a second part with a new edge while warm, or cut the first size again when warm",
-                    "; измерьте второй образец с новой кромкой на прогретом станке или проточите первый размер снова после прогрева",
-                ),
-                (_, "what else differs from part to part") => {
-                    Text::pair(": measure a further part", "; измерьте ещё один образец")
-                }
-                _ => Text::EMPTY,
-            };
-            both!(
-                "{a} and {b} cannot be told apart by these parts{help}",
-                "по этим образцам не различить {a:#} и {b:#}{help:#}"
-            )
-        };
-        self.found.not_told_apart.iter().map(one).collect()
-    }
-
-    fn json(&self) -> serde_json::Value {
-        let Self { found, holdout, base, names, rows, timed: _ } = *self;
-        use serde_json::json;
-        let known = |u: Uncertainty, scale: f64| {
-            let freedom = u.freedom.is_finite().then_some(u.freedom);
-            (u.standard * scale, freedom, u.half_width_95() * scale)
-        };
-        let term = |own: &FoundTerm| {
-            let (name, before, scale) = named(own.term, base);
-            let (u, freedom, u95) = known(own.u, scale);
-            json!({ "name": name, "value": (before + own.value) * scale, "u": u, "degrees_of_freedom": freedom, "u95": u95,
-                    "f": own.f, "significant": own.is_significant,
-                    "written": own.is_significant && own.term.is_geometry() })
-        };
-        let scales: Vec<f64> = found.terms.iter().map(|own| named(own.term, base).2).collect();
-        let row =
-            |i: usize| (0..scales.len()).map(|k| found.covariance[(i, k)] * scales[i] * scales[k]).collect();
-        let covariance: Vec<Vec<f64>> = (0..scales.len()).map(row).collect();
-        let offset = |own: &calibration::turning::Offset| {
-            let known = own.u.map(|u| known(u, 1e3));
-            json!({ "tool": owner(own, names), "radius_um": own.radius_mm * 1e3, "u_um": known.map(|u| u.0),
-                    "degrees_of_freedom": known.and_then(|u| u.1), "u95_um": known.map(|u| u.2) })
-        };
-        let mut counted: Vec<usize> = rows.iter().map(|row| row.part).collect();
-        counted.sort_unstable();
-        counted.dedup();
-        let mut out = json!({
-            "schema": "vpost.turning/1",
-            "parts": counted.len(),
-            "rows": rows.len(),
-            "noise_um": found.noise_mm * 1e3,
-            "level": LEVEL,
-            "part_to_part_um": found.shared_mm.map(|mm| mm * 1e3),
-            "unseen_blunder_um": found.unseen_blunder_mm * 1e3,
-            "terms": found.terms.iter().map(term).collect::<Vec<_>>(),
-            "covariance": covariance,
-            "not_significant": found.not_there.iter().map(term).collect::<Vec<_>>(),
-            "not_told_apart": found.not_told_apart.iter().map(|pair| pair.each_ref().map(Text::english)).collect::<Vec<_>>(),
-            "offsets": found.offsets.iter().map(offset).collect::<Vec<_>>(),
-        });
-        if let Some(judged) = holdout {
-            out["holdout"] = json!({ "rows": judged.rows, "rms_before_um": judged.rms_before_mm * 1e3,
-                "rms_after_um": judged.rms_after_mm * 1e3, "max_after_um": judged.max_after_mm * 1e3 });
-        }
-        out
     }
 }

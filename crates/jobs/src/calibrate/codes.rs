@@ -7,22 +7,22 @@ use machine_model::{Description, RigidBody};
 
 use crate::message::{Failure, notice};
 
-pub(crate) use measurement_files::codes::{AXES, CELL, OPEN, QUESTION, RUNS};
+pub use measurement_files::codes::{AXES, CELL, OPEN, QUESTION, RUNS};
 
 /// Numbers in another unit than they claim.
-pub(crate) const UNITS: Code = Code(1102);
+pub const UNITS: Code = Code(1102);
 /// Measurements that cannot carry a correction.
-pub(crate) const UNFIT: Code = Code(1103);
+pub const UNFIT: Code = Code(1103);
 /// A reading that does not belong to the others.
-pub(crate) const OUTLIER: Code = Code(1107);
+pub const OUTLIER: Code = Code(1107);
 /// Warning: runs or targets are missing.
-pub(crate) const MISSING: Code = Code(1108);
+pub const MISSING: Code = Code(1108);
 /// Warning: the uncertainty is more than half of what it corrects.
-pub(crate) const DOUBTFUL: Code = Code(1109);
+pub const DOUBTFUL: Code = Code(1109);
 /// Warning: something the profile should say is not known.
-pub(crate) const UNSAID: Code = Code(1110);
+pub const UNSAID: Code = Code(1110);
 /// Readings that contradict one another, the base, or every machine of this kind.
-pub(crate) const CONTRADICTED: Code = Code(1113);
+pub const CONTRADICTED: Code = Code(1113);
 
 /// What to say of measurements that give no profile, and what to do.
 pub(crate) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Failure {
@@ -71,6 +71,7 @@ pub(crate) fn body(description: &Description) -> Result<RigidBody, Failure> {
 }
 
 /// A question that stays open.
-pub(crate) fn question(message: Text, help: Text) -> Failure {
+#[must_use]
+pub fn question(message: Text, help: Text) -> Failure {
     Failure::asks(QUESTION, message, help)
 }

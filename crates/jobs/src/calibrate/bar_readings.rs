@@ -13,6 +13,7 @@ use crate::message::{Failure, notice};
 
 use super::codes::{AXES, UNITS};
 use super::sources;
+use super::work::Work;
 
 const COLUMNS: &str = "run repeat x_mm y_mm z_mm bx_mm by_mm bz_mm length_mm a_deg b_deg c_deg spindle_deg dir_x dir_y \
                        dir_z temp_c note plane radius_mm angle_deg deviation_um dir";
@@ -66,7 +67,7 @@ pub(super) struct Measured<T> {
 
 impl Readings {
     /// Reads the files; a run is one of its own file.
-    pub(super) fn read(files: &[PathBuf], ignore: &[String]) -> Result<Self, Failure> {
+    pub(super) fn read(files: &[PathBuf], ignore: &[String], work: &Work<'_>) -> Result<Self, Failure> {
         let mut sheets = Vec::new();
         let mut runs: Vec<(Run, Moves)> = Vec::new();
         for (file, path) in files.iter().enumerate() {
@@ -74,7 +75,7 @@ impl Readings {
                 "a reading of a ball bar is a length between two balls",
                 "показание телескопического измерителя — длина между двумя шарами"
             );
-            let sheet = sources::sheet(path, COLUMNS, expected.clone(), ignore)?;
+            let sheet = sources::sheet(work.read(path)?, COLUMNS, expected.clone(), ignore)?;
             sheet.need(&["run"], expected)?;
             sheet.need_bars()?;
             let mut own: Vec<Run> = Vec::new();

@@ -1,17 +1,17 @@
 //! All figures as JSON, `vpost.map/1`.
 
 use error_map::Statistics;
-use jobs::map::deformation;
-use jobs::map::second_order::SecondOrder;
-use jobs::map::study::{Part, Proof, Study, ZeroPoint, freedom_name};
 use machine_model::{Range, Vector};
 use serde_json::{Value, json};
 
+use super::deformation;
 use super::drawn::classes;
+use super::second_order::SecondOrder;
+use super::study::{Part, Proof, Study, ZeroPoint, freedom_name};
 use crate::figures::{millimetres, round, rounded_um as um};
 
 /// The file's bytes.
-pub(super) fn bytes(study: &Study) -> Vec<u8> {
+pub fn bytes(study: &Study) -> Vec<u8> {
     let grid = study.map.grid();
     let sizes = classes(study);
     let document = json!({
@@ -54,7 +54,7 @@ pub(super) fn bytes(study: &Study) -> Vec<u8> {
         "second_order": study.second_order.as_ref().map(second_order),
         "deformation": deformations(study),
     });
-    jobs::summary::json(&document)
+    crate::summary::json(&document)
 }
 
 /// Stretch, shear and rotation of the cells of a field.

@@ -4,18 +4,26 @@ use std::path::Path;
 
 use calibration::CalibrationError;
 use calibration::functions::FunctionReading;
-use diagnostic::{Speaks, Text};
+use diagnostic::{Speaks, Text, both};
 use machine_model::Vector;
 use machine_model::effects::Conditions;
 use measurement_files::series::{Content, Series, Told, symbol};
 use measurement_files::{Codes, Kind, Row, Sheet};
 
 use super::codes::{CELL, OUTLIER, QUESTION, failure};
-use crate::file;
+use super::work::Work;
 use crate::message::{Failure, OPTION, notice};
 
 /// Reads a table of one of the instruments.
-pub(crate) fn sheet(path: &Path, columns: &str, expected: Text, ignore: &[String]) -> Result<Sheet, Failure> {
+///
+/// # Errors
+/// What is wrong with it.
+pub fn sheet(
+    (name, bytes): (String, Vec<u8>),
+    columns: &str,
+    expected: Text,
+    ignore: &[String],
+) -> Result<Sheet, Failure> {
     let kind = Kind {
         columns,
         expected,
@@ -23,7 +31,7 @@ pub(crate) fn sheet(path: &Path, columns: &str, expected: Text, ignore: &[String
         may_be_empty: false,
         codes: Codes::MEASUREMENTS,
     };
-    Ok(Sheet::read(&file::name(path), &file::read(path)?, &kind, Some(ignore))?)
+    Ok(Sheet::read(&name, &bytes, &kind, Some(ignore))?)
 }
 
 /// The conditions under which a row was read: its own, else those said for all.
@@ -45,8 +53,9 @@ pub(super) fn conditions_of(
 }
 
 /// What several tables hold, and where each reading stands.
-pub(crate) struct Read<T> {
-    pub(crate) rows: Vec<T>,
+pub struct Read<T> {
+    /// What each row says.
+    pub rows: Vec<T>,
     sheets: Vec<Sheet>,
     /// Sheet and line of each.
     places: Vec<(usize, usize)>,
@@ -61,7 +70,10 @@ impl<T> Default for Read<T> {
 
 impl<T> Read<T> {
     /// Takes a reading from each row.
-    pub(crate) fn add(
+    ///
+    /// # Errors
+    /// The first that is refused.
+    pub fn add(
         &mut self,
         sheet: Sheet,
         mut reading: impl FnMut(&Row<'_>) -> Result<T, Failure>,
@@ -81,7 +93,8 @@ impl<T> Read<T> {
     }
 
     /// The row of a reading.
-    pub(crate) fn row(&self, reading: usize) -> Option<Row<'_>> {
+    #[must_use]
+    pub fn row(&self, reading: usize) -> Option<Row<'_>> {
         let (sheet, line) = *self.places.get(reading)?;
         self.sheets.get(sheet)?.row(line)
     }
@@ -141,6 +154,11 @@ pub(crate) fn span(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     values.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }
 
+/// A line of a report: what is said, and its unit.
+pub(super) fn line(row: impl std::fmt::Display, unit: &Text) -> Text {
+    both!("{row} {unit}\n", "{row} {unit:#}\n")
+}
+
 /// Three numbers, apart by blanks.
 pub(crate) fn three(v: &Vector, decimals: usize) -> String {
     [v.x, v.y, v.z].map(|value| format!("{value:.decimals$}")).join(" ")
@@ -152,7 +170,12 @@ pub(super) fn path_of(spec: &str) -> &str {
 }
 
 /// Reads `FILE[=SYMBOL[:UNIT]]`.
-pub(super) fn series<'s>(spec: &'s str, mut told: Told<'s>, ignore: &[String]) -> Result<Content, Failure> {
+pub(super) fn series<'s>(
+    spec: &'s str,
+    mut told: Told<'s>,
+    ignore: &[String],
+    work: &Work<'_>,
+) -> Result<Content, Failure> {
     if let Some((_, rest)) = spec.rsplit_once('=') {
         let (name, unit) = rest.split_once(':').map_or((rest, None), |(name, unit)| (name, Some(unit)));
         let known = symbol(name).ok_or_else(|| {
@@ -165,8 +188,8 @@ pub(super) fn series<'s>(spec: &'s str, mut told: Told<'s>, ignore: &[String]) -
         })?;
         (told.symbol, told.unit) = (Some(known), unit);
     }
-    let path = Path::new(path_of(spec));
-    Ok(measurement_files::series::read(&file::name(path), &file::read(path)?, told, ignore)?)
+    let (name, bytes) = work.read(Path::new(path_of(spec)))?;
+    Ok(measurement_files::series::read(&name, &bytes, told, ignore)?)
 }
 
 /// The readings of a series as the evaluation takes them.

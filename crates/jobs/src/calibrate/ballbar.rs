@@ -9,21 +9,22 @@ use clap::Args;
 use diagnostic::{Speaks, Text};
 use machine_model::effects::{Conditions, EffectTerm};
 use machine_model::{
-    Axis, Chain, Command, Description, Engine, LinearAxis, Range, RotaryAxis, Squareness, Vector, WithEffects,
+    Axis, Command, Description, Engine, LinearAxis, Range, RotaryAxis, Squareness, Vector, WithEffects,
 };
 use machine_profile::{Profile, ProfileText};
 
-use crate::arguments::Shared;
-use crate::message::{Failure, Messages, OPTION, notice};
+use crate::conditions;
+use crate::message::{Failure, notice};
+use crate::profile::load_mill;
 use crate::values::{Given, Point3};
-use crate::{conditions, file};
 
 use super::bar_readings::{FAR, Measured, Readings};
 use super::bar_report::{before_and_after, circle_report, rotary_report};
 use super::codes::{AXES, CONTRADICTED, OPEN, OUTLIER, QUESTION, UNSAID, body, failure};
-use super::output::{Output, Target};
+use super::output::{self, Output, Target, profile_text};
 use super::page::{Bars, Shown};
 use super::sources::mean;
+use super::work::Work;
 
 /// `vpost calibrate ballbar FILES… -o PROFILE`
 #[derive(Debug, Args)]
@@ -59,8 +60,8 @@ const SAME_MM: f64 = 1e-3;
 
 impl Base {
     /// From `-m`, or the chain alone: the axes then go as far as the balls stood.
-    fn new(arguments: &Ballbar, shared: &Shared, readings: &Readings) -> Result<Self, Failure> {
-        let Some(path) = &shared.job.machine else {
+    fn new(arguments: &Ballbar, work: &Work<'_>, readings: &Readings) -> Result<Self, Failure> {
+        let Some(path) = &work.options.machine else {
             // Where no rotary axis turns, the order of perfect axes makes no difference.
             let any = if readings.turn_something() { None } else { Some("[w X Y b Z t]") };
             let Some(chain) = arguments.target.chain.as_deref().or(any) else {
@@ -70,14 +71,7 @@ impl Base {
                     "добавьте `-m PROFILE.toml` станка или `--chain \"[w C A X Y b Z t]\"`: оси, начиная от детали"
                 )));
             };
-            let chain = Chain::parse(chain).map_err(|error| {
-                let error = error.text();
-                Failure::usage(notice!(OPTION;
-                    "`--chain {chain}`: {error}", "`--chain {chain}`: {error:#}";
-                    "write the axes as in `--chain \"[w C A X Y b Z t]\"`",
-                    "напишите оси так: `--chain \"[w C A X Y b Z t]\"`"
-                ))
-            })?;
+            let chain = output::chain(chain, "[w C A X Y b Z t]")?;
             let [low, high] = readings.span_mm();
             let linear = [0, 1, 2].map(|i| {
                 // An axis that stood has no length; the model wants one.
@@ -88,7 +82,7 @@ impl Base {
             let description = Description { chain, linear, rotary, squareness: Squareness::default() };
             return Ok(Self { description, profile: None, tool_mm: Vector::zeros(), centred: Vec::new() });
         };
-        let profile = crate::profile::load_mill(path)?.profile;
+        let profile = load_mill(path)?.profile;
         let tool_mm = Vector::from(profile.default_tool_mm);
         Ok(Self {
             description: profile.description.clone(),
@@ -99,10 +93,10 @@ impl Base {
     }
 
     /// Settles where the axes that turned are: by the profile, or by `--crossing` where it does not say.
-    fn pivots(&mut self, arguments: &Ballbar, shared: &Shared, readings: &Readings) -> Result<(), Failure> {
+    fn pivots(&mut self, arguments: &Ballbar, work: &Work<'_>, readings: &Readings) -> Result<(), Failure> {
         let crossing = arguments.crossing.as_ref().map(|given| (given, Vector::from(given.0)));
-        let text = match &shared.job.machine {
-            Some(path) => ProfileText::parse(&String::from_utf8_lossy(&file::read(path)?)),
+        let text = match &work.options.machine {
+            Some(path) => ProfileText::parse(&profile_text(path)?),
             None => None,
         };
         let chain = &self.description.chain;
@@ -166,9 +160,9 @@ impl Base {
         &self,
         temperatures_c: &[Option<f64>],
         target: &Target,
-        shared: &Shared,
+        work: &Work<'_>,
     ) -> Result<Vec<WithEffects>, Failure> {
-        let given = conditions::conditions(&shared.job)?;
+        let given = conditions::conditions(work.options)?;
         let each = temperatures_c.iter().map(|read_c| {
             let mut own = given;
             if let Some(measured_c) = target.temperature.or(*read_c) {
@@ -208,10 +202,10 @@ struct Table {
 }
 
 impl Table {
-    fn new(base: &Base, readings: &Readings, target: &Target, shared: &Shared) -> Result<Self, Failure> {
+    fn new(base: &Base, readings: &Readings, target: &Target, work: &Work<'_>) -> Result<Self, Failure> {
         let machine = body(&base.description)?;
         let tests = readings.tests(base.tool_mm, &|command| machine.nominal_tool(command));
-        let machines = base.machines(&tests.temperatures_c, target, shared)?;
+        let machines = base.machines(&tests.temperatures_c, target, work)?;
         Ok(Self { tests, machines })
     }
 
@@ -239,25 +233,25 @@ impl Table {
 }
 
 /// `vpost calibrate ballbar`
-pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Ballbar, work: &Work<'_>) -> Result<(), Failure> {
     let target = &arguments.target;
-    let readings = Readings::read(&arguments.files, &target.ignore_column)?;
-    let mut base = Base::new(arguments, shared, &readings)?;
+    let readings = Readings::read(&arguments.files, &target.ignore_column, work)?;
+    let mut base = Base::new(arguments, work, &readings)?;
     let mut out = Text::EMPTY;
     let mut rotary = None;
     if readings.turn_something() {
-        base.pivots(arguments, shared, &readings)?;
-        let table = Table::new(&base, &readings, target, shared)?;
+        base.pivots(arguments, work, &readings)?;
+        let table = Table::new(&base, &readings, target, work)?;
         let found = table.calibrate(&base, &readings)?;
         out.push(&rotary_report(&found, &table.tests.what, &base.description));
         if let Some(path) = &arguments.after {
-            let readings = Readings::read(std::slice::from_ref(path), &target.ignore_column)?;
-            let after = Table::new(&base, &readings, target, shared)?.calibrate(&base, &readings)?;
+            let readings = Readings::read(std::slice::from_ref(path), &target.ignore_column, work)?;
+            let after = Table::new(&base, &readings, target, work)?.calibrate(&base, &readings)?;
             out.push(&before_and_after(&found, &after));
         }
         rotary = Some(found);
     }
-    let circles = circles(&base, &readings, target, shared)?;
+    let circles = circles(&base, &readings, target, work)?;
     if let Some((found, _)) = &circles {
         out.push(&circle_report(found));
     }
@@ -265,33 +259,33 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
     let show = |uncertainty_mm: Option<f64>| {
         let circles = circles.as_ref().map(|(found, names)| (found, names.as_slice()));
         let found = Bars { circles, rotary: rotary.as_ref() };
-        arguments.shown.write(&found, &arguments.files, target, shared, temperature_c, uncertainty_mm)
+        arguments.shown.write(&found, &arguments.files, target, work, temperature_c, uncertainty_mm)
     };
     let parts = [rotary.as_ref().map(|r| r.uncertainty_mm), circles.as_ref().map(|(c, _)| c.uncertainty_mm)];
     let found_mm = parts.into_iter().flatten().fold(0.0, units::math::hypot);
-    file::print(out.in_language(messages.language()).as_bytes())?;
+    work.print(&out);
     if !target.writes() {
         // What stays of a base is as uncertain as it says, which is asked where a profile is made.
         return show(base.profile.is_none().then_some(found_mm));
     }
-    let mut output = Output::start(target, shared)?;
+    let mut output = Output::start(target, work, load_mill)?;
     if base.profile.is_none() {
         let [low, high] = readings.span_mm();
-        output.travel([0, 1, 2].map(|axis| [low[axis], high[axis]]), messages);
+        output.travel([0, 1, 2].map(|axis| [low[axis], high[axis]]), work);
     }
     if let Some(found) = &rotary {
         write_locations(&mut output, found, &base);
     }
     if let Some((found, _)) = &circles {
-        write_circles(&mut output, found, messages);
+        write_circles(&mut output, found, work);
     }
     let sigma = rotary
         .iter()
         .map(|r| r.estimate.sigma)
         .chain(circles.iter().map(|(c, _)| c.estimate.sigma))
         .fold(0.0, f64::max);
-    let uncertainty_mm = output.with_base_mm(found_mm, messages);
-    output.write(target, messages, temperature_c, [Some(sigma), Some(uncertainty_mm)])?;
+    let uncertainty_mm = output.with_base_mm(found_mm, work);
+    output.write(target, work, temperature_c, [Some(sigma), Some(uncertainty_mm)])?;
     show(Some(uncertainty_mm))
 }
 
@@ -300,14 +294,14 @@ fn circles(
     base: &Base,
     readings: &Readings,
     target: &Target,
-    shared: &Shared,
+    work: &Work<'_>,
 ) -> Result<Option<(CircleCalibration, Vec<String>)>, Failure> {
     let machine = body(&base.description)?;
     let circles = readings.circles(base.tool_mm, &|command| machine.nominal_tool(command));
     if circles.what.is_empty() {
         return Ok(None);
     }
-    let machines = base.machines(&circles.temperatures_c, target, shared)?;
+    let machines = base.machines(&circles.temperatures_c, target, work)?;
     for reading in &circles.what {
         base.knows(&circles.names[reading.run], &machines[reading.run], &reading.command)?;
     }
@@ -358,7 +352,7 @@ fn write_locations(output: &mut Output, found: &RotaryCalibration, base: &Base) 
     }
 }
 
-fn write_circles(output: &mut Output, found: &CircleCalibration, messages: &Messages) {
+fn write_circles(output: &mut Output, found: &CircleCalibration, work: &Work<'_>) {
     for (k, key) in ["EC0Y_urad", "EB0Z_urad", "EA0Z_urad"].into_iter().enumerate() {
         if let Some(term) = found.squareness_rad[k] {
             output.text.set_number(&["squareness", key], term.value * 1e6, 3);
@@ -386,7 +380,7 @@ fn write_circles(output: &mut Output, found: &CircleCalibration, messages: &Mess
     }
     for (name, term) in super::bar_report::SCALES.into_iter().zip(found.mismatch) {
         if let Some(term) = term.filter(|t| t.value.abs() > t.half_width_95.max(SEEN_RATIO)) {
-            messages.warning(notice!(UNSAID;
+            work.warning(notice!(UNSAID;
                 "scale {name} of {:.1} um/m is not written: a bar does not say which of the two axes it is",
                 "масштаб {name} {:.1} мкм/м не записан: измеритель не говорит, какой из двух осей он",
                 term.value * 1e6;

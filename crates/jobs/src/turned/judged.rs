@@ -2,32 +2,32 @@
 
 use diagnostic::{Text, both};
 use report::numbers::figures;
-pub(crate) use report::numbers::number as um;
+pub use report::numbers::number as um;
 
-use jobs::turned::surface::{Place, Surface, Turned};
+use super::surface::{Place, Surface, Turned};
 
 /// Where the surface is how far off.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Off {
+pub struct Off {
     /// From the chuck, mm.
-    pub(super) z_mm: f64,
+    pub z_mm: f64,
     /// Square to the programmed surface, outwards, µm.
-    pub(super) deviation_um: f64,
+    pub deviation_um: f64,
 }
 
 /// The surface where it has a radius.
-pub(super) struct Outline {
+pub struct Outline {
     /// By place of the grid: square to the programmed surface, outwards, µm.
-    pub(super) deviations_um: Vec<Option<f64>>,
+    pub deviations_um: Vec<Option<f64>>,
     /// The largest.
-    pub(super) largest: Option<Off>,
+    pub largest: Option<Off>,
 }
 
 impl Outline {
     /// Of what was turned, against what was programmed.
     ///
     /// `(r − r_p)/√(1 + r_p'²)` with the slope of the programmed outline: the distance from it to first order.
-    pub(super) fn of(surface: &Surface, turned: &Turned) -> Self {
+    pub fn of(surface: &Surface, turned: &Turned) -> Self {
         let mut outline = Self { deviations_um: vec![None; surface.nominal_mm().len()], largest: None };
         for found in &turned.places {
             let Some(slope) = surface.slope(found.place) else { continue };
@@ -41,7 +41,7 @@ impl Outline {
     }
 
     /// Of a cylinder, both ends included; nothing where fewer than three places have a radius.
-    pub(super) fn form(&self, surface: &Surface, [from_mm, to_mm]: [f64; 2]) -> Option<Form> {
+    pub fn form(&self, surface: &Surface, [from_mm, to_mm]: [f64; 2]) -> Option<Form> {
         let places = self.deviations_um.iter().enumerate();
         let inside = places.filter_map(|(place, deviation)| Some((surface.z_mm(place), (*deviation)?)));
         let rows: Vec<(f64, f64)> =
@@ -52,20 +52,20 @@ impl Outline {
 
 /// The generatrix of a cylinder against the programmed one (GOST 24642: deviations of the longitudinal profile).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Form {
+pub struct Form {
     /// Mean deviation of the diameter, µm.
-    pub(crate) size_um: f64,
+    pub size_um: f64,
     /// Growth of the diameter from the end at the chuck to the other, µm.
-    pub(crate) cone_um: f64,
+    pub cone_um: f64,
     /// Diameter in the middle less that at both ends, the cone taken off, µm: a barrel above zero, a saddle below.
-    pub(crate) barrel_um: f64,
+    pub barrel_um: f64,
     /// Straightness of the generatrix: what lies about its least-squares line, on the radius, µm (ISO 12780).
-    pub(crate) straightness_um: f64,
+    pub straightness_um: f64,
 }
 
 impl Form {
     /// Least squares of a line and of a parabola through z, mm, and deviations of the radius, µm.
-    pub(crate) fn of(rows: &[(f64, f64)]) -> Option<Self> {
+    pub fn of(rows: &[(f64, f64)]) -> Option<Self> {
         if rows.len() < 3 {
             return None;
         }
@@ -95,7 +95,7 @@ impl Form {
     }
 
     /// The largest of its parts.
-    pub(crate) fn lead(&self) -> Lead {
+    pub fn lead(&self) -> Lead {
         let (size, cone, form) = (self.size_um.abs(), self.cone_um.abs(), 2.0 * self.straightness_um);
         if size >= cone.max(form) {
             Lead::Size
@@ -111,7 +111,7 @@ impl Form {
     }
 
     /// What is wrong, as a clause about the cylinder.
-    pub(crate) fn says(&self) -> Text {
+    pub fn says(&self) -> Text {
         let size = um(self.size_um.abs());
         match self.lead() {
             Lead::Size if self.size_um > 0.0 => {
@@ -157,7 +157,7 @@ impl Form {
 
 impl Lead {
     /// In a word.
-    pub(crate) fn word(self) -> Text {
+    pub fn word(self) -> Text {
         match self {
             Lead::Size => both!("SIZE", "РАЗМЕР"),
             Lead::Cone => both!("CONE", "КОНУСООБРАЗНОСТЬ"),
@@ -170,7 +170,7 @@ impl Lead {
 
 /// What most of a cylinder's deviation is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Lead {
+pub enum Lead {
     /// Its diameter.
     Size,
     /// The diameter grows along Z.
@@ -184,16 +184,21 @@ pub(crate) enum Lead {
 }
 
 /// Stretches of one theoretical roughness.
-pub(super) struct Ridge {
-    pub(super) z_mm: [f64; 2],
-    pub(super) feed_mm: f64,
-    pub(super) nose_mm: f64,
-    pub(super) exact_um: Option<f64>,
-    pub(super) usual_um: f64,
+pub struct Ridge {
+    /// Where it is, mm.
+    pub z_mm: [f64; 2],
+    /// Feed for each turn, mm.
+    pub feed_mm: f64,
+    /// Radius of the nose, mm.
+    pub nose_mm: f64,
+    /// Height of the ridge, µm; none where the nose does not meet its own cut.
+    pub exact_um: Option<f64>,
+    /// The same by the usual formula, f²/8r, µm.
+    pub usual_um: f64,
 }
 
 /// Ridges along Z; places whose feed or nose is not known are left out.
-pub(super) fn ridges(places: &[Place]) -> Vec<Ridge> {
+pub fn ridges(places: &[Place]) -> Vec<Ridge> {
     let mut out: Vec<(usize, Ridge)> = Vec::new();
     for found in places {
         let Some(([feed_mm, nose_mm], usual_um)) = found.ridge_mm.zip(found.roughness_usual_um) else {
@@ -217,7 +222,7 @@ pub(super) fn ridges(places: &[Place]) -> Vec<Ridge> {
 }
 
 /// A place, mm.
-pub(crate) fn mm(value: f64) -> Text {
+pub fn mm(value: f64) -> Text {
     figures(crate::figures::short(value, 3).replacen('-', "\u{2212}", 1))
 }
 

@@ -6,17 +6,17 @@ use std::path::{Path, PathBuf};
 use calibration::rotary_ballbar::Location;
 use calibration::{Base, ChangedAxis, SetUp};
 use clap::Args;
-use diagnostic::{Speaks, both};
+use diagnostic::Speaks;
 use machine_model::effects::{Conditions, EffectKind};
 use machine_model::{Axis, Chain, Command, Description, Six, Vector};
 use machine_profile::{Calibrated, Profile, ProfileText};
 
-use crate::arguments::Shared;
 use crate::figures::short;
-use crate::message::{Deed, Failure, Messages, OPTION, notice};
-use crate::{file, profile};
+use crate::message::{Failure, OPTION, notice};
+use crate::{lines, profile};
 
 use super::codes::{QUESTION, UNSAID};
+use super::work::{NewProfile, Work};
 
 /// An axis that goes less far has none of its own: it stood there while others were measured.
 pub(super) const SHORTEST_MM: f64 = 1e-3;
@@ -44,7 +44,7 @@ pub struct Target {
     /// Temperature of the machine, °C; else temp_c.
     ///
     /// During the measurement; default: the mean of the files' temp_c.
-    #[arg(long, value_name = "C", value_parser = crate::arguments::finite)]
+    #[arg(long, value_name = "C", value_parser = crate::options::finite)]
     pub temperature: Option<f64>,
     /// What it was measured with.
     #[arg(long, value_name = "TEXT")]
@@ -76,13 +76,15 @@ pub(super) struct Output {
 }
 
 /// What is said of a new profile must not contradict the base: the base's would hold without a word.
-fn agrees(base: &Profile, target: &Target, shared: &Shared) -> Result<(), Failure> {
+fn agrees(base: &Profile, target: &Target, work: &Work<'_>) -> Result<(), Failure> {
     let squeezed = |text: &str| text.split_whitespace().collect::<String>();
     let chain = base.chain().to_string();
     // Where the base names no control the new profile takes the one that is said.
-    let control = base.control.clone().or_else(|| shared.job.dialect.clone()).unwrap_or_default();
-    let asked =
-        [("--chain", target.chain.as_deref(), chain), ("--dialect", shared.job.dialect.as_deref(), control)];
+    let control = base.control.clone().or_else(|| work.options.dialect.clone()).unwrap_or_default();
+    let asked = [
+        ("--chain", target.chain.as_deref(), chain),
+        ("--dialect", work.options.dialect.as_deref(), control),
+    ];
     for (option, said, known) in asked {
         if let Some(said) = said.filter(|said| squeezed(said) != squeezed(&known)) {
             return Err(Failure::usage(notice!(QUESTION;
@@ -98,26 +100,19 @@ fn agrees(base: &Profile, target: &Target, shared: &Shared) -> Result<(), Failur
 
 impl Output {
     /// From `-m`, or new. `chain` must be known then: nothing about a machine is guessed.
-    pub(super) fn start(target: &Target, shared: &Shared) -> Result<Self, Failure> {
-        Self::start_of(target, shared, profile::load_mill)
-    }
-
-    /// The same of a lathe or a mill.
-    pub(super) fn start_any(target: &Target, shared: &Shared) -> Result<Self, Failure> {
-        Self::start_of(target, shared, profile::load)
-    }
-
-    fn start_of(
+    ///
+    /// * `load` – reads the profile of a mill, or of any machine
+    pub(super) fn start(
         target: &Target,
-        shared: &Shared,
+        work: &Work<'_>,
         load: fn(&Path) -> Result<profile::Loaded, Failure>,
     ) -> Result<Self, Failure> {
         let stem = target.output.as_deref().and_then(Path::file_stem);
         let folder = stem.map_or_else(|| "calibrated".to_owned(), |s| s.to_string_lossy().into_owned());
-        if let Some(path) = &shared.job.machine {
+        if let Some(path) = &work.options.machine {
             let base = load(path)?.profile;
-            agrees(&base, target, shared)?;
-            let text = String::from_utf8_lossy(&file::read(path)?).into_owned();
+            agrees(&base, target, work)?;
+            let text = profile_text(path)?;
             let Some(mut text) = ProfileText::parse(&text) else {
                 return Err(Failure::usage(notice!(QUESTION;
                     "the base profile cannot be edited", "исходный профиль нельзя изменить";
@@ -143,7 +138,7 @@ impl Output {
             if let Some(name) = &target.name {
                 text.set_text(&["name"], name);
             }
-            if let (None, Some(dialect)) = (&base.control, &shared.job.dialect) {
+            if let (None, Some(dialect)) = (&base.control, &work.options.dialect) {
                 text.set_text(&["control"], dialect);
             }
             return Ok(Self { text, base: Some(base), tables, folder });
@@ -156,24 +151,14 @@ impl Output {
             )));
         };
         let name = target.name.as_deref().unwrap_or("calibrated machine");
-        let text = ProfileText::new(name, chain, shared.job.dialect.as_deref());
+        let text = ProfileText::new(name, chain, work.options.dialect.as_deref());
         Ok(Self { text, base: None, tables: Vec::new(), folder })
     }
 
     /// The chain the profile will have.
     pub(super) fn chain(&self, target: &Target) -> Result<Chain, Failure> {
-        if let Some(base) = &self.base {
-            return Ok(base.chain().clone());
-        }
-        let text = target.chain.as_deref().unwrap_or_default();
-        Chain::parse(text).map_err(|error| {
-            let error = error.text();
-            Failure::usage(notice!(OPTION;
-                "`--chain {text}`: {error}", "`--chain {text}`: {error:#}";
-                "write the axes as in `--chain \"[w X Y b Z t]\"`",
-                "напишите оси так: `--chain \"[w X Y b Z t]\"`"
-            ))
-        })
+        let base = self.base.as_ref().map(|base| Ok(base.chain().clone()));
+        base.unwrap_or_else(|| chain(target.chain.as_deref().unwrap_or_default(), "[w X Y b Z t]"))
     }
 
     /// The machine that readings are compared with: the base's own model, or an ideal one of the chain.
@@ -242,11 +227,11 @@ impl Output {
 
     /// Uncertainty of the whole where some of the base stays, mm: what was not measured is as uncertain as the base says. Warns where it
     /// does not say.
-    pub(super) fn with_base_mm(&self, found_mm: f64, messages: &Messages) -> f64 {
+    pub(super) fn with_base_mm(&self, found_mm: f64, work: &Work<'_>) -> f64 {
         let Some(base) = &self.base else { return found_mm };
         let stated = base.calibrated.as_ref().and_then(|calibrated| calibrated.uncertainty_um);
         if stated.is_none() {
-            messages.warning(notice!(UNSAID;
+            work.warning(notice!(UNSAID;
                 "the base does not say how well it is known: what was not measured now counts as exact in uncertainty_um",
                 "исходный профиль не говорит, насколько точно он известен: не измеренное сейчас считается в uncertainty_um точным";
                 "write `uncertainty_um` into `calibrated` of the base, if it is known",
@@ -304,7 +289,7 @@ impl Output {
 
     /// How far the axes go whose travel nothing says, mm: as far as they were commanded. One that only stood there is
     /// known there alone.
-    pub(super) fn travel(&mut self, spans_mm: [[f64; 2]; 3], messages: &Messages) {
+    pub(super) fn travel(&mut self, spans_mm: [[f64; 2]; 3], work: &Work<'_>) {
         let mut stood = Vec::new();
         for (axis, [low, high]) in Axis::ALL.into_iter().zip(spans_mm) {
             let letter = axis.letter().to_string();
@@ -324,7 +309,7 @@ impl Output {
             }
         }
         if !stood.is_empty() {
-            messages.warning(notice!(UNSAID;
+            work.warning(notice!(UNSAID;
                 "how far {} can go is not known: the profile holds where it stood, and corrects nothing elsewhere",
                 "ход {} неизвестен: профиль верен там, где она стояла, а в других местах ничего не исправляет",
                 stood.join(" and ");
@@ -340,7 +325,7 @@ impl Output {
     fn calibrated(
         &mut self,
         target: &Target,
-        messages: &Messages,
+        work: &Work<'_>,
         temperature_c: Option<f64>,
         known_mm: [Option<f64>; 2],
     ) {
@@ -362,7 +347,7 @@ impl Output {
         .filter_map(|(missing, option)| missing.then_some(option))
         .collect();
         if !missing.is_empty() && target.output.is_some() {
-            messages.warning(notice!(UNSAID;
+            work.warning(notice!(UNSAID;
                 "the profile does not say when, how warm or with what the machine was measured",
                 "профиль не говорит, когда, при какой температуре или каким прибором измерен станок";
                 "add {}", "добавьте {}", missing.join(", ")
@@ -382,49 +367,63 @@ impl Output {
     }
 
     /// The finished profile, read back as every other command will read it.
-    pub(super) fn check(&self) -> Result<Profile, Failure> {
-        let text = self.text.to_string();
+    fn check(&self, text: &str) -> Result<(Profile, blake3::Hash), Failure> {
+        let hasher = std::cell::RefCell::new(blake3::Hasher::new());
+        hasher.borrow_mut().update(text.as_bytes());
         let read = |name: &str| {
             let own = name.strip_prefix(&self.folder).and_then(|rest| rest.strip_prefix('/')).unwrap_or(name);
             let found = self.tables.iter().find(|(table, _)| table == own);
-            found.map(|(_, bytes)| bytes.clone()).ok_or_else(|| std::io::ErrorKind::NotFound.into())
+            let (_, bytes) = found.ok_or(std::io::ErrorKind::NotFound)?;
+            hasher.borrow_mut().update(bytes);
+            Ok(bytes.clone())
         };
-        machine_profile::load(&text, &read).map_err(|errors| {
+        let profile = machine_profile::load(text, &read).map_err(|errors| {
             let diagnostics = errors.into_iter().map(|error| error.diagnostic).collect();
             Failure::refused("the profile that would be written", text.as_bytes(), diagnostics)
-        })
+        })?;
+        Ok((profile, hasher.into_inner().finalize()))
     }
 
-    /// Compares with an earlier profile where that is asked; writes the tables, then the profile; nothing where the profile would not be a good one.
+    /// Compares with an earlier profile where that is asked; makes the profile, unless it would not be a good one.
     ///
     /// * `known_mm` – how far readings repeat, and how sure the model is
     pub(super) fn write(
-        &mut self,
+        mut self,
         target: &Target,
-        messages: &Messages,
+        work: &Work<'_>,
         temperature_c: Option<f64>,
         known_mm: [Option<f64>; 2],
     ) -> Result<(), Failure> {
-        self.calibrated(target, messages, temperature_c, known_mm);
-        let profile = self.check()?;
+        self.calibrated(target, work, temperature_c, known_mm);
+        let text = self.text.to_string();
+        let (profile, hash) = self.check(&text)?;
         if let Some(old) = &target.against {
-            super::against::report(old, &profile, messages.language())?;
+            work.print(&super::against::report(old, &profile)?);
         }
-        let Some(path) = &target.output else { return Ok(()) };
+        let Some(path) = target.output.clone() else { return Ok(()) };
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf).join(&self.folder);
-        std::fs::create_dir_all(&folder).map_err(file::fails(&folder, Deed::Make))?;
-        for (name, bytes) in &self.tables {
-            file::write(&folder.join(name), bytes)?;
-        }
-        file::write(path, self.text.to_string().as_bytes())?;
-        messages.note(&both!(
-            "{}: written, tables in {}",
-            "{}: записан, таблицы в {}",
-            file::name(path),
-            file::name(&folder)
-        ));
+        work.made.borrow_mut().profile = Some(NewProfile { path, text, folder, tables: self.tables, hash });
         Ok(())
     }
+}
+
+/// Reads `--chain`.
+///
+/// * `example` – one of the machines that are meant
+pub(super) fn chain(text: &str, example: &str) -> Result<Chain, Failure> {
+    Chain::parse(text).map_err(|error| {
+        let error = error.text();
+        Failure::usage(notice!(OPTION;
+            "`--chain {text}`: {error}", "`--chain {text}`: {error:#}";
+            "write the axes as in `--chain \"{example}\"`", "напишите оси так: `--chain \"{example}\"`"
+        ))
+    })
+}
+
+/// A profile as it stands in its file.
+pub(super) fn profile_text(path: &Path) -> Result<String, Failure> {
+    let bytes = std::fs::read(path).map_err(|error| Failure::unread(&lines::name(path), &error))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 /// Functions one by one; `None` for those that are not given.

@@ -7,13 +7,13 @@ use calibration::Base;
 use calibration::rtest::{HeldOut, RotaryTables, Term, calibrate};
 use diagnostic::{Speaks, Text, both};
 
-use crate::arguments::Shared;
-use crate::file;
-use crate::message::{Failure, Messages, notice};
+use crate::message::{Failure, notice};
+use crate::profile::load_mill;
 
 use super::codes::{AXES, CONTRADICTED, DOUBTFUL, OPEN, OUTLIER, QUESTION, UNFIT, UNSAID, body, failure};
 use super::options::RTest;
 use super::output::{Output, columns, error_table};
+use super::work::Work;
 use rows::Rows;
 
 /// What is left of the readings, in units of their stated uncertainty, is a contradiction above this.
@@ -29,8 +29,8 @@ const SCATTER_MM: [f64; 2] = [0.010, 0.004];
 const UNSEEN: f64 = 2.0;
 
 /// `vpost calibrate rtest`
-pub(super) fn run(arguments: &RTest, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let mut output = Output::start(&arguments.target, shared)?;
+pub(super) fn run(arguments: &RTest, work: &Work<'_>) -> Result<(), Failure> {
+    let mut output = Output::start(&arguments.target, work, load_mill)?;
     let Some(profile) = output.base.clone() else {
         return Err(Failure::usage(notice!(QUESTION;
             "which machine? where its rotary axes are is not known",
@@ -40,9 +40,9 @@ pub(super) fn run(arguments: &RTest, shared: &Shared, messages: &Messages) -> Re
         )));
     };
     let base = output.measured_from(&arguments.target)?;
-    let rows = Rows::read(&arguments.files, arguments, &profile, &output, shared)?;
+    let rows = Rows::read(&arguments.files, arguments, &profile, &output, work)?;
     if let Some((run, mm)) = rows.moving_ball().filter(|_| !arguments.sphere) {
-        messages.warning(notice!(DOUBTFUL;
+        work.warning(notice!(DOUBTFUL;
             "run `{run}`: by the profile the place of the ball in the workpiece moves by {mm:.0} mm, and a ball stays in its nest",
             "серия `{run}`: по профилю место шара на детали смещается на {mm:.0} мм, а шар остаётся в гнезде";
             "check centre_mm, the tool vector and the signs of the angles; nothing is wrong where the rows are points anywhere",
@@ -52,24 +52,22 @@ pub(super) fn run(arguments: &RTest, shared: &Shared, messages: &Messages) -> Re
     let found = calibrate(&rows.read.rows, &base, &rows.runs).map_err(|error| refused(&rows, &error))?;
     let held = match &arguments.holdout {
         Some(path) => {
-            let held = Rows::read(std::slice::from_ref(path), arguments, &profile, &output, shared)?;
+            let held = Rows::read(std::slice::from_ref(path), arguments, &profile, &output, work)?;
             Some(held_out(&found, &held, &base)?)
         }
         None => None,
     };
     let text = report::text(&found, held.as_ref(), &rows);
-    file::print(text.in_language(messages.language()).as_bytes())?;
-    if let Some(path) = &arguments.json {
-        file::write(path, &jobs::summary::json(&report::json(&found, held.as_ref(), &rows)))?;
-    }
-    judge(&found, held.as_ref(), messages)?;
+    work.print(&text);
+    work.show(arguments.json.as_ref(), || crate::summary::json(&report::json(&found, held.as_ref(), &rows)));
+    judge(&found, held.as_ref(), work)?;
     if !arguments.target.writes() {
         return Ok(());
     }
     write(&mut output, &found);
-    let uncertainty_mm = output.with_base_mm(found.field_u95_mm, messages);
+    let uncertainty_mm = output.with_base_mm(found.field_u95_mm, work);
     let known_mm = [Some(found.estimate.sigma), Some(uncertainty_mm)];
-    output.write(&arguments.target, messages, rows.read.temperature_c(), known_mm)
+    output.write(&arguments.target, work, rows.read.temperature_c(), known_mm)
 }
 
 /// What contradicts the readings, an outlier at its row.
@@ -127,7 +125,7 @@ static LINEAR: Text = Text::pair(
 );
 
 /// Refuses what contradicts what is known of noise; warns where it is doubtful.
-fn judge_noise(found: &RotaryTables, messages: &Messages) -> Result<(), Failure> {
+fn judge_noise(found: &RotaryTables, work: &Work<'_>) -> Result<(), Failure> {
     let sigma_mm = found.estimate.sigma;
     let strangers = || {
         both!(
@@ -145,7 +143,7 @@ fn judge_noise(found: &RotaryTables, messages: &Messages) -> Result<(), Failure>
             )));
         }
         if times > ROUGH {
-            messages.warning(notice!(DOUBTFUL;
+            work.warning(notice!(DOUBTFUL;
                 "the best machine leaves {times:.1} times what `u_um` states: intervals are widened by as much",
                 "наилучшая модель оставляет в {times:.1} раза больше, чем указано в `u_um`: интервалы расширены во столько же";
                 LINEAR.clone()
@@ -159,7 +157,7 @@ fn judge_noise(found: &RotaryTables, messages: &Messages) -> Result<(), Failure>
             strangers()
         )));
     } else if sigma_mm > SCATTER_MM[1] {
-        messages.warning(notice!(DOUBTFUL;
+        work.warning(notice!(DOUBTFUL;
             "the best machine leaves {:.1} um, more than an R-test scatters",
             "наилучшая модель оставляет {:.1} мкм: больше разброса R-теста", sigma_mm * 1e3;
             LINEAR.clone()
@@ -169,11 +167,11 @@ fn judge_noise(found: &RotaryTables, messages: &Messages) -> Result<(), Failure>
 }
 
 /// The same of what is known of unseen rows.
-fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> Result<(), Failure> {
-    judge_noise(found, messages)?;
+fn judge(found: &RotaryTables, held: Option<&HeldOut>, work: &Work<'_>) -> Result<(), Failure> {
+    judge_noise(found, work)?;
     let sigma_mm = found.estimate.sigma;
     if let Some(alone_mm) = found.alone_mm {
-        messages.warning(notice!(DOUBTFUL;
+        work.warning(notice!(DOUBTFUL;
             "runs leave {:.2} um one by one and {:.2} um together: they differ by more than noise",
             "серии порознь оставляют {:.2} мкм, вместе {:.2} мкм: они различаются больше, чем на шум",
             alone_mm * 1e3, found.estimate.misfit * 1e3;
@@ -182,7 +180,7 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
     }
     let open: Vec<&str> = found.not_told_apart.iter().flatten().map(String::as_str).collect();
     if !open.is_empty() {
-        messages.warning(notice!(UNSAID;
+        work.warning(notice!(UNSAID;
             "{} cannot be told apart by these rows: they stay as in the profile, and `uncertainty_um` does not count them",
             "{}: по этим строкам не различить; они остаются как в профиле, и `uncertainty_um` их не учитывает",
             open.join(", ");
@@ -192,7 +190,7 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
     }
     let [before, after] = found.rms_mm;
     if found.field_u95_mm > 0.5 * before && before > 2.0 * sigma_mm {
-        messages.warning(notice!(DOUBTFUL;
+        work.warning(notice!(DOUBTFUL;
             "what is written is known to {:.1} um over the volume, and the rows were {:.1} um off: more rows, farther from the axes, would say more",
             "записанное известно по объёму с точностью {:.1} мкм, а строки отличались на {:.1} мкм: нужно больше строк, дальше от осей",
             found.field_u95_mm * 1e3, before * 1e3;
@@ -220,7 +218,7 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
         )));
     }
     if judged.rms_after_mm > UNSEEN * sigma_mm.max(1e-5) {
-        messages.warning(notice!(DOUBTFUL;
+        work.warning(notice!(DOUBTFUL;
             "held-out readings keep {:.2} um, the noise is {:.2} um: the profile does not hold everywhere as it holds where it was measured",
             "в отложенных отсчётах остаётся {:.2} мкм при шуме {:.2} мкм: профиль верен не везде так, как там, где измеряли",
             judged.rms_after_mm * 1e3, sigma_mm * 1e3;

@@ -4,19 +4,20 @@ use calibration::functions::Function;
 use calibration::iso230_2::{self, Runs};
 use diagnostic::{Text, both};
 
-use crate::message::{Failure, Messages, notice};
+use crate::message::{Failure, notice};
 
 use measurement_files::series::{Origin, Series};
 use measurement_files::{OddSizes, micro};
 
 use super::codes::{AXES, MISSING, RUNS, UNITS};
+use super::work::Work;
 use crate::figures::short;
 
 /// Deviations that are much too small or too large for their unit.
 ///
 /// # Errors
 /// Readings of an instrument that nine times in ten are below what any machine's are.
-pub(super) fn units(series: &Series, messages: &Messages) -> Result<(), Failure> {
+pub(super) fn units(series: &Series, work: &Work<'_>) -> Result<(), Failure> {
     let values = series.readings.iter().map(|r| r.value);
     let Some(odd) = OddSizes::of(&series.source, &series.name(), series.function, values) else {
         return Ok(());
@@ -24,17 +25,17 @@ pub(super) fn units(series: &Series, messages: &Messages) -> Result<(), Failure>
     if odd.are_small && series.origin == Origin::Instrument {
         return Err(Failure::asks(UNITS, odd.message, odd.help));
     }
-    messages.warn(UNITS, odd.message, odd.help);
+    work.warn(UNITS, odd.message, odd.help);
     Ok(())
 }
 
 /// Targets that were read again and again, and nothing says from which side.
-pub(super) fn directions(series: &Series, messages: &Messages) {
+pub(super) fn directions(series: &Series, work: &Work<'_>) {
     let unsaid: Vec<f64> =
         series.readings.iter().filter(|r| r.direction == 0).map(|r| r.position_mm).collect();
     let again = unsaid.iter().enumerate().find(|(k, at)| unsaid[..*k].contains(at));
     let Some((_, at_mm)) = again.filter(|_| series.function == series.axis.direction()) else { return };
-    messages.warning(notice!(MISSING;
+    work.warning(notice!(MISSING;
         "{}: {} was read several times at {} mm, and nothing says from which side: all readings without a direction count as reached towards plus",
         "{}: {} снята в {} мм несколько раз, и не сказано, с какой стороны: все отсчёты без направления считаются подходом в плюс",
         series.source, series.name(), short(*at_mm, 3);
@@ -55,7 +56,7 @@ pub(super) fn copies(
     series: &Series,
     runs: &Runs,
     function: &Function,
-    messages: &Messages,
+    work: &Work<'_>,
 ) -> Result<(), Failure> {
     let same = |all: &[Vec<f64>]| all.windows(2).all(|pair| pair[0] == pair[1]);
     let repeated = runs.positive.len().max(runs.negative.len()) > 1;
@@ -83,7 +84,7 @@ pub(super) fn copies(
             "дайте проходы, каждый из которых измерен, или один проход"
         )));
     }
-    messages.warning(notice!(MISSING;
+    work.warning(notice!(MISSING;
         message;
         "then they say nothing of the repeatability; the uncertainty counts the instrument's alone",
         "о повторяемости они тогда ничего не говорят; в неопределённости учтена только приборная"
@@ -144,10 +145,10 @@ pub(super) fn missing_of_the_standard(found: &iso230_2::Evaluation) -> Vec<Text>
 }
 
 /// Warns of what ISO 230-2 asks of a test.
-pub(super) fn conditions_of_the_standard(name: &str, found: &iso230_2::Evaluation, messages: &Messages) {
+pub(super) fn conditions_of_the_standard(name: &str, found: &iso230_2::Evaluation, work: &Work<'_>) {
     let missing = missing_of_the_standard(found);
     if !missing.is_empty() {
-        messages.warning(notice!(MISSING;
+        work.warning(notice!(MISSING;
             "{name} is evaluated after ISO 230-2 but was not measured so: {}",
             "{name} оценена по ISO 230-2, а измерена не так: {:#}", Text::join(&missing, "; ");
             "do not quote the figures as those of the standard",

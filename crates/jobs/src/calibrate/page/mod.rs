@@ -10,7 +10,7 @@ mod found;
 mod positioning;
 mod runs;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use diagnostic::Language;
@@ -22,10 +22,8 @@ pub(super) use found::Found;
 pub(super) use runs::{Positions, Read};
 
 use super::output::Target;
-use crate::arguments::Shared;
+use super::work::Work;
 use crate::message::Failure;
-use crate::roles::Roles;
-use crate::{file, language};
 
 /// Where what was found is shown.
 #[derive(Debug, Clone, Default, Args)]
@@ -44,15 +42,12 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// The files that will be written.
-    pub(super) fn roles<'a>(&'a self, roles: Roles<'a>) -> Roles<'a> {
-        roles
-            .writes("--html", self.html.as_deref())
-            .writes("--json", self.json.as_deref())
-            .writes("--csv", self.csv.as_deref())
+    /// Page, JSON and CSV: where they go.
+    pub(super) fn files(&self) -> [Option<&Path>; 3] {
+        [&self.html, &self.json, &self.csv].map(Option::as_deref)
     }
 
-    /// Writes what is asked for of a calibration that is finished, its profile written where that was asked.
+    /// Makes what is asked for of a calibration that is finished, its profile made where that was asked.
     ///
     /// * `temperature_c` – of the machine, as the files say it; `--temperature` goes before it
     /// * `uncertainty_mm` – what the deviation keeps at 95 % of the places of the volume, where that is known
@@ -61,7 +56,7 @@ impl Shown {
         found: &dyn Found,
         files: &[PathBuf],
         target: &Target,
-        shared: &Shared,
+        work: &Work<'_>,
         temperature_c: Option<f64>,
         uncertainty_mm: Option<f64>,
     ) -> Result<(), Failure> {
@@ -69,16 +64,14 @@ impl Shown {
             return Ok(());
         }
         let temperature_c = target.temperature.or(temperature_c);
-        let facts = &Facts::new(target, shared, files, temperature_c, uncertainty_mm)?;
-        let put = |path: &Option<PathBuf>, bytes: &dyn Fn() -> Vec<u8>| match path {
-            Some(path) => file::write(path, &bytes()),
-            None => Ok(()),
-        };
-        let language = language::chosen(shared.messages.language.as_deref().copied());
-        let json = || jobs::summary::json(&facts.with(found.json()));
-        put(&self.csv, &|| found.csv().into_bytes())?;
-        put(&self.json, &json)?;
-        put(&self.html, &|| html(found, facts, &String::from_utf8_lossy(&json()), language).into_bytes())
+        let facts = &Facts::new(target, work, files, temperature_c, uncertainty_mm)?;
+        let json = || crate::summary::json(&facts.with(found.json()));
+        work.show(self.csv.as_ref(), || found.csv().into_bytes());
+        work.show(self.json.as_ref(), json);
+        work.show(self.html.as_ref(), || {
+            html(found, facts, &String::from_utf8_lossy(&json()), work.setting.language).into_bytes()
+        });
+        Ok(())
     }
 }
 

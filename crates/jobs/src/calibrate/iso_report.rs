@@ -1,6 +1,6 @@
 //! ISO 230-2 as an instrument prints it.
 
-use calibration::iso230_2::{Evaluation, Uncertain};
+use calibration::iso230_2::{Direction, Evaluation, Uncertain};
 use diagnostic::{Text, both};
 
 /// One of the standard's figures.
@@ -11,43 +11,41 @@ pub(super) struct Figure {
     pub(super) found: Uncertain,
 }
 
+/// What has a figure for each direction: its symbols, its name, and the figure itself.
+type OfDirections = ([&'static str; 3], Text, Uncertain, fn(&Direction) -> Uncertain);
+
 /// The figures that the runs give, in the order in which they are printed.
 pub(super) fn figures(e: &Evaluation) -> Vec<Figure> {
-    let of = |symbol, english, russian, found: Option<Uncertain>| {
-        found.map(|found| Figure { symbol, name: Text::pair(english, russian), found })
+    let accuracy: OfDirections =
+        (["A", "A↑", "A↓"], Text::pair("accuracy", "точность"), e.accuracy, |d| d.accuracy);
+    let systematic: OfDirections = (
+        ["E", "E↑", "E↓"],
+        Text::pair("systematic deviation", "систематическое отклонение"),
+        e.systematic,
+        |d| d.systematic,
+    );
+    let repeatability: OfDirections = (
+        ["R", "R↑", "R↓"],
+        Text::pair("repeatability", "повторяемость"),
+        e.repeatability,
+        |d| d.repeatability,
+    );
+    let three = |([both, up, down], name, found, of): OfDirections| {
+        let one = |symbol, found: Option<Uncertain>, how: Text| {
+            found.map(|found| Figure { symbol, name: Text::join([&name, &how], ", "), found })
+        };
+        [
+            one(both, Some(found), Text::pair("both directions", "в обоих направлениях")),
+            one(up, e.positive.as_ref().map(of), Text::pair("up", "вверх")),
+            one(down, e.negative.as_ref().map(of), Text::pair("down", "вниз")),
+        ]
     };
-    let (up, down) = (e.positive, e.negative);
-    [
-        of("A", "accuracy, both directions", "точность, в обоих направлениях", Some(e.accuracy)),
-        of("A↑", "accuracy, up", "точность, вверх", up.map(|d| d.accuracy)),
-        of("A↓", "accuracy, down", "точность, вниз", down.map(|d| d.accuracy)),
-        of(
-            "E",
-            "systematic deviation, both directions",
-            "систематическое отклонение, в обоих направлениях",
-            Some(e.systematic),
-        ),
-        of("E↑", "systematic deviation, up", "систематическое отклонение, вверх", up.map(|d| d.systematic)),
-        of(
-            "E↓",
-            "systematic deviation, down",
-            "систематическое отклонение, вниз",
-            down.map(|d| d.systematic),
-        ),
-        of("M", "range of the bidirectional means", "размах двунаправленных средних", Some(e.mean_range)),
-        of(
-            "R",
-            "repeatability, both directions",
-            "повторяемость, в обоих направлениях",
-            Some(e.repeatability),
-        ),
-        of("R↑", "repeatability, up", "повторяемость, вверх", up.map(|d| d.repeatability)),
-        of("R↓", "repeatability, down", "повторяемость, вниз", down.map(|d| d.repeatability)),
-        of("B", "largest reversal value", "наибольшая зона нечувствительности (реверс)", e.reversal),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    let range = Text::pair("range of the bidirectional means", "размах двунаправленных средних");
+    let range = Figure { symbol: "M", name: range, found: e.mean_range };
+    let largest = Text::pair("largest reversal value", "наибольшая зона нечувствительности (реверс)");
+    let reversal = e.reversal.map(|found| Figure { symbol: "B", name: largest, found });
+    let means = [accuracy, systematic].map(three).into_iter().flatten();
+    means.chain([Some(range)]).chain(three(repeatability)).chain([reversal]).flatten().collect()
 }
 
 /// Lines of one axis. Deviations in mm or rad; shown in µm or µrad.

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::figures::short;
 
-use super::super::sources::span;
+use super::super::sources::{line, span};
 use super::rows::Rows;
 
 const FUNCTIONS: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
@@ -91,6 +91,18 @@ pub(super) fn text(found: &RotaryTables, held: Option<&HeldOut>, rows: &Rows) ->
     for table in &found.tables {
         out.push(&functions(table));
     }
+    out.push(&open(found));
+    out.push(&Text::pair(
+        "gauge  what turns with the workpiece is its mounting; means and once-per-turn parts are location errors where both look alike\n",
+        "отсчёт что поворачивается вместе с деталью — её закрепление; средние и составляющие раз за оборот — погрешности положения, если их не различить\n",
+    ));
+    out.push(&left(found, held));
+    out
+}
+
+/// What the rows do not tell.
+fn open(found: &RotaryTables) -> Text {
+    let mut out = Text::EMPTY;
     for set in &found.not_told_apart {
         let set = set.join(", ");
         out.push(&both!(
@@ -118,16 +130,17 @@ pub(super) fn text(found: &RotaryTables, held: Option<&HeldOut>, rows: &Rows) ->
             "  их различит шар в трёх точках не на одной прямой, на двух высотах\n",
         ));
     }
-    out.push(&Text::pair(
-        "gauge  what turns with the workpiece is its mounting; means and once-per-turn parts are location errors where both look alike\n",
-        "отсчёт что поворачивается вместе с деталью — её закрепление; средние и составляющие раз за оборот — погрешности положения, если их не различить\n",
-    ));
+    out
+}
+
+/// What is left of the rows, and how well the field is known.
+fn left(found: &RotaryTables, held: Option<&HeldOut>) -> Text {
     let [before, after] = found.rms_mm.map(|mm| mm * 1e3);
-    out.push(&both!(
+    let mut out = both!(
         "fitted {before:.3} -> {after:.3} um RMS ({} readings)\n",
         "подгонка: СКЗ {before:.3} -> {after:.3} мкм (отсчётов {})\n",
         found.estimate.residuals.len()
-    ));
+    );
     if let Some(HeldOut { readings, rms_before_mm, rms_after_mm, max_after_mm, .. }) = held {
         let [before, after, most] = [rms_before_mm, rms_after_mm, max_after_mm].map(|mm| mm * 1e3);
         out.push(&both!(
@@ -155,7 +168,7 @@ fn term_line(own: &FoundTerm) -> Text {
     match own.term {
         Term::Location(_) if own.is_written => {
             let row = format!("  {name}  {value:>15.3} ± {half:>8.3} {base:>11.3}");
-            both!("{row} {unit}\n", "{row} {unit:#}\n")
+            line(row, &unit)
         }
         Term::Location(_) => both!(
             "  {name}     not determined            {base:>11.3} {unit}, stays\n",
@@ -182,7 +195,7 @@ fn functions(table: &WrittenTable) -> Text {
         let (low, high) = span(table.rows.iter().map(|row| row[f] * scale));
         let half = table.half_widths_95.iter().map(|row| row[f] * scale).fold(0.0, f64::max);
         let row = format!("  E{}{}   {low:>9.3} … {high:>9.3} ± {half:.3}", FUNCTIONS[f], table.axis);
-        out.push(&both!("{row} {unit}\n", "{row} {unit:#}\n"));
+        out.push(&line(row, &unit));
     }
     out
 }

@@ -5,24 +5,23 @@ use calibration::measured_line::{
     AxisOnNodes, Gauge, MeasuredLine, Zero, angles_between, apply_gauge, field_u95_mm, settle_directions,
     squareness_for,
 };
-use diagnostic::{Speaks, both};
+use diagnostic::both;
 use machine_model::effects::{Conditions, EffectTerm};
 use machine_model::{
-    Axis, Chain, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector,
-    WithEffects,
+    Axis, Chain, Description, Interpolation, LinearAxis, Range, RotaryAxis, Squareness, Vector, WithEffects,
 };
 use machine_profile::EngineError;
 use measurement_files::series::Series;
 
-use crate::arguments::Shared;
 use crate::conditions;
 use crate::message::{Failure, OPTION, notice};
 
-use super::codes::{AXES, QUESTION, failure};
+use super::codes::{AXES, QUESTION, body, failure};
 use super::options::Interferometer;
 use super::output::{Output, SHORTEST_MM};
 use super::sources;
 use super::squareness::Asked;
+use super::work::Work;
 use crate::figures::short;
 
 /// The base as it was read, and where.
@@ -50,7 +49,7 @@ impl Session {
     /// Targets or lines outside the base's travel, conditions that its effects need.
     pub(super) fn new(
         arguments: &Interferometer,
-        shared: &Shared,
+        work: &Work<'_>,
         output: &Output,
         chain: &Chain,
         all: &[Series],
@@ -113,7 +112,7 @@ impl Session {
             Some(base) => base.effect_terms(false).map_err(|error| conditions::failure(&error))?,
             None => Vec::new(),
         };
-        let conditions = conditions::conditions(&shared.job)?;
+        let conditions = conditions::conditions(work.options)?;
         let has_base = base.is_some();
         Ok(Self {
             description,
@@ -143,14 +142,8 @@ impl Session {
         }
     }
 
-    fn machine(&self, description: Description, temperature_c: Option<f64>) -> Result<WithEffects, Failure> {
-        let body = RigidBody::new(description).map_err(|error| {
-            Failure::usage(notice!(OPTION;
-                error.text();
-                "run `vpost profile check` on the base",
-                "запустите `vpost profile check` для исходного профиля"
-            ))
-        })?;
+    fn machine(&self, description: &Description, temperature_c: Option<f64>) -> Result<WithEffects, Failure> {
+        let body = body(description)?;
         let mut conditions = self.conditions;
         if let Some(temperature) = temperature_c {
             conditions.temp_c = [Some(temperature); 3];
@@ -196,7 +189,7 @@ impl Session {
                 let at = match machines.iter().position(|(known, _)| *known == temperature) {
                     Some(at) => at,
                     None => {
-                        machines.push((temperature, self.machine(description.clone(), temperature)?));
+                        machines.push((temperature, self.machine(&description, temperature)?));
                         machines.len() - 1
                     }
                 };
@@ -266,7 +259,7 @@ impl Session {
         asked: &Asked,
         temperature_c: Option<f64>,
     ) -> Result<Squareness, Failure> {
-        let before = self.machine(self.description.clone(), temperature_c)?;
+        let before = self.machine(&self.description, temperature_c)?;
         let known = angles_between(&self.lines, &self.targets_mm, &before);
         let wanted: [f64; 3] = std::array::from_fn(|k| asked.rad[k].unwrap_or(known[k]));
         let mut after = self.description.clone();
@@ -278,7 +271,7 @@ impl Session {
             }
         }
         squareness_for(&self.lines, &self.targets_mm, wanted, after.squareness, |squareness| {
-            self.machine(Description { squareness, ..after.clone() }, temperature_c)
+            self.machine(&Description { squareness, ..after.clone() }, temperature_c)
         })
     }
 

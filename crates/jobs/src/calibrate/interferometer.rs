@@ -8,9 +8,8 @@ use machine_model::{Axis, Interpolation, Six, Squareness, Table};
 use measurement_files::micro;
 use measurement_files::series::{Origin, Series, Told};
 
-use crate::arguments::Shared;
-use crate::file;
-use crate::message::{Failure, Messages, OPTION, notice};
+use crate::message::{Failure, OPTION, notice};
+use crate::profile::load_mill;
 
 use super::axis_change::Session;
 use super::codes::{QUESTION, UNSAID, failure};
@@ -18,12 +17,13 @@ use super::options::{Between, Directions, Interferometer, Reference, Slopes};
 use super::output::{Output, columns};
 use super::page::{Positions, Read};
 use super::squareness::{Asked, Functions};
+use super::work::Work;
 use super::{iso_report, plausibility, sources, squareness};
 use crate::figures::short;
 
 /// `vpost calibrate interferometer`
-pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let (mut all, angles_read) = read(arguments)?;
+pub(super) fn run(arguments: &Interferometer, work: &Work<'_>) -> Result<(), Failure> {
+    let (mut all, angles_read) = read(arguments, work)?;
     let writes = arguments.target.writes();
     if arguments.refine.is_some() && !writes {
         return Err(Failure::usage(notice!(OPTION;
@@ -36,19 +36,19 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     let mut axes: [Functions; 3] = Default::default();
     let mut found = Vec::new();
     for series in &all {
-        plausibility::units(series, messages)?;
-        plausibility::directions(series, messages);
+        plausibility::units(series, work)?;
+        plausibility::directions(series, work);
         let fail = |error: &calibration::CalibrationError| failure(&series.source, &[], error);
         let readings = sources::readings(series);
         let function = functions::function(&readings).map_err(|e| fail(&e))?;
         let runs = functions::runs(&readings).map_err(|e| fail(&e))?;
         let mut evaluation = None;
         if function.count > 1 {
-            plausibility::copies(series, &runs, &function, messages)?;
+            plausibility::copies(series, &runs, &function, work)?;
             if function.scatter.is_some() && series.function == series.axis.direction() {
                 let e = iso230_2::evaluate(&runs, arguments.u_um_per_m * 1e-6).map_err(|e| fail(&e))?;
                 out.push(&iso_report::lines(&series.name(), &e, 1e3, &Text::pair("um", "мкм")));
-                plausibility::conditions_of_the_standard(&series.name(), &e, messages);
+                plausibility::conditions_of_the_standard(&series.name(), &e, work);
                 evaluation = Some(e);
             }
         }
@@ -61,37 +61,38 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     let found = Positions(found);
     let show = |temperature_c: Option<f64>, uncertainty_mm: Option<f64>| {
         let files = arguments.paths();
-        arguments.shown.write(&found, &files, &arguments.target, shared, temperature_c, uncertainty_mm)
+        arguments.shown.write(&found, &files, &arguments.target, work, temperature_c, uncertainty_mm)
     };
     let asked = squareness::from_the_user(arguments, angles_read, &axes)?;
     summary(&mut out, &axes);
     if !writes {
         show(mean_temperature(&all), None)?;
-        return file::print(out.in_language(messages.language()).as_bytes());
+        work.print(&out);
+        return Ok(());
     }
     let temperature_c = mean_temperature(&all);
-    let mut output = Output::start(&arguments.target, shared)?;
+    let mut output = Output::start(&arguments.target, work, load_mill)?;
     let chain = output.chain(&arguments.target)?;
     to_the_line(arguments, &chain, &mut all)?;
-    let session = Session::new(arguments, shared, &output, &chain, &all)?;
-    let uncertainty_mm = change(arguments, &mut output, &session, &all, &asked, &mut out, messages)?;
-    file::print(out.in_language(messages.language()).as_bytes())?;
+    let session = Session::new(arguments, work, &output, &chain, &all)?;
+    let uncertainty_mm = change(arguments, &mut output, &session, &all, &asked, &mut out, work)?;
+    work.print(&out);
     if arguments.interpolation == Between::Monotone {
         output.text.set_text(&["interpolation"], "monotone");
     }
-    output.travel(session.spans(), messages);
+    output.travel(session.spans(), work);
     let scatter = (0..3).filter_map(|i| axes[i][i].as_ref()?.scatter).reduce(f64::max);
-    output.write(&arguments.target, messages, temperature_c, [scatter, uncertainty_mm])?;
+    output.write(&arguments.target, work, temperature_c, [scatter, uncertainty_mm])?;
     show(temperature_c, uncertainty_mm)
 }
 
 /// Every function of every file, and the angles between axes that a file gives.
-fn read(arguments: &Interferometer) -> Result<(Vec<Series>, Option<[f64; 3]>), Failure> {
+fn read(arguments: &Interferometer, work: &Work<'_>) -> Result<(Vec<Series>, Option<[f64; 3]>), Failure> {
     let mut all: Vec<Series> = Vec::new();
     let mut angles_read: Option<[f64; 3]> = None;
     let told = Told { values: arguments.values, ways: arguments.runs, ..Told::default() };
     for spec in &arguments.files {
-        let content = sources::series(spec, told, &arguments.target.ignore_column)?;
+        let content = sources::series(spec, told, &arguments.target.ignore_column, work)?;
         angles_read = angles_read.or(content.angles_rad);
         for series in content.series {
             // Further runs of the same function may come in a file of their own.
@@ -119,7 +120,7 @@ fn change(
     all: &[Series],
     asked: &Asked,
     out: &mut Text,
-    messages: &Messages,
+    work: &Work<'_>,
 ) -> Result<Option<f64>, Failure> {
     let temperature_c = arguments.target.temperature;
     let keep = arguments.straightness_slopes == Some(Slopes::Keep);
@@ -143,7 +144,7 @@ fn change(
             changed = changed.averaged(axis.direction());
         }
         write_axis(output, arguments, axis, &changed)?;
-        write_line(output, arguments, session, axis, &own, messages);
+        write_line(output, arguments, session, axis, &own, work);
         if zero == Zero::Base {
             changed_lines(out, axis, &own);
             on_base.push(axis);
@@ -179,7 +180,7 @@ fn change(
         }
     }
     if !asked.is_given() && session.is_new() {
-        messages.warning(notice!(UNSAID;
+        work.warning(notice!(UNSAID;
             "readings of single axes say nothing of the angles between them: the measured lines are taken as square",
             "показания отдельных осей ничего не говорят об углах между ними: измеренные линии приняты перпендикулярными";
             "add `--squareness XY=…,ZX=…,YZ=… --squareness-convention …`, or measure it later with -m",
@@ -189,7 +190,7 @@ fn change(
     Ok(session.field_u95_mm(&changes, arguments.u_um_per_m * 1e-6).map(|own| {
         // What was not measured is as uncertain as the base says.
         let whole = changes.iter().flatten().all(Option::is_some) && asked.rad.iter().all(Option::is_some);
-        if whole { own } else { output.with_base_mm(own, messages) }
+        if whole { own } else { output.with_base_mm(own, work) }
     }))
 }
 
@@ -349,7 +350,7 @@ fn write_line(
     session: &Session,
     axis: Axis,
     change: &Functions,
-    messages: &Messages,
+    work: &Work<'_>,
 ) {
     if session.keeps_line(axis) {
         return;
@@ -360,7 +361,7 @@ fn write_line(
         let others: Vec<(char, f64)> = others.map(|k| (Axis::ALL[k].letter(), line.at_mm[k])).collect();
         output.text.set_measured_at(axis.letter(), &others, line.optics_mm.into());
     } else if change[3..].iter().any(Option::is_some) {
-        messages.warning(notice!(UNSAID;
+        work.warning(notice!(UNSAID;
             "the line along which {axis} was measured is not known: taken through 0 of the other axes, at the gauge point",
             "линия, вдоль которой измерена {axis}, неизвестна: принята через 0 остальных осей, в базовой точке";
             "its angles act from that line on: add `--through X,Y,Z` and `--optics X,Y,Z`",
