@@ -26,17 +26,30 @@ pub(super) fn cut(
     Ok(cut.strokes)
 }
 
-/// A level and a place of the contour differ by the last digits of both: whether a pass is cut there depends on how the
-/// interpreter rounds on its way to either. A contour as written is the same number to everybody; one moved off is not.
-pub(super) fn levels_hang_on_rounding(segments: &[Segment], depth: f64) -> bool {
-    let heights = || segments.iter().map(|segment| segment.end[1]);
-    let lowest = heights().fold(f64::INFINITY, f64::min) - LAST_DIGITS;
-    // As the interpreter steps down: not a product, whose last digits are others.
-    let levels = std::iter::successors(Some(segments[0].start[1]), |level| Some(level - depth));
-    levels
-        .take_while(|level| *level >= lowest)
-        .take(MOST)
-        .any(|level| heights().any(|height| level != height && (level - height).abs() < LAST_DIGITS))
+/// Whether as many moves come of a contour that lies higher or lower by the last digits of its numbers.
+///
+/// Levels come of differences, a contour that is moved off of sums: where one lies on the other but for their last digits,
+/// whether a pass is cut there depends on how the interpreter rounds on its way to either. Numbers that binary fractions hold
+/// are the same to everybody.
+pub(super) fn passes_are_certain(segments: &[Segment], pockets: Pockets, depth: f64, escape: f64) -> bool {
+    let exact = |value: f64| (value * f64::from(1_u32 << 20)).fract() == 0.0;
+    if exact(depth) && segments.iter().all(|segment| exact(segment.start[1]) && exact(segment.end[1])) {
+        return true;
+    }
+    let start = segments[0].start;
+    let moves = |by: f64| {
+        let raised = |p: Point| if p[1] == start[1] { p } else { [p[0], p[1] + by] };
+        let raise = |segment: &Segment| Segment {
+            start: raised(segment.start),
+            end: raised(segment.end),
+            round: segment
+                .round
+                .map(|round| Round { centre: [round.centre[0], round.centre[1] + by], ..round }),
+        };
+        let raised: Vec<Segment> = segments.iter().map(raise).collect();
+        cut(&raised, pockets, depth, escape).map_or(0, |strokes| strokes.len())
+    };
+    moves(LAST_DIGITS) == moves(-LAST_DIGITS)
 }
 
 /// Passes on their way.

@@ -15,7 +15,7 @@
 
 use nc_syntax::dialect::Pockets;
 
-use super::levels::{cut, levels_hang_on_rounding};
+use super::levels::{cut, passes_are_certain};
 use super::pieces::{MOST, Misfit, Round, SAME, Segment, Stroke, along, cross, dot, length, middle, sub};
 use super::place::Point;
 
@@ -167,7 +167,7 @@ impl Profile {
             let out = Segment { start: last, end: [last[0], start[1]], round: None };
             self.segments.push(out);
         }
-        if distance != 0.0 && levels_hang_on_rounding(&self.segments, depth) {
+        if distance != 0.0 && !passes_are_certain(&self.segments, pockets, depth, escape) {
             return Err(Misfit::Level);
         }
         let strokes = cut(&self.segments, pockets, depth, escape)?;
