@@ -133,14 +133,17 @@ impl Operator {
 /// Why a text is no expression.
 pub(crate) type Fault = Text;
 
+/// The operator that stands next, and its length.
+pub(crate) type NextOperator = fn(&[u8]) -> Option<(Operator, usize)>;
+
 /// How a control writes values that custom macro B and RS274/NGC do not have.
 #[derive(Clone, Copy)]
 pub(crate) struct Spelling {
     /// Whether a byte, upper case, begins one.
     pub(crate) begins: fn(u8) -> bool,
     pub(crate) operand: fn(&mut Parser<'_, '_>) -> Result<Expression, Fault>,
-    /// The operator that stands next, and its length; `None`: those of the others.
-    pub(crate) operator: Option<fn(&[u8]) -> Option<(Operator, usize)>>,
+    /// `None`: those of the others.
+    pub(crate) operator: Option<NextOperator>,
 }
 
 /// Reads statements and expressions from the bytes of a block.
