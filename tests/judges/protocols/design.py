@@ -10,7 +10,7 @@ import math
 from machine import AXES, Row
 
 SINE, SIGMAS, REACH = 0.3, 6.0, 0.3
-MOST_ROWS = 150           # rows beyond which a design is thinned evenly, for time
+MOST_READINGS = 200       # beyond which a design is thinned evenly, for time
 LIMIT = {"angular": 300.0,    # urad: no carriage of a machine tool turns by more on its way
          "pitch": 15.0,       # um: nor does a turn of a screw err by more
          "instrument-drift": 50.0}   # um: nor does an instrument walk by more while a file is read
@@ -163,6 +163,23 @@ def periods():
     return [1.07 ** n for n in range(61)]
 
 
+def aliases(measure, part):
+    """Other periods of the same screw that even steps show alike."""
+    if not part.effect.startswith("pitch"):
+        return []
+    axis, period = AXES.index(part.effect[-1]), part.facts["period"]
+    places = sorted({row.q[axis] for row in measure.rows})
+    steps = sorted(b - a for a, b in zip(places, places[1:]) if b - a > 0.5)
+    if not steps:
+        return []
+    step, out = steps[len(steps) // 2], []
+    for turns in [n for k in range(1, 9) for n in (k, -k)]:
+        other = 1 / period + turns / step
+        if abs(other) > 1e-4 and 0.5 < 1 / abs(other) < 200:
+            out.append(({"pitch of another period"}, pitch_forms(axis, 1 / abs(other))))
+    return out
+
+
 def textbook(part, machine, span):
     """Forms of the library for a part of the truth."""
     effect = part.effect
@@ -180,11 +197,13 @@ def thinned(measure):
     """The same design with fewer rows where it has very many: each row then counts for `weight`."""
     from copy import copy
     rows = measure.rows
-    if len(rows) <= MOST_ROWS:
+    each = len(measure.column(lambda row: (0.0, 0.0, 0.0))) / len(rows)
+    most = int(MOST_READINGS / each)
+    if len(rows) <= most:
         return measure, 1.0
     small = copy(measure)
-    every = len(rows) / MOST_ROWS
-    small.rows = [rows[int(i * every)] for i in range(MOST_ROWS)]
+    every = len(rows) / most
+    small.rows = [rows[int(i * every)] for i in range(most)]
     return small, every
 
 
@@ -232,7 +251,7 @@ def nearest_rival(measure, machine, part, others):
     if full * noises < 1e-6:
         return (0.0, 0.0, "set-up")
     same = {part.effect} | sibling_ids(part.effect)
-    for ids, forms in rivals(small, machine):
+    for ids, forms in rivals(small, machine) + aliases(small, part):
         if ids & same:
             continue
         near = base.copy()

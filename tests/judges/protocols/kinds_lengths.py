@@ -34,7 +34,7 @@ def circles(random):
                     name = AXES[i] + AXES[j] + ("+" if sense > 0 else "-")
                     rows.append(Row(name, [round(v, 4) for v in q], dirs, ball=centre))
         return rows
-    return Case("circles", m, truth, build, random.choice((.5, 1.0)), "length")
+    return Case("circles", m, truth, build, random.choice((.5, 1.0)), "length", offset=.2)
 
 
 def random_radius(machine):
@@ -64,7 +64,7 @@ def diagonals(random):
                         dirs = [side * (1 if ends[k][1] > ends[k][0] else -1) for k in range(3)]
                         rows.append(Row(f"d{number}", q, dirs, ball=[round(b, 4) for b in ball]))
         return rows
-    return Case("diagonals", m, truth, build, random.choice((.5, 1.0)), "length")
+    return Case("diagonals", m, truth, build, random.choice((.5, 1.0)), "length", offset=.2)
 
 
 def lengths_10360(random):
@@ -86,7 +86,7 @@ def lengths_10360(random):
                     rows.append(Row(f"w{number}", [round(a + s * (b - a), 4) for a, b in zip(start, end)],
                                     ball=[round(a, 4) for a in start]))
         return rows
-    return Case("lengths_10360", m, truth, build, random.choice((.5, 1.0)), "length", dirs=False)
+    return Case("lengths_10360", m, truth, build, random.choice((.5, 1.0)), "length", dirs=False, offset=.2)
 
 
 def bar(random):
@@ -114,7 +114,7 @@ def bar(random):
                 for _ in range(2):
                     rows.append(Row(f"b{number}", [round(v, 4) for v in q], ball=ball))
         return rows
-    return Case("bar", m, truth, build, random.choice((.7, 1.5)), "length", dirs=False)
+    return Case("bar", m, truth, build, random.choice((.7, 1.5)), "length", dirs=False, offset=.2)
 
 
 def printed_square(random):

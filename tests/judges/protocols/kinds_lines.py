@@ -164,7 +164,7 @@ def collision(random):
     a = random.randrange(3)
     one = one_run(random)
     truth = [(parts.play(a), random.choice((3, 5))),
-             (parts.step(a, random.randrange(40, 75)), random.choice((5, 10, 16)))]
+             (parts.step(a, random.randrange(1, 4) * 22 + random.randrange(6, 17)), random.choice((5, 10, 16)))]
 
     def build(machine, places, targets):
         return passes("c", a, somewhere(machine, places), targets_of(machine, targets, a, 11), 5, (a,), one_run=one)
