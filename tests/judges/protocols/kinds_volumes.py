@@ -135,10 +135,10 @@ def drilled(random):
 
 
 def surface(random, m, strong=1.0):
-    """What bends a bed or a table as a probe in Z sees it."""
-    options = [parts.curve(random, m, 0, 2), parts.curve(random, m, 1, 2)]
-    first = m.order.index(0) < m.order.index(1)
-    options.append(parts.angle(random, m, 0, 0) if first else parts.angle(random, m, 1, 1))
+    """What bends a bed or a table as a probe in Z sees it: two waves, since few nodes show no more."""
+    options = [parts.curve(random, m, a, 2, 2) for a in (0, 1)]
+    first = 0 if m.order.index(0) < m.order.index(1) else 1
+    options.append(parts.angle(random, m, first, first, 2))
     random.shuffle(options)
     truth = [(p, shared(random)) for p in options[:random.choice((1, 2))]]
     for part, _ in truth:
@@ -172,7 +172,7 @@ def bed_mesh(random):
     count, side = random.choice((1, 3)), random.choice((5, 7))
 
     def build(machine, places, targets):
-        nodes = grid(machine, targets, side, side, .1, .9, .03)
+        nodes = grid(machine, targets, side, side, .05, .95, .03)
         return [Row(f"m{n}", (x, y, 5.0), comps=(2,)) for n in range(count) for x, y in nodes]
     return Case("bed_mesh", m, surface(random, m, 4.0), build, 4.0, dirs=False, step=2.5)
 

@@ -83,9 +83,10 @@ def vector(component, value):
     return out
 
 
-def smooth(random, low, high, keep_line=False):
-    """A curve of three sines of random phase, largest value near 1; without its best line over the travel."""
-    waves = [(random.gauss(0, 1) / k ** 1.3, k * random.uniform(0.8, 1.2), random.uniform(0, 6.283)) for k in (1, 2, 3)]
+def smooth(random, low, high, keep_line=False, count=3):
+    """A curve of some sines of random phase, largest value near 1; without its best line over the travel."""
+    waves = [(random.gauss(0, 1) / k ** 1.3, k * random.uniform(0.8, 1.2), random.uniform(0, 6.283))
+             for k in range(1, count + 1)]
 
     def raw(value):
         u = (value - low) / (high - low)
@@ -111,16 +112,16 @@ def squareness(pair):
     return Part(f"squareness.{pair}", lambda row: vector(moved, sign * row.q[mover] / 1000), 900)
 
 
-def curve(random, machine, axis, component):
+def curve(random, machine, axis, component, count=3):
     """Positioning (component = axis) or straightness, size its largest value, um."""
-    form = smooth(random, *machine.travel[axis])
+    form = smooth(random, *machine.travel[axis], count=count)
     name = "positioning" if axis == component else "straightness"
     return Part(f"{name}.E{AXES[component]}{AXES[axis]}", lambda row: vector(component, form(row.q[axis])), 60)
 
 
-def angle(random, machine, axis, about):
+def angle(random, machine, axis, about, count=3):
     """Roll, pitch or yaw of a carriage, size its largest value, urad."""
-    form = smooth(random, *machine.travel[axis], keep_line=True)
+    form = smooth(random, *machine.travel[axis], keep_line=True, count=count)
     a, b = (about + 1) % 3, (about + 2) % 3
 
     def displacement(row):
