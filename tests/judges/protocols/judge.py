@@ -86,7 +86,8 @@ def play(made, vpost, folder, variant):
         rows = verdicts.grid(machine, travel, random.Random(made.key))
         predicted = answers.predict(vpost, folder, f"{variant}.toml", rows, machine.tool)
         if predicted:
-            flags["harm"] = verdicts.harm(machine, rows, predicted, answer.stated_um(travel))
+            comps = sorted({k for row in made.main.rows for k in row.comps})
+            flags["harm"] = verdicts.harm(machine, rows, predicted, answer.stated_um(travel), comps)
     told = answer.forecast()
     if told is not None and (answer.written() or answer.verdict == "NAMED") and not made.case.slip and all(
             part.static for part in machine.parts) and made.truth.parts:

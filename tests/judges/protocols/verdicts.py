@@ -62,29 +62,30 @@ def grid(machine, travel, random):
     return rows
 
 
-def without_frame(rows, vectors, tool):
-    """Vectors less the shift and turn of a frame that fit them best; a frame is nobody's error."""
+def without_frame(rows, vectors, tool, comps):
+    """Vectors less the shift and turn of a frame that fit them best, in the components that the instrument reads: what
+    it cannot tell from its own frame is nobody's error."""
     columns = []
     for k in range(3):
-        columns.append([1.0 if j == k else 0.0 for _ in rows for j in range(3)])
-    for k in range(3):
+        columns.append([float(j == k) for _ in rows for j in comps])
         column = []
         for row in rows:
             tip = [q + t for q, t in zip(row.q, row.tool or tool)]
             out = [0.0, 0.0, 0.0]
             out[(k + 1) % 3], out[(k + 2) % 3] = -tip[(k + 2) % 3], tip[(k + 1) % 3]
-            column += out
+            column += [out[j] for j in comps]
         columns.append(column)
-    flat = design.Space(columns).left([v for vector in vectors for v in vector])
-    return [flat[3 * i:3 * i + 3] for i in range(len(rows))]
+    flat = design.Space(columns).left([vector[j] for vector in vectors for j in comps])
+    width = len(comps)
+    return [flat[width * i:width * (i + 1)] for i in range(len(rows))]
 
 
-def harm(machine, rows, predicted, stated):
+def harm(machine, rows, predicted, stated, comps=(0, 1, 2)):
     """(worst rise at a place, um; where; RMS before and after, um) of a correction against the static truth."""
     static = [part for part in machine.parts if part.static]
     true = [machine.displacement(row, static) for row in rows]
-    before = without_frame(rows, true, machine.tool)
-    after = without_frame(rows, [[a - b for a, b in zip(t, p)] for t, p in zip(true, predicted)], machine.tool)
+    before = without_frame(rows, true, machine.tool, comps)
+    after = without_frame(rows, [[a - b for a, b in zip(t, p)] for t, p in zip(true, predicted)], machine.tool, comps)
     rises = [(design.norm(b) - design.norm(a), row.q) for a, b, row in zip(before, after, rows)]
     rise, place = max(rises)
     count = math.sqrt(len(rows))
