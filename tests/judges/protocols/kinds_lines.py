@@ -106,7 +106,7 @@ def warm_up(random):
         lists = [targets_of(machine, targets, a, 7) for a in range(3)]
         for number in range(4):
             for a in range(3):
-                rows += passes("all", a, at, lists[a], 1, (0, 1, 2))
+                rows += passes(f"{AXES[a]}{number}", a, at, lists[a], 1, (0, 1, 2))
         return rows
     return Case("warm_up", m, truth, build, random.choice((.5, 1.0)), time=True, seconds=10.0)
 

@@ -33,7 +33,9 @@ class Truth:
             others = [p for p in self.parts if p is not part]
             self.facts[part] = (*design.nearest_rival(measure, machine, part, others),
                                 design.corner_reach(measure, machine, part, others))
-        self.correctable = bool(self.main) and all(part.static and part.effect != "field" for part in seen)
+        field = [part for part in seen if part.static and part.effect != "field"]
+        knocks = [part for part in seen if part.effect.startswith("step")]
+        self.correctable = bool(self.main) and bool(field) and len(field) + len(knocks) == len(seen)
         self.determined = self.correctable and self.known_noise and not case.slip and all(
             sine >= design.SINE and noises >= design.SIGMAS and reach <= design.REACH
             for sine, noises, _, reach in self.facts.values())
