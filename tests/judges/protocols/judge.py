@@ -87,7 +87,7 @@ def play(made, vpost, folder, variant):
         predicted = answers.predict(vpost, folder, f"{variant}.toml", rows, machine.tool)
         if predicted:
             comps = sorted({k for row in made.main.rows for k in row.comps})
-            flags["harm"] = verdicts.harm(machine, rows, predicted, answer.stated_um(travel), comps)
+            flags["harm"] = verdicts.harm(machine, rows, predicted, answer.stated_um(travel), comps, answer.written())
     told = answer.forecast()
     if told is not None and (answer.written() or answer.verdict == "NAMED") and not made.case.slip and all(
             part.static for part in machine.parts) and made.truth.parts:
@@ -110,7 +110,7 @@ def period_of(made, answer, flags):
         period = true.get(cause["effect"])
         named = {one["name"]: one["value"] for one in cause["parameters"]}.get("pitch_mm")
         if period and named and answer.verdict == "NAMED" or period and named and cause["effect"] in flags["written"]:
-            off = min(abs(named / period - 1), abs(named / (period / 2) - 1))
+            off = min(abs(named / (period * turns) - 1) for turns in (0.5, 1, 2, 3))    # or a harmonic of what is named
             if off > 0.01 and not (said and cause["effect"] not in flags["written"]):
                 flags["wrong"].append(f"{cause['effect']} period {named:.3f} for {period:.3f}")
 

@@ -107,6 +107,13 @@ def fields():
         yield f"a correction of {share} of the truth {'harms' if harmful else 'is none that harms'}", found is harmful
     frame = [[0.1 * row.q[1], -0.1 * row.q[0], 5.0] for row in rows]
     yield "a turned frame harms nobody", not verdicts.harm(m, rows, frame, 2.0)["harmed"]
+    scale = parts.scale(0)
+    scale.size = 150.0
+    m.parts = [*m.parts, scale]
+    for written, harmful in ((["squareness.XY"], False), (["scale.X"], True), (["local.X"], True)):
+        found = verdicts.harm(m, rows, true, 2.0, written=written)["harmed"]
+        yield f"of two faults one undone as {written[0]} is judged for itself", found is harmful
+    m.parts = m.parts[:1]
     values = measure.simulate(m, random.Random(4))
     full = verdicts.shrink(measure, m, values, [m.displacement(row) for row in measure.rows])
     none = verdicts.shrink(measure, m, values, [[0.0] * 3 for _ in measure.rows])

@@ -82,9 +82,18 @@ def without_frame(rows, vectors, tool, comps):
     return [flat[width * i:width * (i + 1)] for i in range(len(rows))]
 
 
-def harm(machine, rows, predicted, stated, comps=(0, 1, 2)):
-    """(worst rise at a place, um; where; RMS before and after, um) of a correction against the static truth."""
+def meant(machine, written):
+    """The static faults that a correction is of: where all that is written is true, those that it names, since to undo
+    one fault of two is right where they cancel, too; else all."""
     static = [part for part in machine.parts if part.static]
+    named = [part for part in static if ({part.effect} | design.sibling_ids(part.effect)) & set(written)]
+    known = set().union(*({part.effect} | design.sibling_ids(part.effect) for part in named))
+    return named if set(written) <= known else static
+
+
+def harm(machine, rows, predicted, stated, comps=(0, 1, 2), written=()):
+    """(worst rise at a place, um; where; RMS before and after, um) of a correction against the static truth."""
+    static = meant(machine, written) if written else [part for part in machine.parts if part.static]
     true = [machine.displacement(row, static) for row in rows]
     before = without_frame(rows, true, machine.tool, comps)
     after = without_frame(rows, [[a - b for a, b in zip(t, p)] for t, p in zip(true, predicted)], machine.tool, comps)
