@@ -232,6 +232,102 @@ def test_the_map_is_the_command_s_rows(tmp_path):
         assert [fixed(v, 6) for v in found.error_um[x, y, z]] == [line[k] for k in ("dx_um", "dy_um", "dz_um")]
 
 
+def test_the_map_s_figures_are_the_command_s(tmp_path):
+    words = ["--grid", "5x4x3", "--within", "50", "--region", "left=0..200,0..280,0..200", "--plane", "XY=100"]
+    words += ["--part-box", "10..90,10..60,5..40", "--clamp", "100,80,40", "--tool-vector", "0,0,-50", "--second-order"]
+    command = run("map", "-m", STAN, *words, "--json", tmp_path / "map.json")
+    assert command.returncode == 0, command.stderr.decode()
+    found = vpost.map(
+        STAN,
+        grid=(5, 4, 3),
+        within_um=50,
+        region={"left": "0..200,0..280,0..200"},
+        plane=["XY=100"],
+        part_box="10..90,10..60,5..40",
+        clamp_mm=(100, 80, 40),
+        tool_mm=(0, 0, -50),
+        second_order=True,
+    )
+    assert found.summary == json.loads((tmp_path / "map.json").read_text())
+    assert [part["name"] for part in found.summary["parts"]] == ["volume", "left", "XY at Z 100", "part box"]
+    with pytest.raises(vpost.Refused) as caught:
+        vpost.map(STAN, grid="0:5000:100,0:100:50,0:100:50")
+    assert caught.value.codes == ["VP0909"]
+
+
+def test_the_budget_is_the_command_s(tmp_path):
+    words = ["--grid", "4x4x3", "--target", "300", "--keep", "EXX,EYY", "--tool-vector", "0,0,-50"]
+    command = run("budget", "-m", STAN, *words, "--json", tmp_path / "budget.json")
+    assert command.returncode == 0, command.stderr.decode()
+    found = vpost.budget(STAN, grid=(4, 4, 3), target_um=300, keep=["EXX", "EYY"], tool_mm=(0, 0, -50))
+    assert found.json == (tmp_path / "budget.json").read_text()
+    assert "".join(f"{warning}\n" for warning in found.warnings) == command.stderr.decode()
+    points = as_csv(np.array([[10.0, 20.0, 30.0], [300.0, 200.0, 150.0]]))
+    run("budget", "-m", STAN, "--points", "-", "--json", tmp_path / "points.json", stdin=points)
+    assert vpost.budget(STAN, points=points).json == (tmp_path / "points.json").read_text()
+    with pytest.raises(vpost.Refused) as caught:
+        vpost.budget(STAN, keep=["EXX"])
+    assert caught.value.codes == ["VP0002"]
+
+
+CHAIN = {"chain": "[w X Y b Z t]", "date": "2026-05-15", "temperature": 20, "measured_with": "test"}
+CALIBRATIONS = [
+    ("tracker", [f"machine-profiles/stan_s500/tracker_315_{axis}.csv" for axis in "xyz"], CHAIN),
+    ("interferometer", ["samples/calibration/iso230_2_psi_2023.csv"], CHAIN),
+    ("volumetric", ["samples/calibration/volume_points.csv"], {**CHAIN, "nodes": 4}),
+    ("ballbar", ["samples/calibration/ballbar_circles.csv"], CHAIN),
+    ("rtest", ["samples/calibration/rtest_bc.csv"], {"profile": "samples/profiles/table_bc.toml"}),
+]
+
+
+@pytest.mark.parametrize("instrument, files, asked", CALIBRATIONS)
+def test_calibrate_is_the_command(instrument, files, asked, tmp_path):
+    words = ["-m", asked["profile"]] if "profile" in asked else []
+    for name, value in asked.items():
+        if name != "profile":
+            words += [f"--{'instrument' if name == 'measured_with' else name}", value]
+    (tmp_path / "command").mkdir()
+    has_figures = instrument not in ("tracker", "volumetric")
+    words += ["--json", tmp_path / "found.json"] if has_figures else []
+    command = run("calibrate", instrument, *files, *words, "-o", tmp_path / "command/made.toml")
+    assert command.returncode == 0, command.stderr.decode()
+    found = vpost.calibrate(
+        instrument, {name: Path(name).read_bytes() for name in files}, output="made.toml", **asked
+    )
+    assert found.report == command.stdout.decode()
+    said = "".join(f"{warning}\n" for warning in found.warnings)
+    assert command.stderr.decode().startswith(said) and "written, tables in" in command.stderr.decode()[len(said) :]
+    assert found.profile == (tmp_path / "command/made.toml").read_text()
+    tables = {f"made/{path.name}": path.read_bytes() for path in (tmp_path / "command/made").iterdir()}
+    assert found.tables == tables and bool(tables) == (instrument != "ballbar")
+    assert (found.figures is not None) == has_figures
+    if has_figures:
+        expected = json.loads((tmp_path / "found.json").read_text())
+        # Where files are, and what was typed, is the command's alone.
+        for figures in (expected, found.figures):
+            figures.pop("made", None)
+        assert found.figures == expected
+    saved = found.save(tmp_path)
+    assert vpost.predict(saved, np.full((1, 3), 50.0), outside="clamp").error_um.shape == (1, 3)
+
+
+def test_calibrate_reads_rows_and_refuses_as_the_command():
+    lathe = "tests/profiles/lathe.toml"
+    with pytest.raises(vpost.Refused) as caught:
+        vpost.calibrate("turning", {"parts.csv": [{"part": "A", "z_mm": 1.0, "diameter_mm": 40.0}]}, profile=lathe)
+    assert caught.value.messages[0].file == "parts.csv"
+    with pytest.raises(vpost.Refused) as caught:
+        vpost.calibrate("ballbar", {"b.csv": Path("samples/calibration/ballbar_ac.csv").read_text()})
+    assert caught.value.codes == ["VP1106"]
+    with pytest.raises(vpost.Refused):
+        vpost.calibrate("plumb-line", {})
+    text = Path("samples/calibration/iso230_2_psi_2021.csv").read_text()
+    report = vpost.calibrate("interferometer", {"runs.csv": text})
+    assert report.profile is None and "ISO 230-2" in report.report
+    with pytest.raises(ValueError):
+        report.save(".")
+
+
 @pytest.mark.parametrize("job", [vpost.predict, vpost.solve])
 def test_wrong_arrays_have_an_exception_each(job):
     for shape in ((3,), (2, 2), (2, 3, 1), (0,)):

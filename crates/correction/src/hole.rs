@@ -28,10 +28,20 @@ struct Kept {
     commanded: Curve,
     /// What the control counts its pecks along.
     pecks: Option<Curve>,
-    /// The axis along which it leaves the hole at feed, if it does.
-    feeds_out: Option<usize>,
+    /// How it leaves the hole at feed, if it does.
+    feeds_out: Option<FedOut>,
     /// Where R is, axis command.
     r_mm: f64,
+}
+
+/// The way out of a hole at feed, from its bottom.
+#[derive(Clone, Copy)]
+struct FedOut {
+    /// The axis along which it goes.
+    normal: usize,
+    /// Where it ends: as programmed, and as the words lead.
+    wanted: Vector,
+    commanded: Vector,
 }
 
 impl Kept {
@@ -52,9 +62,13 @@ impl Kept {
         pecks.into_iter().chain(self.out_again(machine, limit_mm)).fold(verdict, worse)
     }
 
-    /// The same for the way out of a hole that is left at feed, on a machine that goes out another way than it came in.
+    /// The same for the way out of a hole that is left at feed: on to above R, or on a machine that goes out another way than
+    /// it came in.
     fn out_again(&self, machine: &Machine<'_>, limit_mm: f64) -> Option<Verdict> {
-        let normal = self.feeds_out.filter(|_| machine.model.depends_on_direction())?;
+        // Back to where it came in from, the same way is proven already.
+        let proven =
+            |out: &FedOut| out.wanted == self.wanted.at(0.0) && !machine.model.depends_on_direction();
+        let FedOut { normal, wanted, commanded } = self.feeds_out.filter(|out| !proven(out))?;
         let mut out = machine.clone();
         out.state.direction[normal] = -out.state.direction[normal];
         // While its own play is taken up the tool is late on the hole's line, which is no deviation from it.
@@ -62,8 +76,8 @@ impl Kept {
         let turned = Command { direction: out.state.direction, ..bottom };
         let late_mm = (machine.model.error_mm(&turned) - machine.model.error_mm(&bottom))[normal];
         let late = Vector::ith(normal, late_mm);
-        let wanted = Curve::Line(self.wanted.at(1.0) + late, self.wanted.at(0.0) + late);
-        let commanded = Curve::Line(self.commanded.at(1.0), self.commanded.at(0.0));
+        let wanted = Curve::Line(self.wanted.at(1.0) + late, wanted + late);
+        let commanded = Curve::Line(self.commanded.at(1.0), commanded);
         let pair = Pair { wanted: &wanted, commanded: &commanded, in_step: false, begun: Begun::No };
         Some(pair.verdict(&out, limit_mm))
     }
@@ -308,8 +322,7 @@ impl<'m> Corrector<'m> {
         let from = block.machine(place);
         place[normal] = bottom_origin + bottom_value;
         let to = block.machine(place);
-        let pecks = matches!(hole.cycle.kind, CycleKind::PeckFull | CycleKind::PeckChip)
-            && hole.cycle.peck_mm.is_some();
+        let pecks = hole.cycle.kind.pecks() && hole.cycle.peck_mm.is_some();
         let pecks = pecks.then(|| {
             // The control counts its pecks from R by Q, whatever the depth: where they end counts too.
             let mut unscaled = from;
@@ -326,8 +339,14 @@ impl<'m> Corrector<'m> {
         self.standing = Into::<[f64; 3]>::into(end).map(Some);
         let piece = Piece::new(PieceKind::Cycle { r }, axes, 1.0);
         let (wanted, commanded) = (Curve::Line(at_r, on_hole(hole, hole.bottom_mm)), Curve::Line(from, to));
-        let feeds = matches!(hole.cycle.kind, CycleKind::Bore | CycleKind::Synchronised);
-        let feeds_out = Some(normal).filter(|_| feeds && hole.bottom_mm != at_r[normal]);
+        let fed_out = match hole.cycle.kind {
+            CycleKind::Bore | CycleKind::Synchronised => Some((at_r, from)),
+            CycleKind::BoreOut => Some((hole.end().linear_mm.into(), end)),
+            _ => None,
+        };
+        let feeds_out = fed_out
+            .filter(|_| hole.bottom_mm != at_r[normal])
+            .map(|(wanted, commanded)| FedOut { normal, wanted, commanded });
         Kept { piece, untouched, wanted, commanded, pecks, feeds_out, r_mm: from[normal] }
     }
 

@@ -324,7 +324,9 @@ fn a_leaning_hole_is_written_as_moves_where_it_can_be() {
     matrix[(0, 2)] = 5e-4;
     let model = Wavy { matrix, amplitude_mm: 0.0, wavelength_mm: 1.0 };
     let (start, top) = (Vector::new(0.0, 0.0, 30.0), Vector::new(40.0, 10.0, 2.0));
-    for kind in [CycleKind::Drill, CycleKind::Bore, CycleKind::PeckFull, CycleKind::PeckChip] {
+    let moves =
+        [CycleKind::Drill, CycleKind::Bore, CycleKind::BoreOut, CycleKind::PeckFull, CycleKind::PeckChip];
+    for kind in moves {
         let mut corrector = Corrector::new(&model, OPTIONS);
         begin(&mut corrector, start);
         let corrected = corrector.correct(&hole(kind, start, top, -18.0), &block("XYZRQ", false)).unwrap();

@@ -4,6 +4,9 @@ mod control_points;
 pub mod json;
 pub mod study;
 
+use std::path::PathBuf;
+
+use clap::Args;
 use diagnostic::{Code, both};
 use error_budget::Machine;
 use machine_model::EngineId;
@@ -14,11 +17,11 @@ use crate::datums::FromZero;
 use crate::lines;
 use crate::map::tool;
 use crate::message::{Failure, OPTION, Report, notice};
-use crate::options::JobOptions;
+use crate::options::{JobOptions, Read};
 use crate::settings::machine;
-use crate::values::{Given, ToolVector};
+use crate::values::{Ball, Given, Lattice, Rotary, ToolVector};
+pub use control_points::ControlPoints;
 use control_points::Taken;
-pub use control_points::{ControlPoints, Points};
 use study::{Study, Target};
 
 /// A machine without deviations has no budget.
@@ -26,29 +29,51 @@ const NO_DEVIATIONS: Code = Code(917);
 /// Warning: the target cannot be reached while some deviations stay as they are.
 const OUT_OF_REACH: Code = Code(918);
 
-/// What is asked of a machine.
-pub struct Asked<'a> {
-    /// Where its error counts.
-    pub points: Points<'a>,
-    /// The profile's, where none is given.
-    pub tool_vector: Option<&'a Given<ToolVector>>,
-    /// The zero that errors count from.
-    pub datum: Option<&'a str>,
-    /// Wanted largest error, µm.
-    pub target_um: Option<f64>,
-    /// Deviations that stay as they are, names by commas.
-    pub keep: &'a [String],
+/// What is asked of a machine, as it is typed.
+#[derive(Debug, Args)]
+pub struct BudgetOptions {
+    /// Control points: nodes of X, Y and Z, how many over the calibrated volume (22x22x21), or from:to:step in mm for each
+    /// (40:880:40,30:450:20,5:505:25).
+    #[arg(long, value_name = "NXxNYxNZ|X,Y,Z", default_value = "21x21x21", allow_hyphen_values = true)]
+    pub grid: Given<Lattice>,
+    /// Control points of a file instead (CSV, as for `vpost predict`); - for standard input.
+    #[arg(long, value_name = "POINTS.csv", conflicts_with_all = ["grid", "rotary"])]
+    pub points: Option<PathBuf>,
+    /// Control points: a ball on the rotary table, at a radius and a height from its centre, mm, which the linear axes
+    /// follow through the angles of both rotary axes in steps of 30 degrees; the leading axis turns slowest.
+    #[arg(long, value_name = "R=MM,H=MM,lead=AXIS", allow_hyphen_values = true, conflicts_with_all = ["grid", "rotary", "points"])]
+    pub ball: Option<Given<Ball>>,
+    /// Tool vector, gauge point to tip, mm: an H number of the profile or X,Y,Z; default: the profile's.
+    #[arg(long, value_name = "H1|X,Y,Z", allow_hyphen_values = true)]
+    pub tool_vector: Option<Given<ToolVector>>,
+    /// Where the rotary axes stand at the nodes of the grid, degrees; 0 if not given.
+    #[arg(long, value_name = "A=DEG,…", allow_hyphen_values = true)]
+    pub rotary: Option<Given<Rotary>>,
+    /// Count errors from this zero of the profile, as it was touched.
+    #[arg(long, value_name = "G54")]
+    pub datum: Option<String>,
+    /// Wanted M, largest error at the control points, µm: what to mend, and what each deviation may be.
+    #[arg(long, value_name = "UM", allow_hyphen_values = true)]
+    pub target: Option<f64>,
+    /// Deviations that stay as they are while the others are made smaller: EXX,EC0Y (repeatable).
+    #[arg(long, value_name = "NAME,…", requires = "target")]
+    pub keep: Vec<String>,
 }
 
-/// The budget of a machine, and what is to be said of it.
+/// The budget of a machine.
+///
+/// * `read` – reads the file of the control points
+/// * `warnings` – what is to be said of it, also where it fails
 ///
 /// # Errors
 /// What is asked for cannot be: another engine, no deviations, points outside the volume.
 pub fn of(
     options: &JobOptions,
     profile: &Profile,
-    asked: &Asked<'_>,
-) -> Result<(Study, Vec<Report>), Failure> {
+    asked: &BudgetOptions,
+    read: Read<'_>,
+    warnings: &mut Vec<Report>,
+) -> Result<Study, Failure> {
     if let Some(id) = options.engine().filter(|id| *id != EngineId::RigidBody) {
         return Err(Failure::usage(notice!(OPTION;
             "engine `{id}` has no deviations to be scaled one by one",
@@ -57,18 +82,21 @@ pub fn of(
             "уберите `--engine`: бюджет считается по модели твёрдых тел"
         )));
     }
-    let target_mm = asked.target_um.map(target_mm).transpose()?;
+    let target_mm = asked.target.map(target_mm).transpose()?;
     let model = profile.machine(&conditions(options)?).map_err(|error| failure(&error))?;
     let machine = Machine::new(model);
     if machine.deviations().is_empty() {
         return Err(without_deviations(options, profile)?);
     }
-    let keep = keep(asked.keep, &machine)?;
-    let tool_mm = tool(asked.tool_vector, options, profile)?;
-    let mut taken = Taken { options, profile, machine: &machine, tool_mm, warnings: Vec::new() };
-    let points = taken.points(&asked.points)?;
-    let mut warnings = taken.warnings;
-    let from_zero = FromZero::of(options, profile, machine.model(), asked.datum)?;
+    let keep = keep(&asked.keep, &machine)?;
+    let tool_mm = tool(asked.tool_vector.as_ref(), options, profile)?;
+    let mut taken = Taken { options, profile, machine: &machine, tool_mm, warnings };
+    let points = match (&asked.ball, &asked.points) {
+        (Some(ball), _) => taken.on_a_ball(ball),
+        (None, Some(path)) => taken.in_a_file(&lines::name(path), &read(path)?),
+        (None, None) => taken.over_the_volume(&asked.grid, asked.rotary.as_ref()),
+    }?;
+    let from_zero = FromZero::of(options, profile, machine.model(), asked.datum.as_deref())?;
     let target = target_mm.map(|mm| (mm, keep));
     let study = Study::new(profile.name.clone(), machine, points, from_zero, target);
     if study.moves_nothing() {
@@ -81,12 +109,12 @@ pub fn of(
     }
     if let Some(why) = study.target.as_ref().and_then(Target::out_of_reach) {
         warnings.push(Report::warning(notice!(OUT_OF_REACH;
-            "{} um cannot be reached: {why}", "{} мкм недостижимы: {why:#}", asked.target_um.unwrap_or(0.0);
+            "{} um cannot be reached: {why}", "{} мкм недостижимы: {why:#}", asked.target.unwrap_or(0.0);
             "keep fewer deviations as they are (`--keep`), or raise `--target`",
             "сохраняйте меньше отклонений (`--keep`) или увеличьте `--target`"
         )));
     }
-    Ok((study, warnings))
+    Ok(study)
 }
 
 /// What to say of a profile whose model deviates by nothing.

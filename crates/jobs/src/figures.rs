@@ -1,6 +1,8 @@
 //! Numbers and names as results show them.
 
+use diagnostic::{Text, both};
 use machine_model::Vector;
+use report::numbers::figures;
 
 /// A number with fixed decimals, never a negative zero.
 #[must_use]
@@ -25,6 +27,13 @@ pub fn short(value: f64, decimals: usize) -> String {
 #[must_use]
 pub fn um(mm: f64) -> String {
     fixed(mm * 1e3, 2)
+}
+
+/// A temperature.
+#[must_use]
+pub fn celsius(value: f64) -> Text {
+    let value = figures(short(value, 2));
+    both!("{value} \u{b0}C", "{value:#} \u{b0}C")
 }
 
 /// Three numbers, apart by blanks.

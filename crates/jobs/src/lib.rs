@@ -5,6 +5,7 @@
 //! is written or printed: messages are values that [`message::Wording`] makes text of.
 
 pub mod budget;
+pub mod calibrate;
 pub mod causes;
 pub mod check;
 pub mod conditions;

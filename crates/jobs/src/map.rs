@@ -4,8 +4,13 @@ pub mod asked;
 pub mod curves;
 pub mod deformation;
 pub mod dominant;
+pub mod drawn;
+mod job;
+pub mod json;
 pub mod second_order;
 pub mod study;
+
+pub use job::of;
 
 use diagnostic::{Speaks, Text, both};
 use error_map::{ErrorMap, Grid, Nodes};
@@ -34,10 +39,7 @@ pub fn model(engine: &dyn Engine) -> Result<&dyn PathModel, Failure> {
 }
 
 /// Refuses a tool vector of which the model knows nothing.
-///
-/// # Errors
-/// Which it knows.
-pub fn require_tool(model: &dyn PathModel, tool_mm: Vector) -> Result<(), Failure> {
+fn require_tool(model: &dyn PathModel, tool_mm: Vector) -> Result<(), Failure> {
     match model.knows(&Command { tool_mm, ..Command::default() }) {
         Err(error @ SolveError::OtherTool { .. }) => {
             let help = both!(
@@ -51,10 +53,7 @@ pub fn require_tool(model: &dyn PathModel, tool_mm: Vector) -> Result<(), Failur
 }
 
 /// Boxes of nodes that reach outside the calibrated volume: refused, unless the nearest point's error is asked for.
-///
-/// # Errors
-/// The first that reaches outside.
-pub fn outside(
+pub(crate) fn outside(
     boxes_mm: impl IntoIterator<Item = [Range; 3]>,
     volume: Volume,
     options: &JobOptions,
@@ -93,18 +92,14 @@ pub fn outside(
 }
 
 /// The map of a grid, on all cores; each node is computed by itself, so their number changes nothing.
-#[must_use]
-pub fn evaluated(grid: Grid, error_mm: impl Fn(&Vector) -> Vector + Sync) -> ErrorMap {
+fn evaluated(grid: Grid, error_mm: impl Fn(&Vector) -> Vector + Sync) -> ErrorMap {
     let errors = (0..grid.len()).into_par_iter().with_min_len(256).map(|i| error_mm(&grid.place_mm(i)));
     let errors = errors.collect();
     ErrorMap::new(grid, errors)
 }
 
 /// Nodes over the volume, or where they were said to be.
-///
-/// # Errors
-/// Nodes that cannot be.
-pub fn grid(given: &Given<Lattice>, volume: Volume) -> Result<Grid, Failure> {
+pub(crate) fn grid(given: &Given<Lattice>, volume: Volume) -> Result<Grid, Failure> {
     let refuse = |why: Text| {
         Failure::usage(notice!(OPTION;
             "`--grid {given}`: {why}", "`--grid {given}`: {why:#}";
@@ -122,10 +117,7 @@ pub fn grid(given: &Given<Lattice>, volume: Volume) -> Result<Grid, Failure> {
 }
 
 /// An H number stands for minus its length vector, as under G43.
-///
-/// # Errors
-/// Nobody gave that number a length.
-pub fn tool(
+pub(crate) fn tool(
     given: Option<&Given<ToolVector>>,
     options: &JobOptions,
     profile: &Profile,
@@ -150,10 +142,7 @@ pub fn tool(
 }
 
 /// Where the rotary axes stand, rad; those that are not named stand at 0.
-///
-/// # Errors
-/// An axis that the machine has not, an angle outside its travel.
-pub fn rotary(given: Option<&Given<Rotary>>, profile: &Profile) -> Result<Vector, Failure> {
+pub(crate) fn rotary(given: Option<&Given<Rotary>>, profile: &Profile) -> Result<Vector, Failure> {
     let Some(given) = given else { return Ok(Vector::zeros()) };
     for (axis, angle) in given.0.iter().enumerate() {
         if angle.is_some() && !profile.has_rotary()[axis] {

@@ -1,9 +1,9 @@
 //! What decides the output of a job besides the program: options, as the command line and a manifest spell them.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clap::{Args, FromArgMatches, ValueEnum};
+use clap::{Args, ValueEnum};
 use diagnostic::{Text, both};
 use machine_model::EngineId;
 use nc_expand::Preset;
@@ -193,20 +193,41 @@ impl JobOptions {
     /// # Errors
     /// What the command says of them.
     pub fn read(words: impl IntoIterator<Item = OsString>) -> Result<Self, Failure> {
-        let command =
-            Self::augment_args(clap::Command::new("vpost").no_binary_name(true).disable_help_flag(true));
-        let read = command.try_get_matches_from(words).and_then(|matches| Self::from_arg_matches(&matches));
-        read.map_err(|error| {
-            unread(&error).unwrap_or_else(|| {
-                let text = error.to_string();
-                let first = text.lines().next().unwrap_or_default();
-                Failure::usage(notice!(OPTION;
-                    Text::english_only(first.trim_start_matches("error: "));
-                    "see docs/reference.md for what it takes", "что он принимает, сказано в docs/reference.md"
-                ))
-            })
-        })
+        read(words)
     }
+}
+
+/// The options of every job, and those of one.
+#[derive(Debug, Args)]
+pub struct Whole<T: Args> {
+    /// Of every job.
+    #[command(flatten)]
+    pub job: JobOptions,
+    /// Of this one.
+    #[command(flatten)]
+    pub own: T,
+}
+
+/// Reads a file that an option names: from the disk, or of what was given with the options.
+pub type Read<'a> = &'a dyn Fn(&Path) -> Result<Vec<u8>, Failure>;
+
+/// Reads options that are written as on a command line.
+///
+/// # Errors
+/// What the command says of them.
+pub fn read<T: Args>(words: impl IntoIterator<Item = OsString>) -> Result<T, Failure> {
+    let command = T::augment_args(clap::Command::new("vpost").no_binary_name(true).disable_help_flag(true));
+    let read = command.try_get_matches_from(words).and_then(|matches| T::from_arg_matches(&matches));
+    read.map_err(|error| {
+        unread(&error).unwrap_or_else(|| {
+            let text = error.to_string();
+            let first = text.lines().next().unwrap_or_default();
+            Failure::usage(notice!(OPTION;
+                Text::english_only(first.trim_start_matches("error: "));
+                "see docs/reference.md for what it takes", "что он принимает, сказано в docs/reference.md"
+            ))
+        })
+    })
 }
 
 /// Feed motion outside the calibrated volume.

@@ -1,6 +1,7 @@
 //! Forward for a lathe: what a program leaves of the workpiece.
 
 pub mod cuts;
+pub mod judged;
 pub mod surface;
 
 use crate::expand;

@@ -1,12 +1,13 @@
 //! What the words of a grammar's `does` mean.
 
 use nc_syntax::dialect::{
-    Action, Called, CornerForm, CurveCode, CycleCode, FramePart, GCode, PlaneCode, Pockets, Side, TipSwitch,
+    Action, Called, CornerForm, CurveCode, FramePart, GCode, PlaneCode, Pockets, Side, TipSwitch,
     TurningCycle,
 };
+use toolpath::CycleKind;
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 121] = [
+pub const ACTION_NAMES: [&str; 122] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -36,6 +37,7 @@ pub const ACTION_NAMES: [&str; 121] = [
     "work-offset",
     "drill",
     "bore",
+    "bore-out",
     "peck-full",
     "peck-chip",
     "synchronised-cycle",
@@ -161,11 +163,12 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "tip-on" => Action::Tip(TipSwitch::On),
         "tip-off" => Action::Tip(TipSwitch::Off),
         "work-offset" => Action::WorkOffset(code.to_string()),
-        "drill" => Action::Cycle(CycleCode::Drill),
-        "bore" => Action::Cycle(CycleCode::Bore),
-        "peck-full" => Action::Cycle(CycleCode::PeckFull),
-        "peck-chip" => Action::Cycle(CycleCode::PeckChip),
-        "synchronised-cycle" => Action::Cycle(CycleCode::Synchronised),
+        "drill" => Action::Cycle(CycleKind::Drill),
+        "bore" => Action::Cycle(CycleKind::Bore),
+        "bore-out" => Action::Cycle(CycleKind::BoreOut),
+        "peck-full" => Action::Cycle(CycleKind::PeckFull),
+        "peck-chip" => Action::Cycle(CycleKind::PeckChip),
+        "synchronised-cycle" => Action::Cycle(CycleKind::Synchronised),
         "cycle-cancel" => Action::CycleCancel,
         "return-initial" => Action::ReturnInitial,
         "return-r" => Action::ReturnR,

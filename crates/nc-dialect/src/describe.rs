@@ -1,11 +1,10 @@
 //! The code-by-code list of a dialect, for people.
 
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{
-    Action, CurveCode, CycleBack, CycleCode, FramePart, GCode, LengthAfter, MCode, Macros,
-};
+use nc_syntax::dialect::{Action, CurveCode, CycleBack, FramePart, GCode, LengthAfter, MCode, Macros};
 
 use crate::action_name;
+use toolpath::CycleKind;
 
 /// G65
 const MACRO_CALL: GCode = GCode(650);
@@ -208,7 +207,7 @@ fn note(action: &Action) -> String {
             .to_owned(),
         Action::BaseFrame => "`G500` in the profile; without it nothing may move in it".to_owned(),
         Action::Tip(_) => String::new(),
-        Action::Cycle(CycleCode::Synchronised) => "hole by hole; never written as moves".to_owned(),
+        Action::Cycle(CycleKind::Synchronised) => "hole by hole; never written as moves".to_owned(),
         Action::Cycle(_) => "hole by hole".to_owned(),
         Action::Dwell => "X, U, P, F and S are a time".to_owned(),
         Action::DwellBySetting => "no word is a time, none beside it may be a position".to_owned(),

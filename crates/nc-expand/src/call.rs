@@ -7,16 +7,17 @@ use std::rc::Rc;
 use diagnostic::{Refusal, Text, both, of_system};
 use nc_syntax::dialect::{Macros, PointFree};
 
+use crate::call_stack::{CallKind, Place};
 use crate::codes;
+use crate::control::{Call, Control};
 use crate::expression::Expression;
 use crate::faults::{self, Stop, say, whole};
 use crate::flow::variables;
-use crate::jump::CallKind;
 use crate::o_word::{Label, OStatement, OWord};
 use crate::program::Source;
 use crate::refusals::calls as refusal;
-use crate::run::{Place, Run, Visit};
-use crate::statement::{Call, Control, Kind, Statement};
+use crate::run::{Run, Visit};
+use crate::statement::{Kind, Statement};
 use crate::value::{NameId, Program, Value};
 
 impl<'a> Run<'a, '_> {

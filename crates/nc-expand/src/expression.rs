@@ -3,8 +3,6 @@
 use diagnostic::{Text, both};
 use nc_syntax::dialect::Macros;
 
-use crate::okuma;
-use crate::siemens;
 use crate::value::{NameId, Names, Variable};
 
 /// Brackets, functions and `#` inside one another; controls take 5 (Fanuc) or a line's worth.
@@ -135,11 +133,25 @@ impl Operator {
 /// Why a text is no expression.
 pub(crate) type Fault = Text;
 
+/// The operator that stands next, and its length.
+pub(crate) type NextOperator = fn(&[u8]) -> Option<(Operator, usize)>;
+
+/// How a control writes values that custom macro B and RS274/NGC do not have.
+#[derive(Clone, Copy)]
+pub(crate) struct Spelling {
+    /// Whether a byte, upper case, begins one.
+    pub(crate) begins: fn(u8) -> bool,
+    pub(crate) operand: fn(&mut Parser<'_, '_>) -> Result<Expression, Fault>,
+    /// `None`: those of the others.
+    pub(crate) operator: Option<NextOperator>,
+}
+
 /// Reads statements and expressions from the bytes of a block.
 pub(crate) struct Parser<'t, 'n> {
     pub(crate) text: &'t [u8],
     pub(crate) at: usize,
     pub(crate) macros: Macros,
+    spelling: Option<Spelling>,
     pub(crate) names: &'n mut Names,
     depth: u32,
     /// Comparisons, and AND or OR, between the brackets that are open.
@@ -149,8 +161,13 @@ pub(crate) struct Parser<'t, 'n> {
 }
 
 impl<'t, 'n> Parser<'t, 'n> {
-    pub(crate) fn new(text: &'t [u8], macros: Macros, names: &'n mut Names) -> Self {
-        Self { text, at: 0, macros, names, depth: 0, kinds: [false; 2], cost: 0 }
+    pub(crate) fn new(
+        text: &'t [u8],
+        macros: Macros,
+        spelling: Option<Spelling>,
+        names: &'n mut Names,
+    ) -> Self {
+        Self { text, at: 0, macros, spelling, names, depth: 0, kinds: [false; 2], cost: 0 }
     }
 
     /// The next byte that is not blank, upper case.
@@ -241,8 +258,8 @@ impl<'t, 'n> Parser<'t, 'n> {
     fn operator(&mut self) -> Option<(Operator, usize)> {
         self.peek()?;
         let rest = &self.text[self.at..];
-        if self.macros == Macros::Siemens {
-            return siemens::operator(rest);
+        if let Some(operator) = self.spelling.and_then(|spelling| spelling.operator) {
+            return operator(rest);
         }
         let (name, operator) = OPERATORS
             .iter()
@@ -276,11 +293,12 @@ impl<'t, 'n> Parser<'t, 'n> {
     }
 
     fn operand_inside(&mut self) -> Result<Expression, Fault> {
-        match self.peek() {
-            Some(b'(' | b'A'..=b'Z' | b'_' | b'$') if self.macros == Macros::Siemens => {
-                siemens::operand(self)
-            }
-            Some(b'A'..=b'Z') if self.macros == Macros::Okuma => okuma::operand(self),
+        let next = self.peek();
+        let own = self.spelling.filter(|spelling| next.is_some_and(spelling.begins));
+        if let Some(spelling) = own {
+            return (spelling.operand)(self);
+        }
+        match next {
             Some(b'[') => self.bracketed(),
             Some(b'#') => self.variable(),
             Some(b'0'..=b'9' | b'.') => self.number().map(Expression::Number),

@@ -5,9 +5,9 @@ use std::ops::Range;
 use diagnostic::{Diagnostic, Refusal, Text, both};
 use nc_syntax::dialect::Macros;
 
+use crate::call_stack::CallKind;
 use crate::codes;
 use crate::evaluate::Fault;
-use crate::jump::CallKind;
 use crate::value::{Names, Variable};
 use crate::variables::Protected;
 

@@ -4,8 +4,8 @@ use diagnostic::{Text, both};
 use nc_syntax::dialect::{Dialect, Flow, Macros};
 use nc_syntax::{Block, ItemKind};
 
+use crate::control::Control;
 use crate::expression::{Expression, Parser};
-use crate::statement::Control;
 use crate::value::Variable;
 
 /// `#1=…`

@@ -4,49 +4,15 @@ use std::rc::Rc;
 
 use diagnostic::{Text, both};
 
+use crate::call_stack::{CallKind, Frame, Place};
+use crate::came::From;
+use crate::control::Direction;
 use crate::expression::Expression;
 use crate::faults::{self, Stop};
-use crate::output::From;
 use crate::program::{Found, Source};
-use crate::run::{Place, Run};
-use crate::statement::{Direction, Statement};
-use crate::value::{NameId, Program, Value};
-use crate::variables::Saved;
-
-/// A call that has not returned.
-#[derive(Debug)]
-pub(crate) struct Frame {
-    pub(crate) back: Place,
-    pub(crate) start: Place,
-    /// Passes still to come.
-    pub(crate) left: u64,
-    pub(crate) passes: u64,
-    pub(crate) kind: CallKind,
-    /// The caller's variables, where the called program has its own.
-    saved: Option<Saved>,
-    /// The caller's loops.
-    repeats: Vec<(u32, u64)>,
-    counts: Vec<(u32, f64)>,
-    /// Section of the caller.
-    section: u32,
-}
-
-/// How a program was called.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum CallKind {
-    /// M98, G65, CALL: M99 or RTS returns.
-    Number(Program),
-    /// `L100`: M17 and RET return.
-    Program(NameId),
-    /// M97: the same, to a block of the caller's program.
-    Block(u64),
-    /// `o<name> call`: `endsub` and `return` return.
-    Name(NameId),
-    /// CALL BLOCK: to its last block.
-    Section(NameId, u32),
-    /// A contour of a cycle, which is read and not called.
-    Routine(NameId),
-}
+use crate::run::Run;
+use crate::statement::Statement;
+use crate::value::{NameId, Value};
 
 impl<'a> Run<'a, '_> {
     pub(crate) fn goto(&mut self, source: &Source<'a>, section: u32, label: &Expression) -> Result<(), Stop> {

@@ -6,13 +6,52 @@
 
 use nc_program::modal::{Modal, MotionMode};
 use nc_program::{Interpreter, Owner, Setup};
-use nc_syntax::dialect::{Action, Dialect};
-use nc_syntax::{Block, Item, ItemKind, Value};
+use nc_syntax::dialect::Dialect;
+use nc_syntax::{Block, Item};
 
-use crate::lowering::{Came, Fault, Refused};
-use crate::output::{From, Marks, Output, PlainPart};
-use crate::shorthand;
-use crate::{called, short};
+use crate::came::{Came, Fault, From, Refused};
+use crate::output::{Marks, Output, PlainPart};
+
+/// What is written out: the rooms that do it know, and stand above this one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shorthand {
+    /// A block has some.
+    pub(crate) of_block: fn(&Block<'_>, &Dialect) -> bool,
+    /// An item of a block is some, or is asked for before it is written out.
+    pub(crate) of_item: fn(&Block<'_>, &Item, &Dialect) -> bool,
+}
+
+/// What writes a control's blocks as plain ones.
+pub(crate) trait Lower<'d>: Send {
+    /// The next block.
+    fn came(&mut self, came: &Came<'_>) -> Result<(), Fault>;
+
+    /// What comes next stands on a line of its own.
+    fn fresh_line(&mut self);
+
+    /// What is written so far; `None` where nothing is before the end.
+    fn out(&mut self) -> Option<&mut Rewriting<'d>>;
+
+    /// Nothing more comes: what was written.
+    fn end(self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>);
+}
+
+impl Shorthand {
+    /// Reads a block with blanks in place of its shorthand.
+    fn plainly(self, block: &Block<'_>, dialect: &Dialect, mut read: impl FnMut(&Block<'_>)) {
+        let mut text: Option<Vec<u8>> = None;
+        for item in block.items.iter().filter(|item| (self.of_item)(block, item, dialect)) {
+            let bytes = text.get_or_insert_with(|| block.bytes.to_vec());
+            bytes[item.span.start as usize..item.span.end as usize].fill(b' ');
+        }
+        match text {
+            None => read(block),
+            Some(text) => {
+                Came::all(&text, dialect, From::of(block)).for_each(|came| read(&came.block));
+            }
+        }
+    }
+}
 
 /// The motion code in force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,14 +78,15 @@ pub(crate) const fn motion(modal: &Modal) -> Motion {
 #[derive(Clone, Debug)]
 pub(crate) struct Known<'d> {
     dialect: &'d Dialect,
+    shorthand: Shorthand,
     interpreter: Interpreter<'d>,
     /// Why the interpreter refused a block first.
     refused: Option<Fault>,
 }
 
 impl<'d> Known<'d> {
-    fn new(dialect: &'d Dialect, setup: &'d Setup) -> Self {
-        Self { dialect, interpreter: Interpreter::new(dialect, setup), refused: None }
+    fn new(dialect: &'d Dialect, setup: &'d Setup, shorthand: Shorthand) -> Self {
+        Self { dialect, shorthand, interpreter: Interpreter::new(dialect, setup), refused: None }
     }
 
     pub(crate) const fn modal(&self) -> &Modal {
@@ -61,7 +101,7 @@ impl<'d> Known<'d> {
     /// The state that the codes of a block make before it moves, and whose its axis words are; `None` where it is refused.
     pub(crate) fn codes(&self, block: &Block<'_>) -> Option<(Modal, Owner)> {
         let mut settings = None;
-        plainly(block, self.dialect, |block| settings = self.interpreter.settings(block).ok());
+        self.shorthand.plainly(block, self.dialect, |block| settings = self.interpreter.settings(block).ok());
         settings
     }
 
@@ -77,7 +117,7 @@ impl<'d> Known<'d> {
     /// Reads a block that is written as it stands.
     pub(crate) fn block(&mut self, came: &Came<'_>) {
         let Came { block, from } = came;
-        plainly(block, self.dialect, |plain| {
+        self.shorthand.plainly(block, self.dialect, |plain| {
             let refused = self.interpreter.step(plain).err().filter(|_| self.refused.is_none());
             let Some(mut diagnostic) = refused.and_then(|refused| refused.into_iter().next()) else { return };
             let within = |at: u64| at.saturating_sub(plain.offset);
@@ -94,37 +134,6 @@ impl<'d> Known<'d> {
     }
 }
 
-/// The block with blanks in place of what is written out later, and of what is asked for before it is: corners, polar words,
-/// calls by name, cycles of lathes.
-fn plainly(block: &Block<'_>, dialect: &Dialect, mut read: impl FnMut(&Block<'_>)) {
-    let mut text: Option<Vec<u8>> = None;
-    for item in block.items.iter().filter(|item| is_shorthand(block, item, dialect)) {
-        let bytes = text.get_or_insert_with(|| block.bytes.to_vec());
-        bytes[item.span.start as usize..item.span.end as usize].fill(b' ');
-    }
-    match text {
-        None => read(block),
-        Some(text) => Came::all(&text, dialect, From::of(block)).for_each(|came| read(&came.block)),
-    }
-}
-
-fn is_shorthand(block: &Block<'_>, item: &Item, dialect: &Dialect) -> bool {
-    match item.kind {
-        ItemKind::CommaWord { .. } => dialect.flow.corner_words,
-        ItemKind::BracketCommand => {
-            let row = dialect.command(block.text(item.span));
-            matches!(row.and_then(|row| row.action.as_ref()), Some(Action::Called(_)))
-        }
-        ItemKind::Word { letter: b'G', value: Value::Number(number) } => {
-            matches!(shorthand::action(number, dialect), Some(Action::PolarOn | Action::Turning(_)))
-        }
-        ItemKind::Word { letter, value: Value::Expression } => {
-            called::is_dimension(letter, block.text(item.span))
-        }
-        _ => false,
-    }
-}
-
 /// A text on its way out, read as it is written once somebody asks.
 #[derive(Debug)]
 pub(crate) struct Rewriting<'d> {
@@ -137,8 +146,9 @@ pub(crate) struct Rewriting<'d> {
 }
 
 impl<'d> Rewriting<'d> {
-    pub(crate) fn new(dialect: &'d Dialect, setup: &'d Setup, marks: Marks) -> Self {
-        Self { dialect, marks, out: Output::new(marks), known: Known::new(dialect, setup), awake: false }
+    pub(crate) fn new(dialect: &'d Dialect, setup: &'d Setup, marks: Marks, shorthand: Shorthand) -> Self {
+        let known = Known::new(dialect, setup, shorthand);
+        Self { dialect, marks, out: Output::new(marks), known, awake: false }
     }
 
     /// Another text from here on, of which the same is known.
@@ -156,7 +166,7 @@ impl<'d> Rewriting<'d> {
 
     /// True from the first block on that stands for others.
     pub(crate) fn wakes(&mut self, block: &Block<'_>) -> bool {
-        if !self.awake && short(block, self.dialect) {
+        if !self.awake && (self.known.shorthand.of_block)(block, self.dialect) {
             self.wake();
         }
         self.awake

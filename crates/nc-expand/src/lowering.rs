@@ -4,99 +4,17 @@
 //! of Siemens), which writes it as it is or what it stands for, and whatever is written is read by the one reader of
 //! programs ([`Rewriting`]). What has to look ahead holds the blocks that it waits for.
 
-use diagnostic::Diagnostic;
 use nc_program::Setup;
-use nc_syntax::{Block, Dialect, EnvelopeFinder, Item, ItemKind, Place, Reader};
+use nc_syntax::dialect::Action;
+use nc_syntax::{Block, Dialect, Item, ItemKind, Value};
 
-use crate::known::Rewriting;
-use crate::output::{From, Marks, Output, within_line};
-use crate::{Refusal, called, returns, short, turning};
+use crate::came::{Came, Fault, From};
+use crate::known::{Lower, Rewriting, Shorthand};
+use crate::output::{Marks, Output};
+use crate::{called, returns, shorthand, turning};
 
-/// A block that cannot be written, in a file of the source.
-#[derive(Clone, Debug)]
-pub(crate) struct Refused {
-    pub(crate) diagnostic: Diagnostic,
-    pub(crate) file: u16,
-}
-
-impl Refused {
-    /// The refusal of a program that has called these files.
-    pub(crate) fn in_files(self, files: &[(String, Vec<u8>)]) -> Refusal {
-        let file = usize::from(self.file).checked_sub(1).and_then(|at| files.get(at)).cloned();
-        Refusal { diagnostics: vec![self.diagnostic], file }
-    }
-}
-
-pub(crate) type Fault = Box<Refused>;
-
-/// A block that comes, and whom it stands for.
-#[derive(Clone, Debug)]
-pub(crate) struct Came<'a> {
-    pub(crate) block: Block<'a>,
-    pub(crate) from: From,
-}
-
-impl<'a> Came<'a> {
-    fn new(bytes: &'a [u8], items: Vec<Item>, from: From) -> Self {
-        Self { block: Block { bytes, items, offset: from.offset, line: u64::from(from.line) }, from }
-    }
-
-    /// The blocks of text that stands for something, none of them a program's name.
-    pub(crate) fn all(text: &'a [u8], dialect: &'a Dialect, from: From) -> impl Iterator<Item = Self> {
-        let starts = from.exact && from.offset == 0;
-        let place = Place { offset: u64::from(!starts), ..Place::START };
-        let mut reader = Reader::part(text, dialect, EnvelopeFinder::new(dialect).open(), place);
-        let mut block = Block::default();
-        std::iter::from_fn(move || {
-            reader.next(&mut block).then(|| Self::new(block.bytes, std::mem::take(&mut block.items), from))
-        })
-    }
-}
-
-/// A block that waits for those behind it.
-#[derive(Clone, Debug)]
-pub(crate) struct Held {
-    bytes: Vec<u8>,
-    items: Vec<Item>,
-    pub(crate) from: From,
-}
-
-impl Held {
-    pub(crate) fn of(came: &Came<'_>) -> Self {
-        Self { bytes: came.block.bytes.to_vec(), items: came.block.items.clone(), from: came.from }
-    }
-
-    pub(crate) fn came(&self) -> Came<'_> {
-        Came::new(&self.bytes, self.items.clone(), self.from)
-    }
-
-    /// The block, for once.
-    pub(crate) fn taken(&mut self) -> Came<'_> {
-        Came::new(&self.bytes, std::mem::take(&mut self.items), self.from)
-    }
-
-    /// Ends its line, where that has no end.
-    pub(crate) fn end_line(&mut self, line_ending: &[u8]) {
-        if within_line(&self.bytes) {
-            self.bytes.extend_from_slice(line_ending);
-        }
-    }
-}
-
-/// What writes a control's blocks as plain ones.
-pub(crate) trait Lower<'d>: Send {
-    /// The next block.
-    fn came(&mut self, came: &Came<'_>) -> Result<(), Fault>;
-
-    /// What comes next stands on a line of its own.
-    fn fresh_line(&mut self);
-
-    /// What is written so far; `None` where nothing is before the end.
-    fn out(&mut self) -> Option<&mut Rewriting<'d>>;
-
-    /// Nothing more comes: what was written.
-    fn end(self: Box<Self>) -> (Rewriting<'d>, Result<(), Fault>);
-}
+/// What the rooms write out.
+const SHORTHAND: Shorthand = Shorthand { of_block: short, of_item: is_shorthand };
 
 /// Takes what comes of a program.
 pub(crate) struct Driver<'d> {
@@ -129,7 +47,7 @@ pub(crate) struct Lowered {
 impl<'d> Driver<'d> {
     pub(crate) fn new(dialect: &'d Dialect, setup: &'d Setup, source: &[u8]) -> Self {
         let marks = Marks::of(dialect, source);
-        let out = Rewriting::new(dialect, setup, marks);
+        let out = Rewriting::new(dialect, setup, marks, SHORTHAND);
         let room: Box<dyn Lower<'d> + 'd> = if let Some(turning) = &dialect.turning {
             Box::new(turning::Lathe::new(out, turning))
         } else if let Some(rule) = dialect.flow.written_cycles {
@@ -218,5 +136,32 @@ impl<'d> Driver<'d> {
         let (out, ended) = self.room.end();
         let out = out.end(self.fault.or(ended.err()))?;
         Ok(Lowered { out, lowers: self.lowers, same: self.same_to == Some(length) })
+    }
+}
+
+/// True where a block has shorthand: of drawings, or a cycle of a lathe.
+pub(crate) fn short(block: &Block<'_>, dialect: &Dialect) -> bool {
+    shorthand::needed(block, dialect)
+        || turning::needed(block, dialect)
+        || called::needed(block, dialect)
+        || returns::needed(block, dialect)
+}
+
+/// True for what is written out later, and what is asked for before it is: corners, polar words, calls by name, cycles of
+/// lathes.
+fn is_shorthand(block: &Block<'_>, item: &Item, dialect: &Dialect) -> bool {
+    match item.kind {
+        ItemKind::CommaWord { .. } => dialect.flow.corner_words,
+        ItemKind::BracketCommand => {
+            let row = dialect.command(block.text(item.span));
+            matches!(row.and_then(|row| row.action.as_ref()), Some(Action::Called(_)))
+        }
+        ItemKind::Word { letter: b'G', value: Value::Number(number) } => {
+            matches!(shorthand::action(number, dialect), Some(Action::PolarOn | Action::Turning(_)))
+        }
+        ItemKind::Word { letter, value: Value::Expression } => {
+            called::is_dimension(letter, block.text(item.span))
+        }
+        _ => false,
     }
 }

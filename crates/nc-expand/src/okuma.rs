@@ -7,9 +7,8 @@
 
 use diagnostic::{Text, both};
 
-use crate::expression::{Expression, Parser};
-use crate::siemens::Said;
-use crate::statement::{Call, Control, Direction};
+use crate::control::{Call, Control, Direction, Said};
+use crate::expression::{Expression, Parser, Spelling};
 use crate::value::{NameId, Variable};
 
 /// `VC` and digits.
@@ -26,8 +25,12 @@ fn name<'t>(parser: &mut Parser<'t, '_>) -> &'t [u8] {
     &parser.text[start..start + length]
 }
 
+/// Variables and functions of its own.
+pub(crate) const SPELLING: Spelling =
+    Spelling { begins: |byte| byte.is_ascii_uppercase(), operand, operator: None };
+
 /// A common variable, or a function with its brackets.
-pub(crate) fn operand(parser: &mut Parser<'_, '_>) -> Result<Expression, Text> {
+fn operand(parser: &mut Parser<'_, '_>) -> Result<Expression, Text> {
     let start = parser.at;
     let found = name(parser);
     if is_common(found) {

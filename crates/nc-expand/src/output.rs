@@ -6,8 +6,7 @@ use nc_syntax::dialect::{Paren, Semicolon};
 use nc_syntax::{Block, Dialect, Reader, line_ending, line_ends};
 use units::decimal::{self, Spelling};
 
-use crate::Origin;
-use crate::lowering::Came;
+use crate::came::{Came, From, Origin, within_line};
 
 /// A stretch of the flat text.
 #[derive(Clone, Copy, Debug)]
@@ -17,49 +16,6 @@ pub(crate) struct Segment {
     /// Line of the flat text, from 1.
     pub(crate) flat_line: u32,
     pub(crate) from: From,
-}
-
-/// Where a stretch comes from.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct From {
-    pub(crate) file: u16,
-    pub(crate) offset: u64,
-    pub(crate) length: u64,
-    pub(crate) line: u32,
-    /// Byte for byte the same: else it stands for all of the stretch.
-    pub(crate) exact: bool,
-    /// It is a block of a cycle's contour.
-    pub(crate) contour: bool,
-    /// N of the source, where the block is reached again, or called, and has lost it.
-    pub(crate) number: Option<u32>,
-    /// So many values had been assigned before it was read.
-    pub(crate) assigned: u32,
-}
-
-impl From {
-    /// A block of the program itself.
-    pub(crate) fn of(block: &Block<'_>) -> Self {
-        Self {
-            file: 0,
-            offset: block.offset,
-            length: block.bytes.len() as u64,
-            line: u32::try_from(block.line).unwrap_or(u32::MAX),
-            exact: true,
-            contour: false,
-            number: None,
-            assigned: 0,
-        }
-    }
-
-    /// Where bytes that stand at `within` of what comes from here are of the source.
-    pub(crate) fn place(&self, within: Range<u64>) -> Range<u64> {
-        let end = self.offset + self.length;
-        if !self.exact {
-            return self.offset..end;
-        }
-        let shift = |at: u64| (self.offset + at).min(end);
-        shift(within.start)..shift(within.end.max(within.start))
-    }
 }
 
 /// How lines are ended and comments written.
@@ -104,11 +60,6 @@ impl Marks {
         });
         Some([self.open, &shown.collect::<Vec<u8>>(), self.close, self.line_ending].concat())
     }
-}
-
-/// True where text does not stand at the start of a line.
-pub(crate) fn within_line(text: &[u8]) -> bool {
-    text.last().is_some_and(|byte| !matches!(byte, b'\n' | b'\r'))
 }
 
 /// Whole lines of the flat text, and where they come from.

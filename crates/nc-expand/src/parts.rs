@@ -3,10 +3,11 @@
 use nc_program::Setup;
 use nc_syntax::{Block, Dialect, Envelope, Place, Reader};
 
-use crate::flows;
+use crate::came::{Came, From};
 use crate::known::Rewriting;
-use crate::lowering::{Came, Driver};
-use crate::output::{From, PlainPart};
+use crate::lowering::Driver;
+use crate::output::PlainPart;
+use crate::statement::flows;
 
 /// Writes the shorthand of a program out, part by part: what [`crate::expand`] writes of all of it at once.
 pub struct Lowering<'d> {

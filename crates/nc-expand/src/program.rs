@@ -8,9 +8,10 @@ use nc_syntax::dialect::{Action, Dialect, Macros};
 use nc_syntax::{Block, ItemKind, Reader};
 
 use crate::codes;
+use crate::control::{Control, Direction};
 use crate::o_word::{Label, OStatement, OWord};
 use crate::refusals::calls as refusal;
-use crate::statement::{Compiler, Control, Direction, Flags, Kind, Statement};
+use crate::statement::{Compiler, Flags, Kind, Statement};
 use crate::value::{NameId, Names, Program};
 
 /// In place of where a program starts whose name stands twice.

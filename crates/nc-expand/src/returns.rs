@@ -13,12 +13,12 @@
 
 use diagnostic::Refusal;
 use nc_program::modal::ReturnLevel;
-use nc_syntax::dialect::{Action, CycleBack, CycleCode, WrittenCycles};
+use nc_syntax::dialect::{Action, CycleBack, WrittenCycles};
 use nc_syntax::{Block, Dialect, ItemKind, Letters, Span, Value};
-use toolpath::{MOST_PECKS, Plane, Retreat, Stroke, peck_depths, strokes, whole_pecks};
+use toolpath::{CycleKind, MOST_PECKS, Plane, Retreat, Stroke, peck_depths, strokes, whole_pecks};
 
-use crate::known::Rewriting;
-use crate::lowering::{Came, Fault, Lower};
+use crate::came::{Came, Fault};
+use crate::known::{Lower, Rewriting};
 use crate::refusals::called as refusal;
 use crate::shorthand::{AXES, Words, actions, add, line_of, number, shown};
 
@@ -165,10 +165,10 @@ impl<'d> Writer<'d> {
             }
         };
         let peck = match (kind, self.length(words, b'Q')) {
-            (CycleCode::PeckFull, Some(peck)) if peck > 0.0 && (near - bottom) / peck <= MOST_PECKS => {
+            (CycleKind::PeckFull, Some(peck)) if peck > 0.0 && (near - bottom) / peck <= MOST_PECKS => {
                 Some(peck)
             }
-            (CycleCode::PeckFull, _) => {
+            (CycleKind::PeckFull, _) => {
                 return refuse(refusal::PECKS_WITHOUT_DEPTH, span);
             }
             (_, None) => None,

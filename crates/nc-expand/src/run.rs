@@ -8,25 +8,19 @@ use diagnostic::{Text, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::{Action, Dialect, Macros};
 
+use crate::call_stack::{CallKind, Frame, Place};
+use crate::came::From;
+use crate::control::{Control, Direction};
 use crate::evaluate::{Rules, Variables, number};
+use crate::expanded::{Environment, Expanded, Refusal};
 use crate::expression::Expression;
 use crate::faults::{self, Stop};
 use crate::flow;
-use crate::jump::{CallKind, Frame};
 use crate::lowering::{Driver, Lowered};
-use crate::output::From;
 use crate::program::Source;
-use crate::statement::{Complex, Control, Direction, Kind, Statement};
+use crate::statement::{Complex, Kind, Statement};
 use crate::value::{Names, Value, Variable};
 use crate::variables::Store;
-use crate::{Environment, Expanded, Refusal};
-
-/// Where the program stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Place {
-    pub(crate) file: usize,
-    pub(crate) statement: u32,
-}
 
 /// A place that is reached.
 #[derive(Clone, Copy)]
@@ -596,7 +590,7 @@ impl<'a> Run<'a, '_> {
         warnings.extend(self.left_alone.iter().map(|(call, span)| faults::left_alone(span.clone(), call)));
         let files: Vec<_> = self.sources[1..].iter().map(|s| (s.name.clone(), s.text.to_vec())).collect();
         let Lowered { out, lowers, same } =
-            self.out.end(main.text.len() as u64).map_err(|fault| fault.in_files(&files))?;
+            self.out.end(main.text.len() as u64).map_err(|fault| Refusal::of(*fault, &files))?;
         // Where all of it is left alone it is no other program.
         Ok(match main.text {
             Cow::Borrowed(source) if same && !lowers => {

@@ -20,9 +20,9 @@ use nc_syntax::dialect::{Action, Called, CornerForm, GCode};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Number, Span, Value};
 use units::math;
 
+use crate::came::{Came, Fault, From, Held, Refused};
 use crate::known::{Known, Motion, Rewriting, motion};
-use crate::lowering::{Came, Fault, Held, Refused};
-use crate::output::{From, Style, word};
+use crate::output::{Style, word};
 use crate::refusals::drawings as refusal;
 
 /// X, Y, Z.
@@ -171,7 +171,7 @@ impl Words<'_, '_> {
             ItemKind::BracketCommand => {
                 let text = self.block.text(item.span);
                 let value = &text[text.iter().position(|byte| *byte == b'=')? + 1..];
-                let value = crate::called::plain_number(std::str::from_utf8(value).ok()?.trim())?;
+                let value = crate::siemens::plain_number(std::str::from_utf8(value).ok()?.trim())?;
                 Some((corner_form(text, self.dialect)?, value))
             }
             _ => None,

@@ -8,9 +8,9 @@ use std::ops::Range;
 
 use diagnostic::{Text, both};
 
-use crate::expression::{Expression, Function, Operator, Parser};
+use crate::control::{Call, Control, Direction, Said};
+use crate::expression::{Expression, Function, Operator, Parser, Spelling};
 use crate::o_word::{Label, OStatement, OWord};
-use crate::statement::{Call, Control, Direction};
 use crate::value::{NameId, Variable};
 
 const FUNCTIONS: [(&[u8], Function); 10] = [
@@ -41,18 +41,19 @@ const OPERATORS: [(&[u8], Operator); 12] = [
     (b"<", Operator::Less),
 ];
 
-/// What a statement makes of the block.
-pub(crate) enum Said {
-    Assignments(Vec<(Expression, Expression)>),
-    Control(Control),
-}
-
 fn is_name(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || byte == b'_'
 }
 
+/// Names, brackets and operators of its own.
+pub(crate) const SPELLING: Spelling = Spelling {
+    begins: |byte| matches!(byte, b'(' | b'A'..=b'Z' | b'_' | b'$'),
+    operand,
+    operator: Some(operator),
+};
+
 /// The operator that stands next, and its length.
-pub(crate) fn operator(rest: &[u8]) -> Option<(Operator, usize)> {
+fn operator(rest: &[u8]) -> Option<(Operator, usize)> {
     let (name, operator) = OPERATORS.iter().find(|(name, _)| {
         let word = name[0].is_ascii_alphabetic();
         rest.get(..name.len()).is_some_and(|text| text.eq_ignore_ascii_case(name))
@@ -74,7 +75,7 @@ fn name<'t>(parser: &mut Parser<'t, '_>) -> Option<&'t [u8]> {
 }
 
 /// A value: number, variable, function, bracket, NOT.
-pub(crate) fn operand(parser: &mut Parser<'_, '_>) -> Result<Expression, Text> {
+fn operand(parser: &mut Parser<'_, '_>) -> Result<Expression, Text> {
     if parser.take(b'(') {
         let inside = parser.expression()?;
         parser.expect(b')')?;
@@ -378,4 +379,12 @@ pub(crate) fn names_something(text: &[u8]) -> bool {
         quoted ^= *byte == b'"';
         !quoted && (byte.is_ascii_alphabetic() || matches!(byte, b'_' | b'$'))
     })
+}
+
+/// A plain decimal number; nothing else that a library would take for one.
+pub(crate) fn plain_number(text: &str) -> Option<f64> {
+    let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
+    let plain = digits.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.')
+        && digits.bytes().any(|byte| byte.is_ascii_digit());
+    plain.then(|| text.parse().ok()).flatten()
 }

@@ -5,13 +5,14 @@ use nc_syntax::dialect::{Action, GCode, Macros, TurningCycle};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value as WordValue};
 
 use crate::codes;
+use crate::control::{Call, Control, Said};
 use crate::expression::{Expression, Parser};
 use crate::flow::{Taken, assignment, call_of, fanuc_flow, printed, skip_word};
-use crate::o_word::{self, OStatement};
+use crate::o_word;
 use crate::okuma;
 use crate::refusals::calls as refusals;
-use crate::siemens::{self, Said};
-use crate::value::{NameId, Names, Program, Variable};
+use crate::siemens;
+use crate::value::{Names, Program, Variable};
 
 /// A block of a program.
 #[derive(Clone, Debug)]
@@ -102,77 +103,6 @@ pub(crate) struct ComputedWord {
     pub(crate) around: Option<Around>,
 }
 
-/// Where the program goes on.
-#[derive(Clone, Debug)]
-pub(crate) enum Control {
-    Goto(Expression),
-    IfGoto(Expression, Expression),
-    IfThen(Expression, Vec<(Expression, Expression)>),
-    /// `WHILE … DO1`; the end's place.
-    While {
-        condition: Option<Expression>,
-        number: u32,
-        end: u32,
-    },
-    /// `END1`; the loop's place.
-    EndWhile {
-        number: u32,
-        start: u32,
-    },
-    Call(Box<Call>),
-    Return {
-        to: Option<Expression>,
-    },
-    O(Box<OStatement>),
-    /// To a label.
-    Jump {
-        condition: Option<Expression>,
-        to: NameId,
-        direction: Direction,
-    },
-    /// `CALL BLOCK A TO B`: the blocks from one label to the other, both among them.
-    Section {
-        from: NameId,
-        to: NameId,
-    },
-    /// `FOR I=1 TO 5`; the place of ENDFOR.
-    For {
-        variable: Variable,
-        from: Expression,
-        to: Expression,
-        end: u32,
-    },
-    /// The place of its FOR.
-    EndFor {
-        start: u32,
-    },
-}
-
-/// Where a label is looked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Direction {
-    Forward,
-    Back,
-    /// Forward, then from the start.
-    Either,
-    /// Wherever the one is.
-    Only,
-}
-
-/// M97, M98 and G65.
-#[derive(Clone, Debug)]
-pub(crate) struct Call {
-    /// Number of a program, or of a block.
-    pub(crate) number: Expression,
-    /// Siemens and Okuma: its name instead.
-    pub(crate) program: Option<NameId>,
-    /// M97: the number is that of a block of this program.
-    pub(crate) local: bool,
-    pub(crate) repeats: Option<Expression>,
-    /// G65: letters in the order written, and whether the number has a point.
-    pub(crate) arguments: Option<Vec<(u8, Expression, bool)>>,
-}
-
 /// Blocks to statements.
 pub(crate) struct Compiler<'d, 'n> {
     pub(crate) dialect: &'d Dialect,
@@ -182,6 +112,16 @@ pub(crate) struct Compiler<'d, 'n> {
 type Fault = Box<Diagnostic>;
 
 impl Compiler<'_, '_> {
+    fn parser<'t>(&mut self, text: &'t [u8]) -> Parser<'t, '_> {
+        let macros = self.dialect.flow.macros;
+        let spelling = match macros {
+            Macros::Siemens => Some(siemens::SPELLING),
+            Macros::Okuma => Some(okuma::SPELLING),
+            _ => None,
+        };
+        Parser::new(text, macros, spelling, self.names)
+    }
+
     /// What a block is.
     pub(crate) fn kind(&mut self, block: &Block<'_>) -> (Kind, Flags) {
         let flags = self.flags(&block.items, block.bytes);
@@ -389,7 +329,7 @@ impl Compiler<'_, '_> {
         if self.dialect.flow.macros.bare_names() {
             let value =
                 siemens::value_of(text).ok_or_else(|| both!("a value was expected", "ожидалось значение"))?;
-            let mut parser = Parser::new(&text[value], self.dialect.flow.macros, self.names);
+            let mut parser = self.parser(&text[value]);
             let value = parser.expression()?;
             parser.end()?;
             complex.cost += parser.cost;
@@ -397,7 +337,7 @@ impl Compiler<'_, '_> {
         }
         let letter =
             if comma { 1 + text[1..].iter().position(u8::is_ascii_alphabetic).unwrap_or(0) + 1 } else { 1 };
-        let mut parser = Parser::new(&text[letter..], self.dialect.flow.macros, self.names);
+        let mut parser = self.parser(&text[letter..]);
         let value = parser.operand()?;
         parser.end()?;
         complex.cost += parser.cost;
@@ -526,7 +466,7 @@ impl Compiler<'_, '_> {
     ) -> Result<(), Fault> {
         let text = block.text(span);
         let fanuc = self.dialect.flow.macros == Macros::Fanuc;
-        let mut parser = Parser::new(text, self.dialect.flow.macros, self.names);
+        let mut parser = self.parser(text);
         let mut read = || -> Result<Option<Control>, Text> {
             if parser.macros.bare_names() {
                 cut.push(span);
@@ -660,4 +600,9 @@ fn without(bytes: &[u8], cut: &[Span]) -> Vec<u8> {
     }
     text.extend_from_slice(&bytes[from..]);
     text
+}
+
+/// True where a block computes, jumps or calls.
+pub(crate) fn flows(block: &Block<'_>, dialect: &Dialect) -> bool {
+    dialect.flow.macros != Macros::None && needs_work(block, dialect)
 }

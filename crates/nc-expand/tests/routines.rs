@@ -300,6 +300,15 @@ fn each_wrong_cycle_has_its_own_message() {
             "error[VP0144]: two lines that go straight on, and a distance to stay",
         ),
         (
+            // 10 less twice 1.1 against 7.5 and 0.3.
+            program(
+                "",
+                "o100 sub\nG0 X5 Z0\nG1 X7.5 Z-5\nZ-8\nX10 Z-12\no100 endsub\n",
+                "G71 Q100 X10 Z2 D0.3 I1.1",
+            ),
+            "error[VP0144]: a pass lies as deep as a place of the contour, but for the last digits of both",
+        ),
+        (
             program("", &contour.replace("G1 Z-5", "o101 call"), cycle),
             "error[VP0144]: a call, a return or a cycle within the contour of a cycle",
         ),

@@ -415,6 +415,15 @@ fn a_thread_cut_by_one_edge_goes_along_the_flank() {
     }
 }
 
+/// The ninth pass is the thread's height but for the last digit: rs274 of 2.9 cuts there twice.
+#[test]
+fn a_pass_of_linuxcnc_that_reaches_the_height_by_rounding() {
+    let dialect = nc_dialect::builtin("linuxcnc-lathe").unwrap();
+    let text = "G21 G18 G90 G7\nG0 X36 Z5\nG76 P1.5 Z-20 I-2 J0.3 K1.2 R1.5 Q29.5 H0\n";
+    let flat = String::from_utf8(expanded(dialect, text).unwrap().text().to_vec()).unwrap();
+    assert_eq!(blocks(&flat).iter().filter(|line| line.starts_with("G33")).count(), 9);
+}
+
 /// What `rs274` of LinuxCNC 2.9 makes of the same block, X as a diameter.
 #[test]
 fn a_thread_of_linuxcnc() {

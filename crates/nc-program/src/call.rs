@@ -9,7 +9,7 @@ use toolpath::{Motion, Mover};
 use crate::codes;
 use crate::environment::Environment;
 use crate::modal::{Axis, Lost, Modal, MotionMode, Naming, Why};
-use crate::motion::Moved;
+use crate::moved::Moved;
 use crate::words::{Outcome, Words};
 
 /// G65 P9810, M98 P9000 and functions that the profile names under `[calls]`: the control does them. What they may move

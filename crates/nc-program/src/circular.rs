@@ -5,9 +5,11 @@ use toolpath::{Arc, Feed, Motion, Shape};
 
 use crate::arc::{self, Circle, Fault, Tolerance};
 use crate::environment::Environment;
-use crate::frames::settle;
+use crate::feed::feed_rate;
+use crate::frame_state::settle;
 use crate::modal::{ArcCentres, Modal, Turn, Units};
-use crate::motion::{Motions, arc_while_turning, division, feed_rate};
+use crate::moved::Motions;
+use crate::offset::division;
 use crate::position::{end, require_frame, require_known};
 use crate::refusals::circular as refusal;
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, Outcome, Words};
@@ -31,7 +33,7 @@ pub(crate) fn circular(
     let to = require_known(words, &end, what)?;
     let turning = from.rotary_deg != to.rotary_deg;
     if turning && env.setup.rotary_matters {
-        return Err(arc_while_turning(words));
+        return Err(words.refuse(refusal::ROTARY_AXIS_TURNS_ALONG_ARC, words.span(AXIS_LETTERS)));
     }
     let turns = turns(env, words)?;
     let [first, second, _] = state.plane.axes();

@@ -1,16 +1,17 @@
 //! Drilling cycles: which blocks make a hole, and where.
 
 use diagnostic::{Refusal, Text, both};
-use nc_syntax::dialect::{CycleCode, CycleLevels, GCode};
+use nc_syntax::dialect::{CycleLevels, GCode};
 use smallvec::SmallVec;
 use toolpath::{Cycle, CycleKind, Frame, Hole, Motion, Position};
 use units::decimal::Decimal;
 
 use crate::codes;
 use crate::environment::Environment;
-use crate::frames::settle;
+use crate::feed::{own_feed, rate};
+use crate::frame_state::settle;
 use crate::modal::{Axes, Axis, CycleState, Distance, FeedMode, Level, Modal, ReturnLevel, Units};
-use crate::motion::{Motions, own_feed, rate};
+use crate::moved::Motions;
 use crate::position::{end, increment_base, require_frame, require_known};
 use crate::refusals::cycle as refusal;
 use crate::words::{AXIS_LETTERS, CENTRE_LETTERS, LINEAR, Outcome, ROTARY_LETTERS, Words};
@@ -95,7 +96,7 @@ pub(crate) fn holes(
         return Err(words.refuse(refusal::ROTARY_AXIS_TURNS_IN_CYCLE, words.span(ROTARY_LETTERS)));
     }
     let (r_mm, bottom_mm) = levels(env, words, state, &cycle, normal, &shift)?;
-    if cycle.peck_mm.is_none() && matches!(cycle.kind, CycleCode::PeckFull | CycleCode::PeckChip) {
+    if cycle.peck_mm.is_none() && cycle.kind.pecks() {
         return Err(incomplete(words, "Q"));
     }
     below_r(env, words, state, r_mm, bottom_mm)?;
@@ -109,7 +110,7 @@ pub(crate) fn holes(
         begun_beyond_r(env, words)?;
     }
     let parameters = Cycle {
-        kind: kind(cycle.kind),
+        kind: cycle.kind,
         peck_mm: cycle.peck_mm,
         dwell: own_dwell(&cycle),
         return_to_initial: returns_to_initial(words, state.return_level, [initial_mm, r_mm])?,
@@ -188,7 +189,7 @@ fn returns_to_initial(
 /// that of pecks: of those only Haas' know one.
 fn own_dwell(cycle: &CycleState) -> Option<Decimal> {
     let (time, said_by) = cycle.dwell?;
-    let pecks = matches!(cycle.kind, CycleCode::PeckFull | CycleCode::PeckChip);
+    let pecks = cycle.kind.pecks();
     let own = if pecks { said_by == cycle.code } else { !WITHOUT_DWELL.contains(&cycle.code) };
     own.then_some(time)
 }
@@ -221,7 +222,7 @@ fn next(
 /// A cycle under a transformation: rotated about its axis and mirrored beside it, it is the same cycle.
 /// Scaled or mirrored along its depth, pecks and retreats are the control's affair.
 fn no_scaling(words: &Words<'_, '_, '_>, state: &Modal, normal: usize, cycle: &CycleState) -> Outcome<()> {
-    let shifts_aside = cycle.kind == CycleCode::Synchronised && words.has(Q.or(CENTRE_LETTERS));
+    let shifts_aside = cycle.kind == CycleKind::Synchronised && words.has(Q.or(CENTRE_LETTERS));
     if !state.transform.touches()[normal] && (state.transform.is_none() || !shifts_aside) {
         return Ok(());
     }
@@ -264,7 +265,7 @@ fn read_words(
         cycle.bottom = Some(Level { word_mm, incremental, level_mm });
     }
     if let Some(value) = words.coordinate(b'Q', inch) {
-        if value == 0.0 && matches!(cycle.kind, CycleCode::PeckFull | CycleCode::PeckChip) {
+        if value == 0.0 && cycle.kind.pecks() {
             return Err(words.refuse(refusal::PECK_DEPTH_ZERO, words.span(Q)));
         }
         cycle.peck_mm = Some((value * unit_mm).abs());
@@ -351,14 +352,4 @@ fn below_r(
 
 fn incomplete(words: &Words<'_, '_, '_>, missing: &str) -> Box<diagnostic::Diagnostic> {
     words.refuse(refusal::cycle_without(missing), words.span(AXIS_LETTERS.or(R)))
-}
-
-const fn kind(code: CycleCode) -> CycleKind {
-    match code {
-        CycleCode::Drill => CycleKind::Drill,
-        CycleCode::Bore => CycleKind::Bore,
-        CycleCode::PeckFull => CycleKind::PeckFull,
-        CycleCode::PeckChip => CycleKind::PeckChip,
-        CycleCode::Synchronised => CycleKind::Synchronised,
-    }
 }

@@ -3,12 +3,12 @@
 //! All of them end in [`toolpath::Frame`]: axis = T(word) + zero + shifts + tool length, T being the
 //! rotation, scaling or mirror in force. What a manual leaves open is refused.
 
-use nc_syntax::dialect::{Action, FramePart, GCode, OffsetL20};
-use nc_syntax::{Dialect, Span};
-use toolpath::{Frame, Kinematics};
+use nc_syntax::dialect::{Action, FramePart, OffsetL20};
+use nc_syntax::{Letters, Span};
 
-use crate::environment::{BASE_FRAME, Demand, Environment};
-use crate::modal::{Compensation, Distance, Modal, Units, WorkOffset};
+use crate::environment::{Demand, Environment};
+use crate::frame_state::{absolute, refresh, unsettle};
+use crate::modal::{Compensation, Distance, Modal, Units};
 use crate::position::{increment_base, require_frame};
 use crate::refusals::frames as refusal;
 use crate::tool_length;
@@ -17,36 +17,12 @@ use crate::words::{
     ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, ROTARY_LETTERS,
     SECONDARY_LETTERS, Words,
 };
+use crate::work_offset::{name_of, numbered, offset};
 use crate::{swivel, tilted};
-use nc_syntax::Letters;
 
 const P: Letters = Letters::of(b"P");
 const R: Letters = Letters::of(b"R");
 const L: Letters = Letters::of(b"L");
-
-/// Makes the frame of the settings, where they give one.
-pub(crate) fn refresh(state: &mut Modal) {
-    let applied = state.tool_length.applied_mm();
-    state.frame = state.work_offset.zero_mm.and_then(|zero| {
-        let shifts = state.shifts;
-        let shift = |i: usize| zero[i] + applied[i] + (shifts.local_mm[i] + shifts.preset_mm[i]);
-        if let Kinematics::Plane(_) = state.kinematics {
-            // Where the plane lies in the workpiece is part of it.
-            return Some(Frame::shift(applied));
-        }
-        state.transform.frame([0, 1, 2].map(shift))
-    });
-}
-
-/// The name of a numbered work offset.
-pub(crate) fn numbered(number: u32) -> String {
-    format!("G54.1P{number}")
-}
-
-/// The name of a work offset that H numbers.
-pub(crate) fn by_h(code: GCode, number: u32) -> String {
-    format!("{code}H{number}")
-}
 
 /// Executes a code whose words move the frame; says whether they state where the axes stand.
 pub(crate) fn execute(
@@ -123,32 +99,6 @@ pub(crate) fn execute(
     Ok(states_position)
 }
 
-/// Puts a transformation in force; the axes it touches, or touched, must be said anew.
-pub(crate) fn unsettle(state: &mut Modal, transform: Transform) {
-    let (was, is) = (state.transform.touches(), transform.touches());
-    (0..3).for_each(|i| state.unsettled[i] |= was[i] || is[i]);
-    state.transform = transform;
-}
-
-/// The first motion after a change of rotation, scaling or mirror says where it goes in all axes that
-/// were touched, in G90: what a left-out axis or an increment starts from differs between controls.
-pub(crate) fn settle(words: &Words<'_, '_, '_>, state: &mut Modal) -> Outcome<()> {
-    if state.unsettled == [false; 3] {
-        return Ok(());
-    }
-    let open = Letters::of_axes(state.unsettled);
-    // An increment beside them is refused too: its start would have to be said.
-    if !words.has(open) && (state.distance == Distance::Absolute || !words.has(AXIS_LETTERS)) {
-        return Ok(());
-    }
-    if state.distance == Distance::Absolute && words.letters.and(open) == open {
-        state.unsettled = [false; 3];
-        return Ok(());
-    }
-    let names = open.names();
-    Err(words.refuse(refusal::first_motion_must_be_whole(names), words.span(AXIS_LETTERS)))
-}
-
 fn no_words(words: &Words<'_, '_, '_>, span: Span) -> Outcome<()> {
     let letters = AXIS_LETTERS.or(ARC_LETTERS);
     if words.has(letters) {
@@ -170,13 +120,6 @@ fn shift_words(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<
     }
     let inch = state.units == Units::Inch;
     Ok(LINEAR.map(|letter| words.coordinate(letter, inch).map(|value| value * state.units.mm())))
-}
-
-pub(crate) fn absolute(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<()> {
-    if state.distance == Distance::Incremental {
-        return Err(words.refuse_code(refusal::UNDER_G91, span));
-    }
-    Ok(())
 }
 
 /// G52: the words are the shift; LinuxCNC keeps it where it keeps G92's.
@@ -331,25 +274,6 @@ fn write_offset(
         state.work_offset.rewritten = rules.l20 != OffsetL20::Position;
     }
     Ok(by_position)
-}
-
-/// The zero of a work offset: what the program wrote, else what was given.
-pub(crate) fn offset(env: &Environment<'_>, state: &Modal, name: &str) -> Option<[f64; 3]> {
-    let written = state.written.iter().find(|(known, _)| known == name).map(|(_, zero)| *zero);
-    written.or_else(|| env.setup.work_offset(name))
-}
-
-/// The name of a work offset as profiles have it: `G54`, `G54.1 P3`.
-#[must_use]
-pub fn name_of(dialect: &Dialect, offset: &WorkOffset) -> Option<String> {
-    let WorkOffset { code, number, .. } = *offset;
-    match (number, dialect.code(code?).map(|entry| &entry.action)) {
-        (Some(number), Some(Action::WorkOffsetByH)) => Some(by_h(code?, number)),
-        (Some(number), _) => Some(numbered(number)),
-        (None, Some(Action::WorkOffset(name))) => Some(name.clone()),
-        (None, Some(Action::BaseFrame)) => Some(BASE_FRAME.to_owned()),
-        _ => None,
-    }
 }
 
 /// TRANS, ROT, MIRROR and their additive forms (840D Programming Manual Fundamentals, chapter Coordinate

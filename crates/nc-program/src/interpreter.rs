@@ -1,32 +1,35 @@
 //! Block by block: check the whole block, then commit it.
 
 use diagnostic::{Diagnostic, both};
-use nc_syntax::dialect::{Action, GCode, MCode, Side};
+use nc_syntax::dialect::{Action, MCode};
 use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
 use smallvec::{SmallVec, smallvec};
-use toolpath::{Frame, Kinematics, Motion, Mover, Plane};
+use toolpath::{Kinematics, Motion, Mover, Plane};
+use units::decimal::Decimal;
 
 use crate::call;
 use crate::codes;
-use crate::curves::{self, CurvePart};
+use crate::context::{Context, context};
+use crate::curves;
 use crate::delete;
-use crate::direction::DirectionWords;
 use crate::environment::{Environment, Owner};
 use crate::modal::{
     ArcCentres, Aside, Axes, Axis, Compensation, Distance, FeedMode, LastFeed, Lost, Modal, MotionMode,
     Naming, Progress, ReturnLevel, Shifts, Stated, ToolLength, Transform, Units, Why, WorkOffset, XWords,
 };
-use crate::motion::{self, Moved};
+use crate::motion;
+use crate::moved::Moved;
 use crate::naming;
-use crate::offset::{self, Offset};
+use crate::offset;
 use crate::path_control;
-use crate::plain::Plain;
+use crate::plain::{Plain, PlainEnd, PlainFeeds};
 use crate::refusals::interpreter as refusal;
 use crate::settings;
 use crate::setup::{AfterChange, Setup};
 use crate::tilted;
 use crate::tip;
 use crate::turning;
+use crate::under_way::Offset;
 use crate::words::{Outcome, Words};
 
 /// What a block means.
@@ -41,68 +44,6 @@ pub struct Step {
     /// The X, Y, Z words of this block say where the axes stand (G92, G10 L20), and a frame is made of it:
     /// in an output whose axes stand elsewhere they must say so.
     pub states_position: bool,
-}
-
-/// Everything correction and emission must know of a block's state, valid for its motions.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Context {
-    /// Program mm to axis commands mm: work offset plus tool length. A shift by zero where the block
-    /// moves nothing and the work offset is not given.
-    pub frame: Frame,
-    /// One unit of the program in mm: 1.0 or 25.4.
-    pub unit_mm: f64,
-    /// X words are diameters.
-    pub diameters: bool,
-    /// G93, G94, G95.
-    pub feed_mode: FeedMode,
-    /// Axes whose words are increments: all under G91, those that U or W stands for.
-    pub incremental: [bool; 3],
-    /// X, Y, Z that U, V or W stands for in this block.
-    pub by_increment: [bool; 3],
-    /// G90.1.
-    pub arc_centres_absolute: bool,
-    /// Working plane.
-    pub plane: Plane,
-    /// From the gauge point to the tool tip, mm.
-    pub tool_mm: [f64; 3],
-    /// The work offset in force, which says what a program's zero is.
-    pub work_offset: WorkOffset,
-    /// What the tool length in force adds to axis commands, mm.
-    pub length_mm: [f64; 3],
-    /// Motion code in force, after modal resolution: G1, G83; `None` after G80 or before the first.
-    pub motion_code: Option<GCode>,
-    /// The motion code in force cuts a thread: lines in step with the spindle.
-    pub thread: bool,
-    /// What X, Y and Z are.
-    pub kinematics: Kinematics,
-    /// The block says where the tool points by a vector, and by which words.
-    pub direction: Option<DirectionWords>,
-    /// The block is an arc with R.
-    pub arc_by_radius: bool,
-    /// The block belongs to a curve by control points.
-    pub curve: Option<CurvePart>,
-    /// Cutter compensation is in force before or after the block.
-    pub compensation: Option<Side>,
-    /// The plane in which the tool is offset, or is still to be led off its offset path.
-    pub offset: Option<Plane>,
-    /// The block may be skipped, in a cycle that goes on behind it: levels that it wrote would hold for the next
-    /// holes only where it is executed.
-    pub may_not_set_levels: bool,
-    /// K or L of a cycle; 1 otherwise.
-    pub repeats: u32,
-    /// Axes that a motion names together: a rotation, scaling or mirror was switched since they were last named.
-    pub whole: [bool; 3],
-    /// X, Y, Z: since when the program has not named the axis in the frame in force, before this block; `None` where it
-    /// has. No word may be added for one that is not named.
-    pub unnamed: [Option<Lost>; 3],
-}
-
-impl Context {
-    /// What one in the word of an axis moves it by, mm.
-    #[must_use]
-    pub fn word_mm(&self, axis: usize) -> f64 {
-        if self.diameters && axis == 0 { 0.5 * self.unit_mm } else { self.unit_mm }
-    }
 }
 
 /// Executes a program block by block.
@@ -430,35 +371,24 @@ fn miscellaneous(
     Ok(())
 }
 
-pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, moved: &Moved) -> Context {
-    Context {
-        frame: state.frame.clone().unwrap_or_default(),
-        unit_mm: state.units.mm(),
-        feed_mode: state.feed_mode,
-        diameters: state.x_words.are_diameters(state.distance),
-        incremental: moved.by_increment.map(|by_letter| by_letter || state.distance == Distance::Incremental),
-        by_increment: moved.by_increment,
-        arc_centres_absolute: state.arc_centres == ArcCentres::Absolute,
-        plane: state.plane,
-        tool_mm: env.setup.tool_vector(&state.tool_length),
-        work_offset: state.work_offset,
-        length_mm: state.tool_length.applied_mm(),
-        kinematics: state.kinematics,
-        motion_code: state.motion_code(),
-        thread: matches!(state.motion, MotionMode::Thread(_)),
-        direction: moved.direction,
-        arc_by_radius: moved.arc_by_radius,
-        curve: moved.curve,
-        compensation: state.compensation.side().or(before.compensation.side()),
-        offset: (!before.offset.is_off() || !state.offset.is_off()).then_some(state.plane),
-        may_not_set_levels: state.aside.as_ref().is_some_and(|aside| aside.skipped.cycle.is_some()),
-        repeats: moved.repeats,
-        unnamed: moved.unnamed,
-        whole: if before.transform == state.transform {
-            before.unsettled
-        } else {
-            let (was, is) = (before.transform.touches(), state.transform.touches());
-            [0, 1, 2].map(|i| before.unsettled[i] || was[i] || is[i])
-        },
+impl Interpreter<'_> {
+    /// What plain lines mean now, and where X, Y, Z stand, mm; `None` where none is to be taken for plain.
+    #[inline]
+    pub fn plain_feeds(&mut self) -> Option<(&PlainFeeds, [f64; 3])> {
+        if let Plain::Unasked = self.plain {
+            self.plain = Plain::of(&self.env, &self.modal);
+        }
+        let Plain::Yes(feeds) = &self.plain else { return None };
+        let [Axis::At(x), Axis::At(y), Axis::At(z)] = self.modal.axes.linear else { return None };
+        Some((feeds, [x, y, z]))
+    }
+
+    /// Executes plain lines, of which this is the last and `feed` the last F ([`PlainFeeds::end_of`]).
+    #[inline]
+    pub fn go_to(&mut self, end: &PlainEnd, feed: Option<Decimal>) {
+        self.modal.axes.linear = end.end_mm.map(Axis::At);
+        if feed.is_some() {
+            self.modal.last_feed = self.modal.last_feed.after(self.modal.feed_mode, &self.modal, feed);
+        }
     }
 }

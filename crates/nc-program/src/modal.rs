@@ -1,9 +1,9 @@
 //! The state of a program between two blocks: one enum per modal group.
 
-use crate::offset::Offset;
+use crate::under_way::{CurveBegun, Offset, PlaneBegun};
 use nc_syntax::Number;
-use nc_syntax::dialect::{CurveCode, CycleCode, GCode, Side};
-use toolpath::{Frame, Kinematics, Partial, Plane};
+use nc_syntax::dialect::{CurveCode, GCode, Side};
+use toolpath::{CycleKind, Frame, Kinematics, Partial, Plane};
 use units::decimal::Decimal;
 
 pub use crate::transform::Transform;
@@ -427,7 +427,7 @@ pub struct CycleState {
     /// Its code.
     pub code: GCode,
     /// What it does.
-    pub kind: CycleCode,
+    pub kind: CycleKind,
     /// The normal axis where the series of cycles was started.
     pub initial: Axis,
     /// R.
@@ -511,9 +511,9 @@ pub struct Modal {
     /// G43.5: I, J, K of a line are the tool's direction.
     pub vectors: bool,
     /// A tilted plane of several blocks that is not whole yet.
-    pub plane_begun: Option<crate::tilted::Begun>,
+    pub plane_begun: Option<PlaneBegun>,
     /// A curve of several blocks that is not whole yet.
-    pub curve: Option<Box<crate::curves::Begun>>,
+    pub curve: Option<Box<CurveBegun>>,
     /// From the end of the G5 that the block before was to the control point with which another goes on, program axes, mm.
     pub curve_leaves_mm: Option<[f64; 2]>,
     /// G54–G59, G54.1.

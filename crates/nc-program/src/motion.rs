@@ -2,20 +2,21 @@
 
 use diagnostic::{Diagnostic, Refusal, Text, both};
 use nc_syntax::Span;
-use smallvec::{SmallVec, smallvec};
+use smallvec::smallvec;
 use toolpath::{Division, Feed, FeedRate, Motion, Mover, Shape};
 
 use crate::circular::circular;
 use crate::codes;
-use crate::curves::{self, CurvePart};
+use crate::curves;
 use crate::cycle;
-use crate::direction::{self, DirectionWords};
+use crate::direction;
 use crate::environment::{Demand, Environment, Owner};
-use crate::frames::{self, settle};
-use crate::modal::{
-    Axes, Axis, Compensation, Distance, FeedMode, LastFeed, Lost, Modal, MotionMode, Units, Why,
-};
-use crate::offset;
+use crate::feed::feed_rate;
+use crate::frame_state::settle;
+use crate::frames;
+use crate::modal::{Axes, Axis, Distance, Lost, Modal, MotionMode, Units, Why};
+use crate::moved::Moved;
+use crate::offset::{compensated, division};
 use crate::position::{end, known_axes, require_frame, require_known, require_rotary};
 use crate::refusals::motion as refusal;
 use crate::tip;
@@ -26,24 +27,6 @@ use crate::words::{
     Words,
 };
 use nc_syntax::Letters;
-
-/// Nearly always none or one.
-pub(crate) type Motions = SmallVec<[Motion; 1]>;
-
-/// What a block made of its words.
-#[derive(Debug, Default)]
-pub(crate) struct Moved {
-    pub(crate) motions: Motions,
-    pub(crate) arc_by_radius: bool,
-    pub(crate) direction: Option<DirectionWords>,
-    pub(crate) curve: Option<CurvePart>,
-    pub(crate) repeats: u32,
-    pub(crate) states_position: bool,
-    /// X, Y, Z that U, V or W stands for.
-    pub(crate) by_increment: [bool; 3],
-    /// Axes that the program has not named in the frame of the block before it.
-    pub(crate) unnamed: [Option<Lost>; 3],
-}
 
 /// Executes the words of a block whose codes are already applied to `state`.
 pub(crate) fn execute(
@@ -108,15 +91,6 @@ pub(crate) fn execute(
         }
     }
     Ok(())
-}
-
-/// What F means for a motion; `value` is F where G93 is in force.
-pub(crate) const fn rate(state: &Modal, value: f64) -> FeedRate {
-    match state.feed_mode {
-        FeedMode::InverseTime => FeedRate::InverseTime(value),
-        FeedMode::PerMinute => FeedRate::PerMinute,
-        FeedMode::PerRevolution => FeedRate::PerRevolution,
-    }
 }
 
 /// G53, probing and returns while a rotation, scaling or mirror is in force: manuals forbid them, or differ
@@ -276,53 +250,6 @@ fn straight(
     Ok(())
 }
 
-/// What may become of a feed's block.
-///
-/// * `ends_mm` – its start and end, axis commands
-/// * `bend` – of an arc: its radius, mm, and whether it turns counterclockwise in the plane
-pub(crate) fn division(
-    before: &Modal,
-    state: &Modal,
-    turns: bool,
-    ends_mm: [[f64; 3]; 2],
-    bend: Option<(f64, bool)>,
-) -> Division {
-    match offset::division(before, state, ends_mm, bend) {
-        // A rotary axis that turns meanwhile would need a share of each piece.
-        Some(Division::Long { .. } | Division::LongClimbing { .. }) if turns => Division::One,
-        Some(division) => division,
-        None if turns => Division::OneBehindLines,
-        None => Division::Any,
-    }
-}
-
-/// G41 or G42 is in force before or after a block.
-pub(crate) fn compensated(before: &Modal, state: &Modal) -> bool {
-    [before, state].iter().any(|state| state.compensation != Compensation::Off)
-}
-
-/// F of a feed motion: under G93 it must stand in the block itself.
-pub(crate) fn feed_rate(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<FeedRate> {
-    const F: Letters = Letters::of(b"F");
-    if state.feed_mode != FeedMode::InverseTime {
-        own_feed(words, state)?;
-        return Ok(rate(state, 0.0));
-    }
-    match words.plain(b'F') {
-        Some(value) if value > 0.0 => Ok(rate(state, value)),
-        Some(_) => Err(words.refuse(refusal::INVERSE_TIME_NOT_ABOVE_ZERO, words.span(F))),
-        None => Err(words.refuse(refusal::G93_WITHOUT_F, words.span(AXIS_LETTERS))),
-    }
-}
-
-/// Behind G93 a feed needs an F: what the last one is in another unit, controls answer with a stop or in silence.
-pub(crate) fn own_feed(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
-    if state.last_feed != LastFeed::Inverse {
-        return Ok(());
-    }
-    Err(words.refuse(refusal::FEED_BEHIND_G93_WITHOUT_F, words.span(AXIS_LETTERS)))
-}
-
 /// G4: X, U, P (and whatever F or S the control reads there) are a time.
 fn dwell(env: &Environment<'_>, words: &Words<'_, '_, '_>, demand: &Demand<'_>) -> Outcome<()> {
     let own = env.dialect.dwell_time;
@@ -460,8 +387,4 @@ fn stray(words: &Words<'_, '_, '_>, why: Text) -> Box<Diagnostic> {
 /// The control would offset a path that turns with the workpiece.
 fn compensated_turn(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
     words.refuse(refusal::turn_under_compensation(&words.names(ROTARY_LETTERS)), words.span(ROTARY_LETTERS))
-}
-
-pub(crate) fn arc_while_turning(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
-    words.refuse(refusal::ROTARY_AXIS_TURNS_ALONG_ARC, words.span(AXIS_LETTERS))
 }

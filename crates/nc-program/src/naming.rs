@@ -14,7 +14,7 @@ use toolpath::Kinematics;
 
 use crate::environment::{Demand, Environment, Owner};
 use crate::modal::{Axis, Compensation, Distance, Lost, Modal, Naming, ReturnLevel, Shifts, Why};
-use crate::motion::Moved;
+use crate::moved::Moved;
 use crate::words::{AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Words};
 use nc_syntax::Letters;
 

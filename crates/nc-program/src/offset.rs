@@ -12,6 +12,7 @@ use nc_syntax::dialect::{Action, Side};
 
 use crate::environment::Environment;
 use crate::modal::{Compensation, Modal};
+use crate::under_way::{Offset, Stage};
 use crate::words::{Preparatory, Words};
 
 /// Shortest piece of an offset path, in radii: in front of an inner corner of 37 degrees the tool stops three radii before
@@ -24,49 +25,6 @@ const STANDS_MM: f64 = 1e-9;
 const LEVEL_SHARE: f64 = 1e-3;
 /// No arc is offset to a radius below this share of its own.
 const LEAST_SHARE: f64 = 0.01;
-
-/// How far cutter compensation is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-enum Stage {
-    /// Not in force, and led off the contour.
-    #[default]
-    Off,
-    /// In force; the next motion in the plane leads onto the contour.
-    Starting,
-    /// The tool is led along the contour.
-    Led,
-    /// No longer in force; the next motion in the plane leads off the contour.
-    Ending,
-}
-
-/// Cutter compensation as far as it decides what may become of a block.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Offset {
-    stage: Stage,
-    /// Of the cutter by the D beside G41 or G42, nm; `None`: not known.
-    radius_nm: Option<u32>,
-}
-
-impl Offset {
-    /// A motion is neither offset nor leads off an offset path.
-    pub(crate) fn is_off(self) -> bool {
-        self.stage == Stage::Off
-    }
-
-    /// The radius of the cutter, mm, where the profile says it of the D in force.
-    #[must_use]
-    pub fn radius_mm(self) -> Option<f64> {
-        self.radius_nm.map(|nm| f64::from(nm) / 1e6)
-    }
-
-    /// What holds whether blocks with `/` were executed or skipped.
-    pub(crate) fn either(self, other: Self, in_force: bool) -> Self {
-        if self == other {
-            return self;
-        }
-        Self { stage: if in_force { Stage::Starting } else { Stage::Ending }, radius_nm: None }
-    }
-}
 
 /// What a block's codes and its D make of the compensation, before its motion.
 pub(crate) fn begin(env: &Environment<'_>, words: &Words<'_, '_, '_>, before: &Modal, state: &mut Modal) {
@@ -130,17 +88,37 @@ pub(crate) fn end(state: &mut Modal, motions: &[Motion]) {
     }
 }
 
+/// G41 or G42 is in force before or after a block.
+pub(crate) fn compensated(before: &Modal, state: &Modal) -> bool {
+    [before, state].iter().any(|state| state.compensation != Compensation::Off)
+}
+
+/// What may become of a feed's block.
+///
+/// * `ends_mm` – its start and end, axis commands
+/// * `bend` – of an arc: its radius, mm, and whether it turns counterclockwise in the plane
+pub(crate) fn division(
+    before: &Modal,
+    state: &Modal,
+    turns: bool,
+    ends_mm: [[f64; 3]; 2],
+    bend: Option<(f64, bool)>,
+) -> Division {
+    match led(before, state, ends_mm, bend) {
+        // A rotary axis that turns meanwhile would need a share of each piece.
+        Some(Division::Long { .. } | Division::LongClimbing { .. }) if turns => Division::One,
+        Some(division) => division,
+        None if turns => Division::OneBehindLines,
+        None => Division::Any,
+    }
+}
+
 /// What may become of a motion's block by cutter compensation; `None`: it has nothing to do with it.
 ///
 /// * `ends_mm` – start and end, axis commands. On a ramp the way that corners take from an offset block is shared out over the
 ///   whole block: where it is cut, it would climb otherwise
 /// * `bend` – of an arc: its radius, mm, and whether it turns counterclockwise in the plane
-pub(crate) fn division(
-    before: &Modal,
-    state: &Modal,
-    ends_mm: [[f64; 3]; 2],
-    bend: Option<(f64, bool)>,
-) -> Option<Division> {
+fn led(before: &Modal, state: &Modal, ends_mm: [[f64; 3]; 2], bend: Option<(f64, bool)>) -> Option<Division> {
     let [u, v, normal] = state.plane.axes();
     let along = |axis: usize| ends_mm[1][axis] - ends_mm[0][axis];
     let climb_mm = along(normal).abs();

@@ -3,8 +3,8 @@
 use nc_syntax::Dialect;
 use nc_syntax::path_control::{Keeps, PathCode, PathKey};
 
+use crate::brackets::arguments;
 use crate::modal::{PathControl, Units};
-use crate::swivel;
 use crate::words::Words;
 
 /// As the control starts.
@@ -37,9 +37,7 @@ pub(crate) fn said(dialect: &Dialect, words: &Words<'_, '_, '_>, units: Units) -
                 let first = lengths.next().flatten();
                 first.map(|first| first + lengths.map(|length| length.unwrap_or(first)).sum::<f64>())
             }
-            Keeps::Argument => {
-                swivel::arguments(&call).first().and_then(|first| first.trim().parse::<f64>().ok())
-            }
+            Keeps::Argument => arguments(&call).first().and_then(|first| first.trim().parse::<f64>().ok()),
         };
         // A tolerance of nothing is none (LinuxCNC, G64 P0).
         let length = length.filter(|length| *length > 0.0 || *keeps == Keeps::Exact);

@@ -2,17 +2,17 @@
 //!
 //! In a state in which such a line can mean only one thing ([`PlainFeeds`]) no state needs to be copied, no code looked
 //! up: the words are the end of the motion. Whatever else a block holds, or is in force, is left to
-//! [`Interpreter::step`], which does the same by the long way.
+//! [`crate::Interpreter::step`], which does the same by the long way.
 
 use nc_syntax::dialect::{GCode, Numbers};
 use nc_syntax::{PlainLine, PlainWord};
 use toolpath::{Division, Feed, FeedRate, Frame, Position, Shape};
 use units::decimal::Decimal;
 
+use crate::context::{Context, context};
 use crate::environment::Environment;
-use crate::interpreter::{Context, Interpreter, context};
 use crate::modal::{Axis, Compensation, Distance, FeedMode, LastFeed, Modal, MotionMode, Naming, Progress};
-use crate::motion::Moved;
+use crate::moved::Moved;
 
 /// What is known of plain lines in the state in force.
 #[derive(Clone, Debug, Default)]
@@ -55,7 +55,7 @@ pub struct PlainEnd {
 }
 
 impl Plain {
-    fn of(env: &Environment<'_>, modal: &Modal) -> Self {
+    pub(crate) fn of(env: &Environment<'_>, modal: &Modal) -> Self {
         let MotionMode::Line(code) = modal.motion else { return Self::No };
         let rate = match modal.feed_mode {
             // F must stand in each block.
@@ -99,7 +99,7 @@ impl Plain {
 impl PlainFeeds {
     /// Where a plain line leads from `start_mm`; `None` for one that is no feed motion.
     ///
-    /// What it says is what [`Interpreter::step`] would say.
+    /// What it says is what [`crate::Interpreter::step`] would say.
     #[must_use]
     #[inline]
     pub fn end_of(&self, line: &PlainLine<'_>, start_mm: [f64; 3]) -> Option<PlainEnd> {
@@ -141,28 +141,6 @@ impl PlainFeeds {
             shape: Shape::Line,
             rate: self.rate,
             division: Division::Any,
-        }
-    }
-}
-
-impl Interpreter<'_> {
-    /// What plain lines mean now, and where X, Y, Z stand, mm; `None` where none is to be taken for plain.
-    #[inline]
-    pub fn plain_feeds(&mut self) -> Option<(&PlainFeeds, [f64; 3])> {
-        if let Plain::Unasked = self.plain {
-            self.plain = Plain::of(&self.env, &self.modal);
-        }
-        let Plain::Yes(feeds) = &self.plain else { return None };
-        let [Axis::At(x), Axis::At(y), Axis::At(z)] = self.modal.axes.linear else { return None };
-        Some((feeds, [x, y, z]))
-    }
-
-    /// Executes plain lines, of which this is the last and `feed` the last F ([`PlainFeeds::end_of`]).
-    #[inline]
-    pub fn go_to(&mut self, end: &PlainEnd, feed: Option<Decimal>) {
-        self.modal.axes.linear = end.end_mm.map(Axis::At);
-        if feed.is_some() {
-            self.modal.last_feed = self.modal.last_feed.after(self.modal.feed_mode, &self.modal, feed);
         }
     }
 }

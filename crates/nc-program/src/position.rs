@@ -5,12 +5,12 @@ use nc_syntax::Span;
 use nc_syntax::dialect::Action;
 use toolpath::{AXIS_NAMES, Frame, Position};
 
+use crate::codes;
 use crate::environment::{BASE_FRAME, Environment};
 use crate::modal::{Axes, Axis, Distance, Lost, Modal, MotionMode, Naming, Units, Why};
 use crate::refusals::position as refusal;
 use crate::words::{AXIS_LETTERS, LINEAR, Outcome, ROTARY, ROTARY_LETTERS, Words};
-use crate::work_offset::missing_offset;
-use crate::{codes, frames};
+use crate::work_offset::{missing_offset, name_of};
 use nc_syntax::Letters;
 
 /// From program coordinates to axis commands, mm: refused where the work offset in force is not given.
@@ -30,7 +30,7 @@ pub(crate) fn require_frame<'s>(
 fn no_frame(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &Modal) -> Box<Diagnostic> {
     let span = words.span(AXIS_LETTERS);
     if state.work_offset.rewritten {
-        let name = frames::name_of(env.dialect, &state.work_offset).unwrap_or_default();
+        let name = name_of(env.dialect, &state.work_offset).unwrap_or_default();
         return words.refuse(refusal::work_offset_rewritten(name), span);
     }
     match state.work_offset.code.and_then(|code| env.dialect.code(code)).map(|entry| &entry.action) {

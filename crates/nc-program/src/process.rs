@@ -9,10 +9,10 @@
 use std::fmt;
 
 use diagnostic::{Text, both};
-use nc_syntax::dialect::{Action, CodeEntry, CycleCode, Dialect, GCode, MOTION_GROUP};
+use nc_syntax::dialect::{Action, CodeEntry, Dialect, GCode, MOTION_GROUP};
 use nc_syntax::{Block, ItemKind, Word};
 use smallvec::SmallVec;
-use toolpath::{Kinematics, Motion};
+use toolpath::{CycleKind, Kinematics, Motion};
 use units::decimal::Decimal;
 
 use crate::interpreter::Step;
@@ -209,8 +209,8 @@ impl Process {
     pub fn in_cycle(&self, cycle: Option<&CycleState>) -> Self {
         let cycle = cycle.map(|cycle| {
             let peck = cycle.peck_mm.map(|mm| Decimal { mantissa: (mm * 1e6).round() as i64, decimals: 6 });
-            let dwell = cycle.dwell.filter(|_| cycle.kind == CycleCode::Synchronised).map(|(time, _)| time);
-            let peck = peck.filter(|_| !matches!(cycle.kind, CycleCode::Drill | CycleCode::Bore));
+            let dwell = cycle.dwell.filter(|_| cycle.kind == CycleKind::Synchronised).map(|(time, _)| time);
+            let peck = peck.filter(|_| cycle.kind != CycleKind::Drill && !cycle.kind.bores());
             let words = [(b'P', dwell), (b'Q', peck)];
             let arguments = words.iter().filter_map(|(letter, word)| Some(Argument::new(*letter, (*word)?)));
             Mode { group: MOTION_GROUP, code: cycle.code, arguments: arguments.collect() }
@@ -456,7 +456,7 @@ mod tests {
         let fanuc = nc_dialect_fanuc();
         let cycle = CycleState {
             code: GCode(840),
-            kind: CycleCode::Synchronised,
+            kind: CycleKind::Synchronised,
             initial: crate::modal::Axis::At(0.0),
             retract: None,
             bottom: None,
@@ -468,7 +468,7 @@ mod tests {
         let tapping = process.in_cycle(Some(&cycle));
         let words = [Text::same("G84 Q2.5"), Text::pair("no cycle of the spindle", "без цикла шпинделя")];
         assert_eq!(tapping.differences(&process), [words]);
-        let (code, kind) = (GCode(810), CycleCode::Drill);
+        let (code, kind) = (GCode(810), CycleKind::Drill);
         let drilling = process.in_cycle(Some(&CycleState { code, kind, ..cycle }));
         assert_eq!(tapping.differences(&drilling), [["G84 Q2.5", "G81"].map(Text::same)]);
     }

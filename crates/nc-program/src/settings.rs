@@ -2,8 +2,8 @@
 
 use diagnostic::{Refusal, both};
 use nc_syntax::Span;
-use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
-use toolpath::{Kinematics, Plane};
+use nc_syntax::dialect::{Action, GCode, PlaneCode};
+use toolpath::{CycleKind, Kinematics, Plane};
 
 use crate::codes;
 use crate::environment::{BASE_FRAME, Demand, Environment, Owner};
@@ -14,14 +14,14 @@ use crate::modal::{
 use crate::refusals::{frames as of_frames, settings as refusal};
 use crate::tool_length::{self, Length};
 use crate::words::{LINEAR_LETTERS, Outcome, Words};
-use crate::{frames, path_control, swivel, tilted, tip, transform::Transform, work_offset};
+use crate::{brackets, frame_state, path_control, tilted, tip, transform::Transform, work_offset};
 use nc_syntax::Letters;
 
 /// Collected while the codes are read, applied afterwards in a fixed order.
 #[derive(Default)]
 struct Wanted<'d> {
     motion: Option<MotionMode>,
-    cycle: Option<(CycleCode, GCode, u8)>,
+    cycle: Option<(CycleKind, GCode, u8)>,
     cancel_group: Option<u8>,
     probe_group: Option<u8>,
     offset: Option<(GCode, Option<&'d str>, Span)>,
@@ -71,7 +71,7 @@ pub(crate) fn apply<'d>(
                 Owner::Motion
             }
             // Without arguments it moves nothing.
-            (Action::Swivel, _) if !swivel::is_reset(&words.text(span)) => Owner::Frame,
+            (Action::Swivel, _) if !brackets::is_reset(&words.text(span)) => Owner::Frame,
             _ => set(action, code, group, span, state, &mut wanted),
         };
         match owner {
@@ -126,7 +126,7 @@ pub(crate) fn apply<'d>(
     if !before.transform.is_none() && before.transform == state.transform {
         transformed(words, before, state)?;
     }
-    frames::refresh(state);
+    frame_state::refresh(state);
     if before.cycle.is_some() && state.cycle.is_some() {
         cycle_frame(words, before, state)?;
     }
@@ -185,7 +185,7 @@ fn followed(
 /// CYCLE832: the digit of hundreds of its second argument chooses a transformation on the 840D (Programming Manual Cycles); later
 /// controls do not read it, and write names there (`_ORI_FINISH`).
 fn may_switch_tip(call: &str, before: &Modal) -> bool {
-    let second = swivel::arguments(call).get(1).map_or("", |argument| argument.trim()).to_owned();
+    let second = brackets::arguments(call).get(1).map_or("", |argument| argument.trim()).to_owned();
     let named = second.is_empty() || second.starts_with('_');
     let chooses_none = second.parse::<u32>().is_ok_and(|digits| digits / 100 % 10 == 0);
     !(named || chooses_none && before.kinematics == Kinematics::Axes)
@@ -225,7 +225,7 @@ fn switches(words: &Words<'_, '_, '_>, state: &mut Modal, wanted: &Wanted<'_>) -
         return Err(words.refuse_code(of_frames::UNDER_CUTTER_COMPENSATION, span));
     }
     if off.is_some() {
-        frames::unsettle(state, Transform::None);
+        frame_state::unsettle(state, Transform::None);
     }
     let Some((action, span)) = wanted.shift else { return Ok(()) };
     let shifts = &mut state.shifts;
@@ -268,7 +268,7 @@ pub(crate) fn initial(env: &Environment<'_>, state: &mut Modal) {
         state.work_offset = WorkOffset { code: Some(code), number: None, zero_mm, rewritten: false };
     }
     motion(env, state, &wanted);
-    frames::refresh(state);
+    frame_state::refresh(state);
 }
 
 /// One code: sets what it sets at once, or notes what must wait; says whose the axis words are.

@@ -10,9 +10,10 @@ use diagnostic::{Diagnostic, Refusal, Text, both};
 use nc_syntax::Span;
 use toolpath::{Kinematics, Plane, TiltedPlane};
 
+use crate::brackets::arguments;
 use crate::codes;
 use crate::environment::Environment;
-use crate::frames;
+use crate::frame_state::refresh;
 use crate::modal::{Axis, Modal, Units};
 use crate::position::require_frame;
 use crate::tilted::{declared, lose, not_certain};
@@ -33,27 +34,6 @@ const BEHIND: usize = 10;
 const DIRECTION: usize = 13;
 const WAY_BACK: usize = 14;
 const DISPLAY: usize = 15;
-
-/// What stands in the brackets, by argument; none without brackets or with empty ones.
-pub(crate) fn arguments(text: &str) -> Vec<&str> {
-    let inside = text.split_once('(').map_or("", |(_, rest)| rest.strip_suffix(')').unwrap_or(rest));
-    if inside.trim().is_empty() {
-        return Vec::new();
-    }
-    let mut quoted = false;
-    inside
-        .split(|mark: char| {
-            quoted ^= mark == '"';
-            mark == ',' && !quoted
-        })
-        .map(str::trim)
-        .collect()
-}
-
-/// True of CYCLE800(): the plane ends, and nothing moves.
-pub(crate) fn is_reset(text: &str) -> bool {
-    arguments(text).is_empty()
-}
 
 /// Where a call stands, for its refusals.
 struct Call<'c, 'b, 'a, 'd> {
@@ -293,7 +273,7 @@ pub(crate) fn execute(
         Kinematics::Plane(plane) if swivel.adds => plane,
         _ => {
             state.kinematics = Kinematics::Axes;
-            frames::refresh(state);
+            refresh(state);
             let applied_mm = state.tool_length.applied_mm();
             let zero_mm = require_frame(env, words, state)?.to_machine([0.0; 3]);
             let zero_mm = [0, 1, 2].map(|i| zero_mm[i] - applied_mm[i]);

@@ -11,14 +11,15 @@ use nc_syntax::dialect::Action;
 use smallvec::SmallVec;
 use toolpath::{AXIS_NAMES, Kinematics, Motion, NoAngles, TiltedPlane, unit};
 
+use crate::brackets::is_reset;
 use crate::codes;
 use crate::environment::{Demand, Environment, Owner};
-use crate::frames::absolute;
+use crate::frame_state::absolute;
 use crate::modal::{Axis, Lost, Modal, Units, Why};
 use crate::naming;
 use crate::position::{require_frame, require_rotary};
 use crate::refusals::tilted as refusal;
-use crate::swivel;
+use crate::under_way::PlaneBegun;
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, Words};
 use nc_syntax::Letters;
 
@@ -34,17 +35,6 @@ type Three = [f64; 3];
 /// Rows.
 type Turn = [Three; 3];
 
-/// A plane of several blocks (P2, P3), as far as it is written.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Begun {
-    /// P.
-    form: u32,
-    /// By Q: a point, mm.
-    points: [Option<Three>; 4],
-    /// By Q: a direction.
-    directions: [Option<Three>; 4],
-}
-
 /// What ends a plane in this dialect.
 fn ending(env: &Environment<'_>) -> &'static str {
     let swivels = env.dialect.commands.iter().any(|row| row.action == Some(Action::Swivel));
@@ -59,7 +49,7 @@ fn ending(env: &Environment<'_>) -> &'static str {
 /// Whether a code ends the plane that is in force.
 fn ends(words: &Words<'_, '_, '_>) -> bool {
     let by_command =
-        |(action, span): &(&Action, Span)| **action == Action::Swivel && swivel::is_reset(&words.text(*span));
+        |(action, span): &(&Action, Span)| **action == Action::Swivel && is_reset(&words.text(*span));
     let off = |action: &Action| matches!(action, Action::RotationOff | Action::DynamicOffsetOff);
     words.codes.iter().any(|code| off(&code.entry.action)) || words.commands.iter().any(by_command)
 }
@@ -236,7 +226,7 @@ fn by_blocks(
 ) -> Outcome<Option<(Three, Turn)>> {
     let code = words.text(span);
     let mut begun =
-        state.plane_begun.take().unwrap_or(Begun { form, points: [None; 4], directions: [None; 4] });
+        state.plane_begun.take().unwrap_or(PlaneBegun { form, points: [None; 4], directions: [None; 4] });
     if begun.form != form {
         return Err(unfinished(words, span));
     }

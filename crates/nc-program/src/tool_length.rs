@@ -6,9 +6,9 @@ use nc_syntax::{Letters, Span};
 
 use crate::codes;
 use crate::environment::{Demand, Environment};
-use crate::frames;
+use crate::frame_state::refresh;
 use crate::modal::{Distance, Modal, MotionMode, ToolLength, Units, WrittenLength};
-use crate::motion::compensated;
+use crate::offset::compensated;
 use crate::refusals::tool_length as refusal;
 use crate::words::{
     ARC_LETTERS, AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, ROTARY_LETTERS, SECONDARY_LETTERS, Words,
@@ -377,7 +377,7 @@ pub(crate) fn from_words(
             ToolLength::Written { applied_mm },
             state,
         )?;
-        frames::refresh(state);
+        refresh(state);
         return Ok(());
     };
     Err(words.refuse(

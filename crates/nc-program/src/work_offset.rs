@@ -1,12 +1,11 @@
 //! Work offsets that codes choose: by name, by P, by H.
 
 use diagnostic::{Entry, Refusal, both};
-use nc_syntax::dialect::GCode;
-use nc_syntax::{Letters, Span};
+use nc_syntax::dialect::{Action, GCode};
+use nc_syntax::{Dialect, Letters, Span};
 
 use crate::codes;
 use crate::environment::{BASE_FRAME, Environment};
-use crate::frames;
 use crate::modal::{Modal, WorkOffset};
 use crate::refusals::settings as refusal;
 use crate::words::{Outcome, Words};
@@ -43,8 +42,8 @@ pub(crate) fn by_h(
             return Err(words.refuse(Refusal { code: codes::WORK_OFFSET, message, label, help }, span));
         }
     };
-    let name = frames::by_h(code, number);
-    let zero_mm = frames::offset(env, state, &name);
+    let name = name_by_h(code, number);
+    let zero_mm = offset(env, state, &name);
     if zero_mm.is_none() {
         return Err(missing_offset(words, &name, span));
     }
@@ -81,10 +80,10 @@ pub(crate) fn by_name(
         return Err(words.refuse(refusal::NO_WORK_OFFSET_P0, words.span(P)));
     }
     let name = match (number, name) {
-        (Some(number), _) => frames::numbered(number),
+        (Some(number), _) => numbered(number),
         (None, name) => name.unwrap_or_default().to_owned(),
     };
-    let zero_mm = frames::offset(env, state, &name);
+    let zero_mm = offset(env, state, &name);
     // The base frame may be unknown as long as nothing moves in it.
     if zero_mm.is_none() && name != BASE_FRAME {
         return Err(missing_offset(words, &name, span));
@@ -107,4 +106,33 @@ pub(crate) fn missing_offset(
 fn toml_key(name: &str) -> String {
     let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if name.chars().all(bare) { name.to_owned() } else { format!("\"{name}\"") }
+}
+
+/// The name of a numbered work offset.
+pub(crate) fn numbered(number: u32) -> String {
+    format!("G54.1P{number}")
+}
+
+/// The name of a work offset that H numbers.
+pub(crate) fn name_by_h(code: GCode, number: u32) -> String {
+    format!("{code}H{number}")
+}
+
+/// The zero of a work offset: what the program wrote, else what was given.
+pub(crate) fn offset(env: &Environment<'_>, state: &Modal, name: &str) -> Option<[f64; 3]> {
+    let written = state.written.iter().find(|(known, _)| known == name).map(|(_, zero)| *zero);
+    written.or_else(|| env.setup.work_offset(name))
+}
+
+/// The name of a work offset as profiles have it: `G54`, `G54.1 P3`.
+#[must_use]
+pub fn name_of(dialect: &Dialect, offset: &WorkOffset) -> Option<String> {
+    let WorkOffset { code, number, .. } = *offset;
+    match (number, dialect.code(code?).map(|entry| &entry.action)) {
+        (Some(number), Some(Action::WorkOffsetByH)) => Some(name_by_h(code?, number)),
+        (Some(number), _) => Some(numbered(number)),
+        (None, Some(Action::WorkOffset(name))) => Some(name.clone()),
+        (None, Some(Action::BaseFrame)) => Some(BASE_FRAME.to_owned()),
+        _ => None,
+    }
 }

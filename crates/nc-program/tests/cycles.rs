@@ -3,7 +3,7 @@
 use crate::common;
 
 use common::{end, hole, motions, refusal, run};
-use toolpath::{CycleKind, Hole, Plane};
+use toolpath::{CycleKind, Hole, HoleMove, PeckRetreats, Plane};
 
 const START: &str = "G90 G0 X0. Y0. Z10.\n";
 
@@ -135,6 +135,24 @@ fn cycles_in_the_other_planes() {
     // Drilling towards plus: the initial level is the lower one.
     assert_eq!((h.at_r.linear_mm, h.bottom_mm, h.initial_mm), ([-2.0, 6.0, 3.0], 20.0, -10.0));
     assert_eq!((h.cycle.kind, h.start.linear_mm), (CycleKind::Bore, [-2.0, 5.0, 3.0]));
+}
+
+/// As rs274 of LinuxCNC 2.9 moves, and as grblHAL's `mc_canned_drill`: out at feed to R, or on to G98's level.
+#[test]
+fn where_a_bored_hole_is_left_at_feed() {
+    let fed_out_to = |dialect: &str, code: &str| {
+        let text = format!("G0 X0. Y0. Z20.\nF100. G98 {code} X1. Z-5. R2. P0.1\n");
+        let hole = *hole(&motions(dialect, &text)[1]);
+        let retreats = PeckRetreats { clearance_mm: 0.5, chip_mm: 0.5 };
+        let out = hole.moves(1, retreats).find_map(|step| match step {
+            HoleMove::FeedOut { to } => Some(to.linear_mm[2]),
+            _ => None,
+        });
+        out.unwrap()
+    };
+    let found = ["fanuc", "mach", "linuxcnc", "grbl"]
+        .map(|dialect| ["G85", "G89"].map(|code| fed_out_to(dialect, code)));
+    assert_eq!(found, [[2.0, 2.0], [2.0, 2.0], [2.0, 20.0], [20.0, 20.0]]);
 }
 
 #[test]

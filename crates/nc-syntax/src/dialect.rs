@@ -4,6 +4,7 @@ use std::ops::Deref;
 
 use diagnostic::Text;
 use serde::Deserialize;
+use toolpath::CycleKind;
 use units::decimal::Decimal;
 
 pub use crate::code::{GCode, MOTION_GROUP};
@@ -269,7 +270,7 @@ pub enum Action {
     /// G4 of which only P is the time: axis words belong to the motion (LinuxCNC).
     DwellP,
     /// G73, G74, G76, G81–G89
-    Cycle(CycleCode),
+    Cycle(CycleKind),
     /// G80
     CycleCancel,
     /// G98
@@ -472,28 +473,6 @@ pub enum PlaneCode {
     Zx,
     /// G19
     Yz,
-}
-
-/// Which drilling cycle.
-///
-/// ```
-/// use nc_syntax::dialect::{Action, CycleCode, GCode};
-///
-/// let fanuc = nc_dialect::builtin("fanuc").unwrap();
-/// assert_eq!(fanuc.code(GCode(830)).map(|row| &row.action), Some(&Action::Cycle(CycleCode::PeckFull)));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CycleCode {
-    /// G81, G82
-    Drill,
-    /// G85, G89
-    Bore,
-    /// G83
-    PeckFull,
-    /// G73
-    PeckChip,
-    /// G74, G76, G84, G86, G87, G88
-    Synchronised,
 }
 
 /// Which cycle of a lathe.

@@ -3,6 +3,11 @@
 use diagnostic::{Language, Text};
 use maud::{Markup, PreEscaped, html};
 
+/// The machine, in every page's last section.
+pub const MACHINE: Text = Text::pair("machine", "станок");
+/// Files of measurements, there.
+pub const MEASUREMENTS: Text = Text::pair("measurements", "измерения");
+
 /// A text as it can be shown: control characters become their pictures, and marks that reorder what stands beside them
 /// become their numbers, so that a name looks on the page as it stands in the file.
 ///

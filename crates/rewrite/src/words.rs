@@ -70,7 +70,7 @@ pub(crate) fn lost(
     if row.is_some_and(|row| matches!(row.action, Action::Cycle(_))) {
         return WordEdits::new();
     }
-    let pecks = !matches!(cycle.kind, CycleKind::Drill | CycleKind::Bore);
+    let pecks = cycle.kind != CycleKind::Drill && !cycle.kind.bores();
     let peck = cycle.peck_mm.filter(|_| pecks).map(|mm| {
         let steps = mm / context.word_mm(plane.axes()[2]) * f64::from(10u32.pow(DECIMALS.into()));
         Decimal { mantissa: units::decimal::round(steps), decimals: DECIMALS }

@@ -13,12 +13,14 @@ use crate::{FeedRate, Plane, Position};
 /// let as_moves = |kind: CycleKind| kind != CycleKind::Synchronised;
 /// assert!(as_moves(CycleKind::PeckFull) && !as_moves(CycleKind::Synchronised));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CycleKind {
     /// G81, G82: feed in, dwell of `dwell` (the P word as written) if any, rapid out.
     Drill,
-    /// G85, G89: feed in, dwell if any, feed out.
+    /// G85, G89: feed in, dwell if any, feed out to R.
     Bore,
+    /// G89 of LinuxCNC: feed in, dwell if any, feed out to where the cycle ends, above R under G98.
+    BoreOut,
     /// G83: pecks of `peck_mm`, out to R each time.
     PeckFull,
     /// G73: pecks of `peck_mm`, a short retreat each time.
@@ -95,6 +97,20 @@ pub struct Hole {
 /// More pecks than this in one hole are a mistake, Q without its point: a hundred millimetres deep in steps of a twentieth.
 pub const MOST_PECKS: f64 = 2_000.0;
 
+impl CycleKind {
+    /// Drilled in pecks of Q.
+    #[must_use]
+    pub const fn pecks(self) -> bool {
+        matches!(self, Self::PeckFull | Self::PeckChip)
+    }
+
+    /// Leaves the hole at feed rate.
+    #[must_use]
+    pub const fn bores(self) -> bool {
+        matches!(self, Self::Bore | Self::BoreOut)
+    }
+}
+
 impl Hole {
     /// Where the axes are after the hole, as programmed.
     #[must_use]
@@ -111,8 +127,7 @@ impl Hole {
     /// How many pecks deep it is; `None` where it is drilled in one.
     #[must_use]
     pub fn pecks(&self) -> Option<f64> {
-        let pecks = matches!(self.cycle.kind, CycleKind::PeckFull | CycleKind::PeckChip);
-        let peck_mm = self.cycle.peck_mm.filter(|peck_mm| pecks && *peck_mm > 0.0)?;
+        let peck_mm = self.cycle.peck_mm.filter(|peck_mm| self.cycle.kind.pecks() && *peck_mm > 0.0)?;
         let depth_mm = (self.bottom_mm - self.at_r.linear_mm[self.plane.axes()[2]]).abs();
         Some(depth_mm / peck_mm)
     }
@@ -165,10 +180,14 @@ impl Hole {
             Stroke::Out => HoleMove::Position { to: hole.at_r },
             Stroke::Again(mm) => HoleMove::Position { to: hole.at(r_mm + down * mm) },
         });
-        let bored = hole.cycle.kind == CycleKind::Bore;
+        let fed_out = match hole.cycle.kind {
+            CycleKind::Bore => Some(hole.at_r),
+            CycleKind::BoreOut => Some(hole.end()),
+            _ => None,
+        };
         let end = [
             hole.cycle.dwell.is_some().then_some(HoleMove::Dwell),
-            bored.then_some(HoleMove::FeedOut { to: hole.at_r }),
+            fed_out.map(|to| HoleMove::FeedOut { to }),
             Some(HoleMove::Leave { to: hole.end() }),
         ];
         come.into_iter().chain(pecked).chain(end.into_iter().flatten())

@@ -50,10 +50,6 @@ quantity! {
     /// A plane angle, kept in radians.
     Angle
 }
-quantity! {
-    /// A feed rate, kept in millimetres per minute.
-    Feed
-}
 
 impl Length {
     /// From millimetres.
@@ -118,18 +114,5 @@ impl Angle {
     #[must_use]
     pub const fn deg(self) -> f64 {
         self.0 * (180.0 / std::f64::consts::PI)
-    }
-}
-
-impl Feed {
-    /// From millimetres per minute.
-    #[must_use]
-    pub const fn from_mm_per_min(v: f64) -> Self {
-        Self(v)
-    }
-    /// In millimetres per minute.
-    #[must_use]
-    pub const fn mm_per_min(self) -> f64 {
-        self.0
     }
 }

@@ -1,17 +1,22 @@
 //! Points, measurements and maps.
 
 use std::ffi::OsString;
+use std::io::ErrorKind;
+use std::path::Path;
 
-use diagnostic::{Diagnostic, Severity, both};
+use diagnostic::{Diagnostic, Language, Severity, both};
+use jobs::budget::BudgetOptions;
+use jobs::calibrate::{Calibrate, Calibration, Said, Setting};
+use jobs::conditions;
 use jobs::diagnose::{Books, Model};
+use jobs::map::asked::MapOptions;
 use jobs::message::{Failure, Report};
-use jobs::options::JobOptions;
+use jobs::options::{self, JobOptions, Whole};
 use jobs::points::POINTS;
 use jobs::predict::{Frame, PointsOutside, Predictor};
+use jobs::profile;
 use jobs::settings::machine;
 use jobs::solve::Solver;
-use jobs::values::{Given, Lattice, Rotary, ToolVector, Value};
-use jobs::{conditions, map as volume_map, profile};
 use machine_model::{Command, PathModel, RigidBody};
 use machine_profile::Profile;
 use pyo3::prelude::*;
@@ -158,51 +163,83 @@ pub(crate) fn diagnose(
     py.detach(work).map_err(|failure| raised(py, &failure))
 }
 
-fn given<T: Value>(option: &str, text: &str) -> Result<Given<T>, Failure> {
-    text.parse().map_err(|unread: jobs::values::Unread| {
-        Failure::option(unread.message(option, text), unread.help(option))
-    })
+/// A file that options name, of those that came with them.
+fn read_of<'a>(files: &'a [Text]) -> impl Fn(&Path) -> Result<Vec<u8>, Failure> + 'a {
+    |path| match files.iter().find(|(name, _)| Path::new(&**name) == path) {
+        Some((_, bytes)) => Ok(bytes.to_vec()),
+        None => Err(Failure::unread(&jobs::lines::name(path), &ErrorKind::NotFound.into())),
+    }
 }
 
-type Mapped<'py> = ([Vec<f64>; 3], Bound<'py, PyBytes>, Vec<Told>);
+fn text(bytes: Vec<u8>) -> String {
+    String::from_utf8_lossy(&bytes).into_owned()
+}
 
-/// Nodes of X, Y and Z, mm; errors, mm, X fastest; warnings.
+type Mapped<'py> = ([Vec<f64>; 3], Bound<'py, PyBytes>, String, Vec<Told>);
+
+/// Nodes of X, Y and Z, mm; errors, mm, X fastest; the JSON of `map --json`; warnings.
 #[pyfunction]
-pub(crate) fn grid<'py>(
-    py: Python<'py>,
-    nodes: &str,
-    tool: Option<&str>,
-    rotary: Option<&str>,
-    options: Vec<OsString>,
-) -> PyResult<Mapped<'py>> {
+pub(crate) fn map<'py>(py: Python<'py>, options: Vec<OsString>) -> PyResult<Mapped<'py>> {
     let work = || -> Result<_, Failure> {
-        let options = JobOptions::read(options)?;
-        let profile = mill(&options)?;
-        let id = profile.forward_engine(options.engine());
-        let engine = conditions::engine(&profile, id, &options)?;
-        let model = volume_map::model(engine.as_ref())?;
-        let tool = tool.map(|text| given::<ToolVector>("--tool-vector", text)).transpose()?;
-        let tool_mm = volume_map::tool(tool.as_ref(), &options, &profile)?;
-        volume_map::require_tool(model, tool_mm)?;
-        let rotary = rotary.map(|text| given::<Rotary>("--rotary", text)).transpose()?;
-        let rotary_rad = volume_map::rotary(rotary.as_ref(), &profile)?;
-        let grid = volume_map::grid(&given::<Lattice>("--grid", nodes)?, model.volume())?;
-        let box_mm = grid.axes().each_ref().map(|nodes| nodes.range_mm());
-        let mut warnings = volume_map::outside([box_mm], model.volume(), &options)?;
-        warnings.extend(conditions::doubts(&profile, id));
-        let places = grid.axes().each_ref().map(|nodes| nodes.places_mm().to_vec());
-        let map = volume_map::evaluated(grid, |place_mm| {
-            model.error_mm(&Command {
-                linear_mm: *place_mm,
-                rotary_rad,
-                tool_mm,
-                direction: [0; 3],
-                ..Default::default()
-            })
-        });
-        let errors: Vec<f64> = map.errors_mm().iter().flat_map(|error| [error.x, error.y, error.z]).collect();
-        Ok((places, errors, warnings))
+        let Whole { job, own } = options::read::<Whole<MapOptions>>(options)?;
+        let profile = mill(&job)?;
+        let engine = conditions::engine(&profile, profile.forward_engine(job.engine()), &job)?;
+        let mut warnings = Vec::new();
+        let study = jobs::map::of(&job, &profile, engine.as_ref(), &own, &mut warnings)?;
+        Ok((study, warnings))
     };
-    let (places, errors, warnings) = py.detach(work).map_err(|failure| raised(py, &failure))?;
-    Ok((places, bytes(py, errors), told(&warnings)))
+    let (study, warnings) = py.detach(work).map_err(|failure| raised(py, &failure))?;
+    let places = study.map.grid().axes().each_ref().map(|nodes| nodes.places_mm().to_vec());
+    let errors = study.map.errors_mm().iter().flat_map(|error| [error.x, error.y, error.z]);
+    Ok((places, bytes(py, errors), text(jobs::map::json::bytes(&study)), told(&warnings)))
+}
+
+/// The JSON of `budget --json`, and warnings.
+#[pyfunction]
+pub(crate) fn budget(
+    py: Python<'_>,
+    files: Vec<Text>,
+    options: Vec<OsString>,
+) -> PyResult<(String, Vec<Told>)> {
+    let work = || -> Result<_, Failure> {
+        let Whole { job, own } = options::read::<Whole<BudgetOptions>>(options)?;
+        let mut warnings = Vec::new();
+        let study = jobs::budget::of(&job, &mill(&job)?, &own, &read_of(&files), &mut warnings)?;
+        Ok((text(jobs::budget::json::bytes(&study)), warnings))
+    };
+    let (json, warnings) = py.detach(work).map_err(|failure| raised(py, &failure))?;
+    Ok((json, told(&warnings)))
+}
+
+/// What a calibration says and makes: its report; the profile, its tables' folder and their texts; the JSON of `--json`;
+/// warnings.
+type Calibrated = (String, Option<(String, String, Vec<(String, Vec<u8>)>)>, Option<String>, Vec<Told>);
+
+/// `vpost calibrate INSTRUMENT …`
+#[pyfunction]
+pub(crate) fn calibrate(py: Python<'_>, files: Vec<Text>, options: Vec<OsString>) -> PyResult<Calibrated> {
+    let work = || -> Result<Calibration, Failure> {
+        let Whole { job, own } = options::read::<Whole<Calibrate>>(options)?;
+        let read = read_of(&files);
+        let setting = Setting { options: &job, read: &read, language: Language::English, command: None };
+        let made = jobs::calibrate::of(&own.command, &setting);
+        match made.refused {
+            Some(refused) => Err(refused),
+            None => Ok(made),
+        }
+    };
+    let made = py.detach(work).map_err(|failure| raised(py, &failure))?;
+    let profile = made.profile.map(|made| {
+        let folder = made.folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        (made.text, folder, made.tables)
+    });
+    let json = made.results.into_iter().next().map(|(_, bytes)| text(bytes));
+    let (mut report, mut warnings) = (String::new(), Vec::new());
+    for said in made.said {
+        match said {
+            Said::Result(text) => report.push_str(text.english()),
+            Said::Warning(warning) => warnings.push(warning),
+        }
+    }
+    Ok((report, profile, json, told(&warnings)))
 }

@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _vpost {
     #[pymodule_export]
-    use crate::jobs_on_points::{diagnose, grid, predict, solve};
+    use crate::jobs_on_points::{budget, calibrate, diagnose, map, predict, solve};
     #[pymodule_export]
     use crate::jobs_on_programs::{check, correct};
 }

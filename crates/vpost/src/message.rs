@@ -2,7 +2,7 @@
 
 use std::io::{IsTerminal, Write};
 
-use diagnostic::{Code, Diagnostic, Language, Text};
+use diagnostic::{Diagnostic, Language, Text};
 pub(crate) use jobs::message::*;
 use jobs::shown::shown;
 
@@ -50,11 +50,6 @@ impl Messages {
     /// Prints what is said as a warning about no text, where the user wants warnings.
     pub(crate) fn warning(&self, said: Diagnostic) {
         self.report(&Report::warning(said));
-    }
-
-    /// The same of its parts.
-    pub(crate) fn warn(&self, code: Code, message: Text, help: Text) {
-        self.warning(Diagnostic::error(code, message).help(help));
     }
 
     /// Prints a line about progress or result, unless quiet.

@@ -5,7 +5,9 @@ use machine_profile::{Calibrated, Profile};
 use report::body::Fact;
 use report::numbers::figures;
 
-use crate::figures::short;
+pub(crate) use report::text::{MACHINE, MEASUREMENTS};
+
+use crate::figures::{celsius, short};
 
 /// When, how warm and with what a machine was measured, and how sure its model is.
 #[derive(Clone, Debug, Default)]
@@ -80,12 +82,6 @@ impl Origin {
     }
 }
 
-/// A temperature.
-pub(crate) fn celsius(value: f64) -> Text {
-    let value = figures(short(value, 2));
-    both!("{value} \u{b0}C", "{value:#} \u{b0}C")
-}
-
 fn um(value: f64) -> Text {
     let value = figures(short(value, 2));
     both!("{value} \u{b5}m", "{value:#} мкм")
@@ -97,8 +93,6 @@ pub(crate) fn command_fact() -> Fact {
 }
 
 /// Names that stand in every page's last section.
-pub(crate) const MACHINE: Text = Text::pair("machine", "станок");
-pub(crate) const MEASUREMENTS: Text = Text::pair("measurements", "измерения");
 pub(crate) const PROFILE: Text = Text::pair("profile and its tables", "профиль и его таблицы");
 pub(crate) const MODEL: Text = Text::pair("model", "модель");
 

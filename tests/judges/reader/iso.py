@@ -685,7 +685,9 @@ class Iso(Control):
 
     def leave(self, top, r, n):
         if self.cycle in (85, 89, 84, 74):
-            self.to(n, top if self.ngc and self.cycle == 89 else r, "line")  # rs274's G89 feeds up to G98's level
+            # rs274's G89 feeds up to G98's level; grblHAL's G85 and G89 both (motion_control.c, mc_canned_drill)
+            far = self.cycle == 89 and self.ngc or self.cycle == 85 and self.dialect == "grbl"
+            self.to(n, top if far else r, "line")
         end = list(self.pos)
         end[n] = top
         self.move("rapid", end)                                # to a level of before: nobody names it here

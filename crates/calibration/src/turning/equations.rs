@@ -69,12 +69,6 @@ impl Stretch {
 }
 
 impl TurningBase {
-    /// True where the workpiece's axis ends at a tailstock: a taper is that one's offset then.
-    #[must_use]
-    pub fn is_borne(&self) -> bool {
-        self.spindle.tailstock.is_some()
-    }
-
     /// The tables of Z with a change of EXZ; `None` where it does not bend.
     #[must_use]
     pub fn z_tables(&self, change: &Change, stretch: Stretch) -> Option<ChangedAxis> {

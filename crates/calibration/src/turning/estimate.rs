@@ -81,8 +81,6 @@ pub struct TurningCalibration {
     pub stretch: Stretch,
     /// Standard deviation of a diameter, mm: as stated, or as left over.
     pub noise_mm: f64,
-    /// Of a face, mm, where there are any.
-    pub face_noise_mm: Option<f64>,
     /// Standard deviation of what the diameters of a part share beyond that, mm; `None` where too few parts tell it.
     pub shared_mm: Option<f64>,
     /// A single reading wrong by less, mm, may have passed, for want of others that judge it.
@@ -292,20 +290,13 @@ pub fn calibrate(
         u: adjusted.shared_mm.map(|_| adjusted.uncertainty(told.terms.len() + k)),
     });
     let offsets = offsets.collect();
-    let noise = |feature| {
-        if readings.is_known {
-            let own: Vec<f64> = rows
-                .iter()
-                .filter(|row| row.feature == feature)
-                .filter_map(|row| row.uncertainty_mm)
-                .collect();
-            (own.iter().map(|u| u * u).sum::<f64>() / own.len().max(1) as f64).sqrt()
-        } else {
-            readings.noise_mm(&within, feature)
-        }
+    let noise_mm = if readings.is_known {
+        let diameters = rows.iter().filter(|row| row.feature == Feature::Diameter);
+        let own: Vec<f64> = diameters.filter_map(|row| row.uncertainty_mm).collect();
+        (own.iter().map(|u| u * u).sum::<f64>() / own.len().max(1) as f64).sqrt()
+    } else {
+        readings.noise_mm(&within, Feature::Diameter)
     };
-    let has_faces = rows.iter().any(|row| row.feature == Feature::Face);
-    let (noise_mm, face_noise_mm) = (noise(Feature::Diameter), has_faces.then(|| noise(Feature::Face)));
     let rms = |residuals: &DVector<f64>| {
         let own = (0..rows.len()).filter(|k| readings.is(*k, Feature::Diameter));
         let squares: Vec<f64> = own.map(|k| residuals[k] * residuals[k]).collect();
@@ -320,7 +311,6 @@ pub fn calibrate(
         change: Readings::change(&told.terms, &adjusted.values),
         stretch: readings.stretch,
         noise_mm,
-        face_noise_mm,
         shared_mm: adjusted.shared_mm,
         unseen_blunder_mm: unseen_blunder_mm(&readings, &within, noise_mm),
         field_u95_mm: shape_u95_mm(&readings, &told.terms, &adjusted),

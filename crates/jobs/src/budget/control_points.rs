@@ -17,16 +17,6 @@ use crate::values::{Ball, Given, Lattice, Rotary};
 /// Most control points: with forty deviations they fill a quarter of a gigabyte.
 const MOST: usize = 250_000;
 
-/// Where the control points are.
-pub enum Points<'a> {
-    /// On a ball about the table.
-    Ball(&'a Given<Ball>),
-    /// In a file: its name, its bytes.
-    File(String, Vec<u8>),
-    /// Over the volume, where the rotary axes stand so.
-    Grid(&'a Given<Lattice>, Option<&'a Given<Rotary>>),
-}
-
 /// The control points.
 pub struct ControlPoints {
     /// What the machine is told.
@@ -42,19 +32,11 @@ pub(super) struct Taken<'a> {
     pub(super) machine: &'a Machine,
     pub(super) tool_mm: Vector,
     /// What is to be said of them.
-    pub(super) warnings: Vec<Report>,
+    pub(super) warnings: &'a mut Vec<Report>,
 }
 
 impl Taken<'_> {
-    pub(super) fn points(&mut self, points: &Points<'_>) -> Result<ControlPoints, Failure> {
-        match points {
-            Points::Ball(ball) => self.on_a_ball(ball),
-            Points::File(name, bytes) => self.in_a_file(name, bytes),
-            Points::Grid(given, angles) => self.over_the_volume(given, *angles),
-        }
-    }
-
-    fn over_the_volume(
+    pub(super) fn over_the_volume(
         &mut self,
         given: &Given<Lattice>,
         angles: Option<&Given<Rotary>>,
@@ -115,7 +97,7 @@ impl Taken<'_> {
 
     /// A ball on the table that the linear axes follow through the angles of the table's axes (Serkov 2017), all rotary axes
     /// coming from below, the linear ones as they come from place to place.
-    fn on_a_ball(&self, ball: &Given<Ball>) -> Result<ControlPoints, Failure> {
+    pub(super) fn on_a_ball(&self, ball: &Given<Ball>) -> Result<ControlPoints, Failure> {
         let Ball { radius_mm, height_mm, lead } = **ball;
         let Self { machine, profile, tool_mm, .. } = *self;
         let table = profile.chain().table();
@@ -186,7 +168,7 @@ impl Taken<'_> {
         Ok(ControlPoints { commands, what })
     }
 
-    fn in_a_file(&mut self, name: &str, bytes: &[u8]) -> Result<ControlPoints, Failure> {
+    pub(super) fn in_a_file(&mut self, name: &str, bytes: &[u8]) -> Result<ControlPoints, Failure> {
         let Self { machine, profile, tool_mm, .. } = *self;
         let points = points::read(name, bytes, tool_mm.into(), profile)?;
         let refuse = |diagnostic: Diagnostic| Failure::refused(name, bytes, vec![diagnostic]);

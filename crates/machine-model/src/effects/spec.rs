@@ -12,7 +12,6 @@ pub(super) struct Spec {
     /// Names of the [`super::Shape`] fields that it uses.
     pub(super) shape: &'static [&'static str],
     pub(super) origin: Origin,
-    pub(super) path: Path,
     pub(super) direction: Direction,
 }
 
@@ -27,17 +26,6 @@ pub(super) enum Origin {
     RotaryAxis,
     /// The measuring instrument, seen from the workpiece as it is.
     Instrument,
-}
-
-/// What becomes of a straight motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Path {
-    /// It stays straight.
-    Straight,
-    /// It stays straight while no coefficient from this one on is given.
-    StraightBelow(usize),
-    /// It may bend.
-    Bent,
 }
 
 /// Whether the direction of motion matters.
@@ -85,9 +73,9 @@ const TRACKER: [&[&str]; super::TRACKER.len()] =
     [&["scale_um_per_m"], &["offset_um"], &SINE, &SINE, &["angle_urad"], &["angle_urad"]];
 
 impl Spec {
-    const fn new(family: &'static str, path: Path, coefficients: &'static [&'static str]) -> Self {
+    const fn new(family: &'static str, coefficients: &'static [&'static str]) -> Self {
         let (origin, direction) = (Origin::LinearAxes, Direction::Any);
-        Self { family, coefficients, shape: &[], origin, path, direction }
+        Self { family, coefficients, shape: &[], origin, direction }
     }
 
     const fn shaped(self, shape: &'static [&'static str]) -> Self {
@@ -105,59 +93,50 @@ impl Spec {
     pub(super) const fn of(kind: EffectKind) -> Self {
         use EffectKind as Kind;
         use Origin::{Instrument, Probe, RotaryAxis};
-        use Path::{Bent, Straight, StraightBelow};
         match kind {
-            Kind::Scale(_) => Self::new("scale", Straight, &["scale_um_per_m"]),
-            Kind::Thermal(_) => Self::new(
-                "thermal",
-                Straight,
-                &["expansion_um_per_m_k", "shift_um_per_k", "expansion2_um_per_m_k2"],
-            ),
+            Kind::Scale(_) => Self::new("scale", &["scale_um_per_m"]),
+            Kind::Thermal(_) => {
+                Self::new("thermal", &["expansion_um_per_m_k", "shift_um_per_k", "expansion2_um_per_m_k2"])
+            }
             Kind::Warmup(_) => {
-                Self::new("warmup", Straight, &["amplitude_um", "amplitude2_um"]).shaped(&["tau_s", "tau2_s"])
+                Self::new("warmup", &["amplitude_um", "amplitude2_um"]).shaped(&["tau_s", "tau2_s"])
             }
-            Kind::Backlash(_) => {
-                Self::new("backlash", StraightBelow(2), &HALF_WIDTH).shaped(&INTERVAL).directed()
+            Kind::Backlash(_) => Self::new("backlash", &HALF_WIDTH).shaped(&INTERVAL).directed(),
+            Kind::LostMotion { .. } => Self::new("lost-motion", &HALF_WIDTH).shaped(&INTERVAL).directed(),
+            Kind::Squareness(..) => Self::new("squareness", &["angle_urad"]),
+            Kind::Positioning(_) => Self::new("positioning", &CURVE).shaped(&INTERVAL),
+            Kind::Straightness { .. } => Self::new("straightness", &CURVE).shaped(&INTERVAL),
+            Kind::Pitch(_) => Self::new("pitch", &PITCH).shaped(&["pitch_mm", "from_mm", "to_mm"]),
+            Kind::Angular { .. } => Self::new("angular", &ANGULAR).shaped(&INTERVAL),
+            Kind::Sag(_) => {
+                Self::new("sag", &["droop3_um", "droop2_um", "droop4_um", "tilt_urad"]).shaped(&INTERVAL)
             }
-            Kind::LostMotion { .. } => {
-                Self::new("lost-motion", StraightBelow(2), &HALF_WIDTH).shaped(&INTERVAL).directed()
-            }
-            Kind::Squareness(..) => Self::new("squareness", Straight, &["angle_urad"]),
-            Kind::Positioning(_) => Self::new("positioning", Bent, &CURVE).shaped(&INTERVAL),
-            Kind::Straightness { .. } => Self::new("straightness", Bent, &CURVE).shaped(&INTERVAL),
-            Kind::Pitch(_) => Self::new("pitch", Bent, &PITCH).shaped(&["pitch_mm", "from_mm", "to_mm"]),
-            Kind::Angular { .. } => Self::new("angular", Bent, &ANGULAR).shaped(&INTERVAL),
-            Kind::Sag(_) => Self::new("sag", Bent, &["droop3_um", "droop2_um", "droop4_um", "tilt_urad"])
-                .shaped(&INTERVAL),
-            Kind::Load(_) => Self::new("load", Straight, &["compliance_um_per_kg", "compliance2_um_per_kg2"]),
+            Kind::Load(_) => Self::new("load", &["compliance_um_per_kg", "compliance2_um_per_kg2"]),
             Kind::ServoLag(_) => {
-                Self::new("servo-lag", Straight, &["lag_ms", "path_lag_ms", "lag2_ms_per_m_min"]).directed()
+                Self::new("servo-lag", &["lag_ms", "path_lag_ms", "lag2_ms_per_m_min"]).directed()
             }
             Kind::ServoMismatch(..) => {
-                Self::new("servo-mismatch", Straight, &["mismatch_ms", "mismatch2_ms_per_m_min"]).directed()
+                Self::new("servo-mismatch", &["mismatch_ms", "mismatch2_ms_per_m_min"]).directed()
             }
-            Kind::Rotary { component: 0..=2, .. } => {
-                Self::new("rotary", Bent, &["offset_um"]).arising(RotaryAxis)
-            }
-            Kind::Rotary { .. } => Self::new("rotary", Bent, &["angle_urad"]).arising(RotaryAxis),
-            Kind::Eccentricity(_) => Self::new("eccentricity", Bent, &ECCENTRICITY).arising(RotaryAxis),
+            Kind::Rotary { component: 0..=2, .. } => Self::new("rotary", &["offset_um"]).arising(RotaryAxis),
+            Kind::Rotary { .. } => Self::new("rotary", &["angle_urad"]).arising(RotaryAxis),
+            Kind::Eccentricity(_) => Self::new("eccentricity", &ECCENTRICITY).arising(RotaryAxis),
             Kind::ProbeLobing => {
-                Self::new("probe-lobing", Straight, &["cos3_um", "sin3_um", "cos2_um", "sin2_um", "pole_um"])
+                Self::new("probe-lobing", &["cos3_um", "sin3_um", "cos2_um", "sin2_um", "pole_um"])
                     .arising(Probe)
                     .directed()
             }
-            Kind::InstrumentDrift => Self::new("instrument-drift", Straight, &DRIFT).arising(Instrument),
-            Kind::Step(_) => Self::new("step", Straight, &["shift_um"]).shaped(&["time_s"]),
-            Kind::Local(_) => Self::new("local", Bent, &XYZ).shaped(&PLACE),
-            Kind::Joint(_) => Self::new("joint", Bent, &XYZ).shaped(&PLACE),
-            Kind::Spike(_) => Self::new("spike", Straight, &["spike_um"]).shaped(&["width_mm"]).directed(),
+            Kind::InstrumentDrift => Self::new("instrument-drift", &DRIFT).arising(Instrument),
+            Kind::Step(_) => Self::new("step", &["shift_um"]).shaped(&["time_s"]),
+            Kind::Local(_) => Self::new("local", &XYZ).shaped(&PLACE),
+            Kind::Joint(_) => Self::new("joint", &XYZ).shaped(&PLACE),
+            Kind::Spike(_) => Self::new("spike", &["spike_um"]).shaped(&["width_mm"]).directed(),
             Kind::Contraction => Self::new(
                 "contraction",
-                Straight,
                 &["path_um_per_m_s2", "x_um_per_m_s2", "y_um_per_m_s2", "z_um_per_m_s2"],
             ),
-            Kind::SpindleTilt(_) => Self::new("spindle-tilt", Straight, &["tilt_urad"]),
-            Kind::Tracker(fault) => Self::new("tracker", Bent, TRACKER[fault]).arising(Instrument),
+            Kind::SpindleTilt(_) => Self::new("spindle-tilt", &["tilt_urad"]),
+            Kind::Tracker(fault) => Self::new("tracker", TRACKER[fault]).arising(Instrument),
         }
     }
 }

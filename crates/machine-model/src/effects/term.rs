@@ -2,7 +2,6 @@
 
 use thiserror::Error;
 
-use super::spec::{Path, Spec};
 use super::{Conditions, EffectGeometry, EffectKind, MissingCondition, Shape, UnknownEffect};
 use crate::{Command, Vector};
 
@@ -232,16 +231,6 @@ impl EffectTerm {
     #[must_use]
     pub const fn depends_on_direction(&self) -> bool {
         self.kind.depends_on_direction()
-    }
-
-    /// True where the term is linear in the axis commands, so that it never leaves a chord.
-    #[must_use]
-    pub fn is_linear_in_command(&self) -> bool {
-        match Spec::of(self.kind).path {
-            Path::Straight => true,
-            Path::StraightBelow(count) => self.coefficients.iter().skip(count).all(|c| *c == 0.0),
-            Path::Bent => false,
-        }
     }
 }
 

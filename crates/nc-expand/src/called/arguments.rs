@@ -6,6 +6,7 @@ use nc_syntax::Span;
 use super::Fault;
 use crate::refusals::called as refusal;
 use crate::shorthand::Words;
+use crate::siemens::plain_number;
 
 /// The arguments of a call, by place; one that is left out is none.
 #[derive(Clone, Debug)]
@@ -28,7 +29,7 @@ impl Arguments {
         };
         let mut values = Vec::new();
         for written in inside.split(',').map(str::trim) {
-            values.push(match (written, number(written)) {
+            values.push(match (written, plain_number(written)) {
                 ("", _) => None,
                 (_, Some(value)) => Some(value),
                 (_, None) => {
@@ -90,12 +91,4 @@ impl Arguments {
     pub(super) fn fault(&self, words: &Words<'_, '_>, message: Text, label: Text) -> Fault {
         words.fault(refusal::hole(message, label), self.span)
     }
-}
-
-/// A plain decimal number; nothing else that a library would take for one.
-pub(crate) fn number(text: &str) -> Option<f64> {
-    let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
-    let plain = digits.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.')
-        && digits.bytes().any(|byte| byte.is_ascii_digit());
-    plain.then(|| text.parse().ok()).flatten()
 }

@@ -7,13 +7,14 @@ use nc_syntax::dialect::{Action, Called};
 use nc_syntax::{Block, ItemKind, Reader, Span, Value};
 use units::math;
 
-use super::{Writer, angle, arguments, called, dimension, names_axes};
+use super::{Writer, angle, called, dimension, names_axes};
+use crate::came::{Came, Fault};
 use crate::codes;
 use crate::known::{Motion, motion};
-use crate::lowering::{Came, Fault};
 use crate::output::{Style, word};
 use crate::refusals::called as refusal;
 use crate::shorthand::{AXES, Words, add, line_of, numbers, shown};
+use crate::siemens::plain_number;
 
 impl Writer<'_> {
     /// `X=AC()`, `X=IC()` and `TURN=` in a block.
@@ -50,7 +51,7 @@ impl Writer<'_> {
             let (letter, place) = match item.kind {
                 ItemKind::Word { letter, value: Value::Expression } => {
                     let Some((inside, by)) = dimension(letter, block.text(item.span)) else { continue };
-                    let Some(value) = arguments::number(inside) else {
+                    let Some(value) = plain_number(inside) else {
                         return Err(refuse(
                             item.span,
                             both!(
@@ -86,7 +87,7 @@ impl Writer<'_> {
                                 "a plain number of degrees was expected",
                                 "ожидалось простое число градусов"
                             );
-                            let value = value.and_then(arguments::number);
+                            let value = value.and_then(plain_number);
                             angle = Some((value.ok_or_else(|| refuse(item.span, label))?, item.span));
                         }
                         Some(Called::Turns) => {

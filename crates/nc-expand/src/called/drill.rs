@@ -6,9 +6,9 @@ use nc_syntax::dialect::Action;
 
 use super::hole::{Hole, Move};
 use super::{Writer, names_axes};
+use crate::came::Fault;
 use crate::codes;
 use crate::known::{Motion, motion};
-use crate::lowering::Fault;
 use crate::refusals::called as refusal;
 use crate::shorthand::{AXES, Words, line_of, number};
 

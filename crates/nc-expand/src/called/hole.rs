@@ -9,7 +9,7 @@ use nc_syntax::dialect::Called;
 use toolpath::{MOST_PECKS, Retreat, Stroke, strokes};
 
 use super::arguments::Arguments;
-use crate::lowering::Fault;
+use crate::came::Fault;
 use crate::refusals::called as refusal;
 use crate::shorthand::Words;
 

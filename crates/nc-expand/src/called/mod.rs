@@ -26,13 +26,12 @@ use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Called};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Span, Value};
 
-use crate::known::{Rewriting, motion};
-use crate::lowering::{Came, Fault, Lower};
+use crate::came::{Came, Fault};
+use crate::known::{Lower, Rewriting, motion};
 use crate::refusals::called as refusal;
 use crate::shorthand::{AXES, Corners, Words, numbers, shown};
 use crate::siemens;
 use arguments::Arguments;
-pub(crate) use arguments::number as plain_number;
 use hole::Hole;
 
 /// True where the block has a name that this dialect writes out.

@@ -5,7 +5,7 @@ use units::math;
 
 use super::Writer;
 use super::arguments::Arguments;
-use crate::lowering::Fault;
+use crate::came::Fault;
 use crate::refusals::called as refusal;
 use crate::shorthand::Words;
 

@@ -12,9 +12,9 @@ use diagnostic::Refusal;
 use nc_syntax::Span;
 use units::math;
 
-use super::emit::Code;
+use super::place::Code;
 use super::{MILLION, Spot, Writer};
-use crate::lowering::Fault;
+use crate::came::Fault;
 use crate::refusals::threads as refusal;
 
 /// Passes of one thread; more are a wrong infeed.
@@ -55,11 +55,13 @@ impl Writer<'_, '_, '_> {
         let shift = |depth: f64| (depth - crest) * slope;
         let mut depths = Vec::new();
         for pass in 1..=MOST_PASSES {
-            let depth = crest + first * math::powf(f64::from(pass), 1.0 / degression);
-            if depth >= whole {
+            let share = math::powf(f64::from(pass), 1.0 / degression);
+            // In the program's own unit, as the interpreter reckons: whether a pass as deep as the thread, but for the last
+            // digit, is one more or the last one hangs on it.
+            if crest / MILLION + first / MILLION * share >= height / MILLION + crest / MILLION {
                 break;
             }
-            depths.push(depth);
+            depths.push(crest + first * share);
         }
         if depths.len() == MOST_PASSES as usize {
             return refuse(refusal::TOO_MANY_PASSES);

@@ -9,10 +9,9 @@ use nc_syntax::{Dialect, ItemKind, Span, Value};
 use units::math;
 
 use super::drawing::{self, Drawing};
-use super::emit::Code;
-use super::place::may_stand_beside;
+use super::place::{Code, Point, may_stand_beside};
 use super::{Spot, Writer, cycle_of};
-use crate::lowering::{Came, Fault, Held};
+use crate::came::{Came, Fault, Held};
 use crate::refusals::contours as refusal;
 use crate::shorthand::Words;
 
@@ -41,7 +40,6 @@ pub(super) fn numbers(blocks: &[Came<'_>], dialect: &Dialect) -> Numbers {
 
 /// Index in the plane: radius (X), or Z.
 pub(super) type Axis = usize;
-pub(super) type Point = [f64; 2];
 
 /// One block of a contour.
 #[derive(Clone, Debug)]

@@ -13,12 +13,10 @@ use nc_syntax::dialect::{Action, CornerForm, Turning};
 use nc_syntax::{Block, Item, ItemKind, Span, Value};
 use units::math;
 
-use super::contour::Point;
-use super::emit::Code;
-use super::place::{diameters, plane, spot, standing};
+use super::place::{Code, Point, diameters, plane, spot, standing};
 use super::{AXES, MILLION, Spot, cycle_of};
+use crate::came::{Came, Fault};
 use crate::known::{Known, Rewriting};
-use crate::lowering::{Came, Fault};
 use crate::refusals::drawings;
 use crate::shorthand::{Shape, Words, add, number, shown};
 

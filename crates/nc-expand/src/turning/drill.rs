@@ -14,9 +14,10 @@ use nc_syntax::dialect::{DrillPecks, DrillR};
 use nc_syntax::{Item, ItemKind, Number, Span, Value};
 use toolpath::{MOST_PECKS, Retreat, Stroke, peck_depths, strokes, whole_pecks};
 
-use super::emit::{Code, Moves};
+use super::emit::Moves;
+use super::place::Code;
 use super::{Spot, Writer};
-use crate::lowering::Fault;
+use crate::came::Fault;
 use crate::output::{Style, word};
 use crate::refusals::turning as refusal;
 use crate::shorthand::Words;

@@ -4,31 +4,11 @@ use nc_program::modal::Modal;
 use nc_syntax::dialect::Action;
 use nc_syntax::{Item, ItemKind, Span, Value};
 
-use super::place::{may_stand_beside, millionths};
+use super::place::{CODES, Code, may_stand_beside, millionths};
 use super::{AXES, MILLION, Spot, Writer};
-use crate::lowering::Fault;
-use crate::output::From;
+use crate::came::{Fault, From};
 use crate::refusals::turning as refusal;
 use crate::shorthand::{Words, add, number, shown};
-
-/// What a written move is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Code {
-    Rapid,
-    Line,
-    Clockwise,
-    CounterClockwise,
-    Thread,
-}
-
-/// Which codes of a dialect they are.
-pub(super) const CODES: [(Action, Code); 5] = [
-    (Action::Rapid, Code::Rapid),
-    (Action::Line, Code::Line),
-    (Action::ArcClockwise, Code::Clockwise),
-    (Action::ArcCounterClockwise, Code::CounterClockwise),
-    (Action::Thread, Code::Thread),
-];
 
 /// The moves of one cycle on their way out.
 #[derive(Debug)]

@@ -7,8 +7,11 @@
 
 use nc_syntax::dialect::Pockets;
 
-use super::contour::Point;
 use super::pieces::{MOST, Misfit, Round, SAME, SLACK, Segment, Stroke, length, sub};
+use super::place::Point;
+
+/// What a few dozen roundings of lengths below a metre come to, mm.
+const LAST_DIGITS: f64 = 1e-9;
 
 /// Passes of a depth down to a contour, the first piece of which dives.
 pub(super) fn cut(
@@ -21,6 +24,32 @@ pub(super) fn cut(
     let mut cut = Cut { segments, at, strokes: vec![Stroke::Rapid(at)], depth, escape };
     cut.down(pockets)?;
     Ok(cut.strokes)
+}
+
+/// Whether as many moves come of a contour that lies higher or lower by the last digits of its numbers.
+///
+/// Levels come of differences, a contour that is moved off of sums: where one lies on the other but for their last digits,
+/// whether a pass is cut there depends on how the interpreter rounds on its way to either. Numbers that binary fractions hold
+/// are the same to everybody.
+pub(super) fn passes_are_certain(segments: &[Segment], pockets: Pockets, depth: f64, escape: f64) -> bool {
+    let exact = |value: f64| (value * f64::from(1_u32 << 20)).fract() == 0.0;
+    if exact(depth) && segments.iter().all(|segment| exact(segment.start[1]) && exact(segment.end[1])) {
+        return true;
+    }
+    let start = segments[0].start;
+    let moves = |by: f64| {
+        let raised = |p: Point| if p[1] == start[1] { p } else { [p[0], p[1] + by] };
+        let raise = |segment: &Segment| Segment {
+            start: raised(segment.start),
+            end: raised(segment.end),
+            round: segment
+                .round
+                .map(|round| Round { centre: [round.centre[0], round.centre[1] + by], ..round }),
+        };
+        let raised: Vec<Segment> = segments.iter().map(raise).collect();
+        cut(&raised, pockets, depth, escape).map_or(0, |strokes| strokes.len())
+    };
+    moves(LAST_DIGITS) == moves(-LAST_DIGITS)
 }
 
 /// Passes on their way.

@@ -38,8 +38,8 @@ use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
 use nc_syntax::{Block, Dialect, Number, Span};
 
-use crate::known::Rewriting;
-use crate::lowering::{Came, Fault, Held, Lower};
+use crate::came::{Came, Fault, Held};
+use crate::known::{Lower, Rewriting};
 use crate::refusals::turning as refusal;
 use crate::shorthand::{Words, actions};
 use drawing::Drawing;

@@ -14,9 +14,10 @@ use nc_syntax::dialect::{Action, TurningCycle};
 use nc_syntax::{ItemKind, Span};
 use units::math;
 
-use super::emit::{Code, Moves};
+use super::emit::Moves;
+use super::place::Code;
 use super::{MILLION, Spot, Writer};
-use crate::lowering::Fault;
+use crate::came::Fault;
 use crate::refusals::turning as refusal;
 use crate::shorthand::{Words, shown};
 

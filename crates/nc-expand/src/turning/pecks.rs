@@ -11,10 +11,10 @@ use nc_syntax::Span;
 use nc_syntax::dialect::TurningCycle;
 use toolpath::{Retreat, peck_depths, whole_pecks};
 
-use super::emit::Code;
+use super::place::Code;
 use super::{Spot, Writer};
+use crate::came::Fault;
 use crate::codes;
-use crate::lowering::Fault;
 use crate::refusals::turning as refusal;
 
 /// Pecks of one cycle at all its places; more are a wrong step.

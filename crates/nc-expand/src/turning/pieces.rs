@@ -2,7 +2,7 @@
 
 use units::math;
 
-use super::contour::Point;
+use super::place::Point;
 
 /// Largest reversal inside one piece; moves shorter than this are dropped.
 pub(super) const SLACK: f64 = 1e-3;
@@ -24,6 +24,8 @@ pub(super) enum Misfit {
     Straight,
     /// The passes come to no end, or there are too many.
     Endless,
+    /// A pass lies at the height of a place of the contour but for the last digits of both.
+    Level,
     /// A climbing piece does not begin where the one before ends.
     Apart,
 }

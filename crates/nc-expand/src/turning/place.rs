@@ -4,9 +4,30 @@ use nc_program::modal::{Modal, Units, XWords};
 use nc_syntax::dialect::Action;
 use units::decimal::{self, Decimal};
 
-use super::emit::{CODES, Code};
 use super::{AXES, MILLION, Spot};
 use crate::shorthand::Words;
+
+/// Radius and Z.
+pub(super) type Point = [f64; 2];
+
+/// What a written move is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Code {
+    Rapid,
+    Line,
+    Clockwise,
+    CounterClockwise,
+    Thread,
+}
+
+/// Which codes of a dialect they are.
+pub(super) const CODES: [(Action, Code); 5] = [
+    (Action::Rapid, Code::Rapid),
+    (Action::Line, Code::Line),
+    (Action::ArcClockwise, Code::Clockwise),
+    (Action::ArcCounterClockwise, Code::CounterClockwise),
+    (Action::Thread, Code::Thread),
+];
 
 /// Where X and Z stand, as far as the program has said.
 pub(super) fn standing(modal: &Modal) -> [Option<i64>; 2] {

@@ -15,9 +15,9 @@
 
 use nc_syntax::dialect::Pockets;
 
-use super::contour::Point;
-use super::levels::cut;
+use super::levels::{cut, passes_are_certain};
 use super::pieces::{MOST, Misfit, Round, SAME, Segment, Stroke, along, cross, dot, length, middle, sub};
+use super::place::Point;
 
 /// Pieces that part by more along the first axis get an arc between them.
 const GAP: f64 = 1e-2;
@@ -166,6 +166,9 @@ impl Profile {
         if last[1] < start[1] {
             let out = Segment { start: last, end: [last[0], start[1]], round: None };
             self.segments.push(out);
+        }
+        if distance != 0.0 && !passes_are_certain(&self.segments, pockets, depth, escape) {
+            return Err(Misfit::Level);
         }
         let strokes = cut(&self.segments, pockets, depth, escape)?;
         Ok(self.told(strokes))

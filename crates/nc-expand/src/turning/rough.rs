@@ -16,10 +16,11 @@ use nc_program::Compensation;
 use nc_syntax::dialect::TurningCycle;
 use nc_syntax::{ItemKind, Span};
 
-use super::contour::{Axis, Contour, Point, Way};
-use super::emit::{Code, Moves};
+use super::contour::{Axis, Contour, Way};
+use super::emit::Moves;
+use super::place::{Code, Point};
 use super::{MILLION, Spot, Writer, cycle_of};
-use crate::lowering::{Fault, Held};
+use crate::came::{Fault, Held};
 use crate::refusals::{contours, turning as refusal};
 use crate::shorthand::{Words, shown};
 

@@ -17,11 +17,11 @@ use nc_syntax::{ItemKind, Span, Value};
 
 use toolpath::Plane;
 
-use super::emit::Code;
 use super::pieces::{Misfit, Round, Segment, Stroke};
+use super::place::Code;
 use super::profile::Profile;
 use super::{MILLION, Spot, Writer};
-use crate::lowering::Fault;
+use crate::came::Fault;
 use crate::refusals::routines as refusal;
 use crate::shorthand::{Words, numbers, shown};
 
@@ -248,6 +248,16 @@ impl Misfit {
                 both!(
                     "the contour has no place at some depth, or the depth is too small",
                     "на какой-то глубине у контура нет точки, или глубина слишком мала"
+                ),
+            ),
+            Self::Level => (
+                both!(
+                    "a pass lies as deep as a place of the contour, but for the last digits of both",
+                    "проход лежит на глубине точки контура с точностью до последних знаков"
+                ),
+                both!(
+                    "whether the interpreter cuts there hangs on its rounding: take I or D a thousandth larger",
+                    "режет ли там интерпретатор, зависит от его округления: увеличьте I или D на тысячную"
                 ),
             ),
             Self::Apart => (

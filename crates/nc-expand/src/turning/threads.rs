@@ -18,9 +18,9 @@ use nc_syntax::Span;
 use nc_syntax::dialect::FlankFrom;
 use units::math;
 
-use super::emit::Code;
+use super::place::Code;
 use super::{Spot, Writer};
-use crate::lowering::Fault;
+use crate::came::Fault;
 use crate::refusals::threads as refusal;
 use crate::shorthand::Words;
 

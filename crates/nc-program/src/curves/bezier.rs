@@ -5,11 +5,12 @@ use nc_syntax::Letters;
 use nc_syntax::dialect::CurveCode;
 use toolpath::{Bezier, Division, Feed, MOST_DEGREE, Motion, Position, Shape};
 
-use super::{CurvePart, is_curve, plane_axes};
+use super::{is_curve, plane_axes};
 use crate::environment::Environment;
-use crate::frames::settle;
+use crate::feed::feed_rate;
+use crate::frame_state::settle;
 use crate::modal::{Modal, MotionMode, Units};
-use crate::motion::{Moved, feed_rate};
+use crate::moved::{CurvePart, Moved};
 use crate::position::{end, require_frame, require_known};
 use crate::refusals::curves as refusal;
 use crate::words::{AXIS_LETTERS, Outcome, Words};

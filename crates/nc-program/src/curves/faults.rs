@@ -4,8 +4,8 @@ use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::{Letters, Span};
 use toolpath::NurbsFault;
 
-use super::Begun;
 use crate::refusals::curves as refusal;
+use crate::under_way::CurveBegun;
 use crate::words::Words;
 
 pub(super) fn weight_refused(words: &Words<'_, '_, '_>, letter: Letters) -> Box<Diagnostic> {
@@ -43,7 +43,7 @@ pub(super) fn of_fault(words: &Words<'_, '_, '_>, span: Span, fault: &NurbsFault
     }
 }
 
-pub(super) fn every_knot(begun: &Begun) -> Text {
+pub(super) fn every_knot(begun: &CurveBegun) -> Text {
     both!(
         "write as many blocks with K alone behind the control points as the order says, {}",
         "после контрольных точек напишите столько кадров с одним K, каков порядок: {}",

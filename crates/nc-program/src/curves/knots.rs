@@ -7,14 +7,15 @@ use toolpath::{MOST_DEGREE, Nurbs, NurbsFault, Position};
 
 use super::faults::{every_knot, of_fault, order_refused, weight_refused};
 use super::points::both_axes;
-use super::{Begun, CurvePart, POINT_LETTERS, cut, not_skipped, plane_axes};
+use super::{POINT_LETTERS, cut, not_skipped, plane_axes};
 use crate::codes;
 use crate::environment::Environment;
-use crate::frames::settle;
+use crate::frame_state::settle;
 use crate::modal::{Distance, Modal, MotionMode};
-use crate::motion::Moved;
+use crate::moved::{CurvePart, Moved};
 use crate::position::{end, require_frame, require_known};
 use crate::refusals::curves as refusal;
+use crate::under_way::CurveBegun;
 use crate::words::{LINEAR_LETTERS, Outcome, Words};
 
 /// A block of G6.2.
@@ -76,7 +77,7 @@ pub(super) fn knot(
     if in_plane {
         state.motion = MotionMode::None;
     }
-    let Begun { degree, points_mm, weights, knots, start, axes, .. } = *begun;
+    let CurveBegun { degree, points_mm, weights, knots, start, axes, .. } = *begun;
     cut(words, state, moved, &Nurbs { degree, points_mm, weights, knots }, &start, axes, span)
 }
 
@@ -98,7 +99,7 @@ fn begin(
     axes: Letters,
     written: bool,
     span: Span,
-) -> Outcome<Begun> {
+) -> Outcome<CurveBegun> {
     if !written {
         return Err(words.refuse(refusal::WORDS_BEHIND_END_OF_CURVE, span));
     }
@@ -108,13 +109,13 @@ fn begin(
     let line = words.block.line;
     let (points_mm, weights, knots) = (vec![], vec![], vec![]);
     let at = words.block.file_range();
-    Ok(Begun { line, at, form, start, degree: 3, points_mm, weights, knots, axes, pointed: None })
+    Ok(CurveBegun { line, at, form, start, degree: 3, points_mm, weights, knots, axes, pointed: None })
 }
 
 /// P in the first block.
 fn order(
     words: &Words<'_, '_, '_>,
-    begun: &mut Begun,
+    begun: &mut CurveBegun,
     first: bool,
     in_plane: bool,
     span: Span,
@@ -132,7 +133,7 @@ fn order(
 }
 
 /// K, not before the one in front of it.
-fn next_knot(words: &Words<'_, '_, '_>, begun: &mut Begun, in_plane: bool, span: Span) -> Outcome<()> {
+fn next_knot(words: &Words<'_, '_, '_>, begun: &mut CurveBegun, in_plane: bool, span: Span) -> Outcome<()> {
     let Some(knot) = words.coordinate(b'K', false) else {
         return Err(words.refuse(refusal::BLOCK_WITHOUT_KNOT, span));
     };
@@ -148,7 +149,7 @@ fn next_knot(words: &Words<'_, '_, '_>, begun: &mut Begun, in_plane: bool, span:
 }
 
 /// The weight of a control point that names the axes of the first.
-fn weight_of(words: &Words<'_, '_, '_>, begun: &Begun, axes: Letters) -> Outcome<f64> {
+fn weight_of(words: &Words<'_, '_, '_>, begun: &CurveBegun, axes: Letters) -> Outcome<f64> {
     let span = words.span(LINEAR_LETTERS);
     if begun.knots.len() > begun.points_mm.len() + 1 {
         return Err(words.refuse(refusal::CONTROL_POINT_BEHIND_KNOTS_ALONE, span));

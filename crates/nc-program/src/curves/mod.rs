@@ -10,8 +10,6 @@ mod faults;
 mod knots;
 mod points;
 
-use std::ops::Range;
-
 use diagnostic::{Diagnostic, Refusal, Text, both};
 use nc_syntax::dialect::CurveCode;
 use nc_syntax::{Letters, Span};
@@ -19,40 +17,13 @@ use toolpath::{Division, Feed, Motion, Nurbs, Plane, Position, Shape};
 
 use crate::codes;
 use crate::environment::Environment;
+use crate::feed::feed_rate;
 use crate::modal::{Axis, Distance, FeedMode, Modal, Naming};
-use crate::motion::{Moved, compensated, feed_rate};
+use crate::moved::{CurvePart, Moved};
+use crate::offset::compensated;
 use crate::refusals::curves as refusal;
+use crate::under_way::CurveBegun;
 use crate::words::{AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, Preparatory, ROTARY_LETTERS, Words};
-
-/// What a block is of a curve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CurvePart {
-    /// It says a part of one that a later block cuts: nothing moves yet.
-    Said,
-    /// The curve is whole: its motions are the block's.
-    Cut,
-}
-
-/// A curve of several blocks that is not whole yet.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Begun {
-    /// Line of its first block.
-    pub line: u64,
-    /// Its first block in the file.
-    at: Range<u64>,
-    form: CurveCode,
-    /// What stays as it is until the curve is whole.
-    start: Position,
-    degree: usize,
-    /// Axis commands, mm.
-    points_mm: Vec<[f64; 3]>,
-    weights: Vec<f64>,
-    knots: Vec<f64>,
-    /// Axes that its control points name.
-    axes: Letters,
-    /// Whether K and R above zero have a decimal point, where one has been read.
-    pointed: Option<bool>,
-}
 
 /// More control points than any program has: the state of a program is carried from block to block.
 const MOST_POINTS: usize = 4096;
@@ -143,7 +114,7 @@ fn plane_axes(words: &Words<'_, '_, '_>, state: &Modal, form: CurveCode, span: S
     Ok(Letters::of(&[LINEAR[first], LINEAR[second]]))
 }
 
-impl Begun {
+impl CurveBegun {
     fn add(&mut self, words: &Words<'_, '_, '_>, place_mm: [f64; 3], weight: f64) -> Outcome<()> {
         if self.points_mm.len() == MOST_POINTS {
             return Err(
@@ -233,7 +204,7 @@ pub(crate) fn check(
 }
 
 /// The refusal of what stands inside a curve.
-pub(crate) fn open(words: &Words<'_, '_, '_>, begun: &Begun, span: Span) -> Box<Diagnostic> {
+pub(crate) fn open(words: &Words<'_, '_, '_>, begun: &CurveBegun, span: Span) -> Box<Diagnostic> {
     let label = both!("{} stands inside it", "внутри неё стоит {}", words.text(span));
     let help = match begun.form {
         CurveCode::Knots | CurveCode::PlaneKnots => faults::every_knot(begun),
@@ -245,7 +216,7 @@ pub(crate) fn open(words: &Words<'_, '_, '_>, begun: &Begun, span: Span) -> Box<
     words.refuse(Refusal { code: codes::CURVE_OPEN, message: begun.is_not_whole(), label, help }, span)
 }
 
-impl Begun {
+impl CurveBegun {
     fn is_not_whole(&self) -> Text {
         both!("the curve of line {} is not whole", "кривая из строки {} не окончена", self.line)
     }

@@ -6,13 +6,14 @@ use nc_syntax::{Letters, Span};
 use toolpath::{MOST_DEGREE, Nurbs};
 
 use super::faults::{order_refused, weight_refused};
-use super::{Begun, CurvePart, POINT_LETTERS, cut, not_skipped, plane_axes};
+use super::{POINT_LETTERS, cut, not_skipped, plane_axes};
 use crate::environment::Environment;
-use crate::frames::settle;
+use crate::frame_state::settle;
 use crate::modal::{Modal, MotionMode};
-use crate::motion::Moved;
+use crate::moved::{CurvePart, Moved};
 use crate::position::{end, require_frame, require_known};
 use crate::refusals::curves as refusal;
+use crate::under_way::CurveBegun;
 use crate::words::{Outcome, Words};
 
 /// A control point of G5.2.
@@ -35,7 +36,7 @@ pub(super) fn point(
         let line = words.block.line;
         let (points_mm, weights) = (vec![start.linear_mm], vec![1.0]);
         let form = CurveCode::Points;
-        Box::new(Begun {
+        Box::new(CurveBegun {
             line,
             at: words.block.file_range(),
             form,

@@ -166,3 +166,16 @@ pub(crate) fn full_circle_by_r([one, two]: [char; 2]) -> Refusal {
         help: both!("use {one}/{two} centre form", "задайте центр словами {one}/{two}"),
     }
 }
+
+pub(crate) const ROTARY_AXIS_TURNS_ALONG_ARC: Refusal = Refusal {
+    code: codes::SIMULTANEOUS,
+    message: Text::pair("a rotary axis turns along an arc", "вдоль дуги вращается поворотная ось"),
+    label: Text::pair(
+        "seen from the workpiece this is no arc, and no arc corrects it",
+        "для детали это не дуга, и дугой её не исправить",
+    ),
+    help: Text::pair(
+        "let the CAM write lines, or turn the rotary axis in a block of its own",
+        "выводите из CAM прямые или поверните ось отдельным кадром",
+    ),
+};

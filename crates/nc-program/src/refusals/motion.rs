@@ -174,16 +174,3 @@ pub(crate) fn turn_under_compensation(letters: &str) -> Refusal {
         ),
     }
 }
-
-pub(crate) const ROTARY_AXIS_TURNS_ALONG_ARC: Refusal = Refusal {
-    code: codes::SIMULTANEOUS,
-    message: Text::pair("a rotary axis turns along an arc", "вдоль дуги вращается поворотная ось"),
-    label: Text::pair(
-        "seen from the workpiece this is no arc, and no arc corrects it",
-        "для детали это не дуга, и дугой её не исправить",
-    ),
-    help: Text::pair(
-        "let the CAM write lines, or turn the rotary axis in a block of its own",
-        "выводите из CAM прямые или поверните ось отдельным кадром",
-    ),
-};

@@ -5,12 +5,15 @@ What the command ``vpost`` does, on texts and arrays: the same bytes, the same d
 Lengths are millimetres, errors micrometres, angles of axes degrees; the name of each array says its unit.
 """
 
+from ._calibration import Calibration, calibrate
 from ._diagnosis import Cause, Change, Diagnosis, Gap, Parameter, diagnose
 from ._messages import Error, Message, NotFiniteError, Refused, ShapeError, UnitsError
-from ._points import ErrorMap, Predicted, Solved, map, predict, solve
+from ._points import Budget, ErrorMap, Predicted, Solved, budget, map, predict, solve
 from ._programs import Checked, Corrected, check, correct
 
 __all__ = [
+    "Budget",
+    "Calibration",
     "Cause",
     "Change",
     "Checked",
@@ -27,6 +30,8 @@ __all__ = [
     "ShapeError",
     "Solved",
     "UnitsError",
+    "budget",
+    "calibrate",
     "check",
     "correct",
     "diagnose",

@@ -32,7 +32,7 @@ def three(values: Sequence[float], what: str) -> str:
 
 
 def options(
-    profile: Path,
+    profile: Optional[Path],
     *,
     dialect: Optional[Path] = None,
     engine: Optional[str] = None,
@@ -51,7 +51,7 @@ def options(
     guard: bool = False,
 ) -> List[str]:
     """The words of a command line."""
-    words = [f"--machine={os.fspath(profile)}"]
+    words = [] if profile is None else [f"--machine={os.fspath(profile)}"]
     if dialect is not None:
         words.append(f"--dialect={os.fspath(dialect)}")
     if engine is not None:
@@ -80,4 +80,22 @@ def options(
         words.append(f"--outside={outside}")
     words.extend(["--strict"] if strict else [])
     words.extend(["--guard"] if guard else [])
+    return words
+
+
+def spelt(**asked: Union[None, bool, float, str, Sequence[str]]) -> List[str]:
+    """The words of options that one job has: a list is an option that repeats, None and False are not asked for."""
+    words = []
+    for name, value in asked.items():
+        option = f"--{name.replace('_', '-')}"
+        if value is None or value is False:
+            continue
+        if value is True:
+            words.append(option)
+        elif isinstance(value, int):
+            words.append(f"{option}={value}")
+        elif isinstance(value, float):
+            words.append(f"{option}={number(value, name)}")
+        else:
+            words.extend(f"{option}={one}" for one in ([value] if isinstance(value, str) else value))
     return words

@@ -6,7 +6,7 @@ mod text;
 pub use arguments::Budget;
 
 use diagnostic::both;
-use jobs::budget::{Asked, Points, json, of};
+use jobs::budget::{json, of};
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
@@ -18,24 +18,14 @@ use crate::{file, profile};
 pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let profile::Loaded { profile, files, .. } = profile::load_mill(machine(&shared.job)?)?;
     Roles::default()
-        .reads_all(&both!("the control points", "контрольные точки"), &arguments.points)
+        .reads_all(&both!("the control points", "контрольные точки"), &arguments.asked.points)
         .reads_all(&both!("read by the profile", "файл, который читает профиль"), &files)
         .writes("--json", arguments.json.as_deref())
         .are_apart()?;
-    let points = match (&arguments.ball, &arguments.points) {
-        (Some(ball), _) => Points::Ball(ball),
-        (None, Some(path)) => Points::File(file::name(path), file::read(path)?),
-        (None, None) => Points::Grid(&arguments.grid, arguments.rotary.as_ref()),
-    };
-    let asked = Asked {
-        points,
-        tool_vector: arguments.tool_vector.as_ref(),
-        datum: arguments.datum.as_deref(),
-        target_um: arguments.target,
-        keep: &arguments.keep,
-    };
-    let (study, warnings) = of(&shared.job, &profile, &asked)?;
+    let mut warnings = Vec::new();
+    let study = of(&shared.job, &profile, &arguments.asked, &file::read, &mut warnings);
     warnings.iter().for_each(|report| messages.report(report));
+    let study = study?;
     if let Some(path) = &arguments.json {
         file::write(path, &json::bytes(&study))?;
     }

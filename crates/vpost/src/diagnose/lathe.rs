@@ -4,6 +4,8 @@ use std::path::Path;
 
 use calibration::turning::{Bar, CauseRow, Change, Feature, Stretch, TurnedReading, lathe_causes};
 use diagnostic::{Speaks, Text, both};
+use jobs::calibrate::codes::{CELL, UNITS, question};
+use jobs::calibrate::{MOST_UM, base_of, by_effects, part_name, sources, stood_at, vector_mm};
 use jobs::diagnose::{File, json};
 use jobs::profile::Loaded;
 use machine_profile::{LatheParts, Profile};
@@ -13,9 +15,6 @@ use super::options::Diagnose;
 use super::report::Facts;
 use super::summary;
 use crate::arguments::Shared;
-use crate::calibrate::codes::{CELL, UNITS, question};
-use crate::calibrate::sources;
-use crate::calibrate::turning::{MOST_UM, base_of, by_effects, part_name, stood_at, vector_mm};
 use crate::file;
 use crate::message::{Failure, Messages};
 
@@ -202,7 +201,7 @@ impl Also {
 
 impl Parts {
     fn read(&mut self, path: &Path, profile: &Profile, ignore: &[String]) -> Result<(), Failure> {
-        let sheet = sources::sheet(path, COLUMNS, EXPECTED, ignore)?;
+        let sheet = sources::sheet((file::name(path), file::read(path)?), COLUMNS, EXPECTED, ignore)?;
         sheet.need(&["part", "z_mm", "diameter_mm"], EXPECTED)?;
         let also = &mut self.also;
         self.read.add(sheet, |row| also.one(row, profile))
@@ -244,7 +243,7 @@ impl Parts {
     /// Takes off what the profile says of each row.
     fn predict(&mut self, profile: &Profile, lathe: &LatheParts, shared: &Shared) -> Result<(), Failure> {
         let base = base_of(profile, lathe);
-        by_effects(&mut self.also.commands, profile, &base, shared)?;
+        by_effects(&mut self.also.commands, profile, &base, &shared.job)?;
         let stretch = Stretch { low_mm: 0.0, high_mm: 1.0 };
         let predicted = base
             .predicted_mm(&Change::default(), stretch, &self.also.commands)

@@ -12,11 +12,11 @@ use report::scale::nice;
 use report::text::{MICROMETRES, opening};
 
 use super::dominant;
-use super::drawn::classes;
 use super::text::{proof, second_order_lines};
 use crate::origin::{MACHINE, MODEL, Origin, PROFILE};
 use jobs::map::deformation;
 use jobs::map::dominant::Dominant;
+use jobs::map::drawn::classes;
 use jobs::map::study::{Part, Study, freedom_name};
 
 /// Nodes drawn along an axis of the volume, at most: thinned in the drawing, not in the numbers.

@@ -1,6 +1,5 @@
 //! Forward for a lathe: what a program leaves of the workpiece.
 
-pub(crate) mod judged;
 mod page;
 mod wear;
 

@@ -8,11 +8,11 @@ use report::text::shown;
 use serde::Serialize;
 use turning::Lathe;
 
-use super::judged::{Form, Outline, mm, ridges, um};
 use crate::file;
 use crate::message::{Failure, Wording};
 use crate::origin::{Origin, PROFILE};
 use crate::settings::Settings;
+use jobs::turned::judged::{Form, Outline, mm, ridges, um};
 use jobs::turned::surface::{HIGHEST_WAVE, Stretch, Surface, Turned};
 
 mod outline;

@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use machine_model::Vector;
 
-use super::judged::Outline;
 use crate::figures::fixed;
 use crate::settings::Settings;
+use jobs::turned::judged::Outline;
 use jobs::turned::surface::{Surface, Turned};
 
 /// The smallest largest deviation that one offset leaves, of some places.

@@ -6,8 +6,8 @@ use report::chart::{Curves, curves_with};
 use report::numbers::or_dash;
 use report::scale::nice;
 
-use super::super::judged::{Outline, mm, um};
 use super::Shown;
+use jobs::turned::judged::{Outline, mm, um};
 
 /// Places that are drawn, at most: of more that lie between two, the worst.
 const MOST_DRAWN: usize = 1500;

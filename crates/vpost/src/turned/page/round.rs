@@ -9,9 +9,9 @@ use serde::Serialize;
 use turning::Lathe;
 use units::math;
 
-use super::super::judged::{mm, um};
 use crate::figures::round;
 use crate::message::{Failure, OPTION, notice};
+use jobs::turned::judged::{mm, um};
 use jobs::turned::surface::{ANGLES, HIGHEST_WAVE, Place, Stretch, Turned};
 
 /// Roundness that differs by less is the same, µm.
