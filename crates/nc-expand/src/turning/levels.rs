@@ -26,7 +26,7 @@ pub(super) fn cut(
     Ok(cut.strokes)
 }
 
-/// Whether as many moves come of a contour that lies higher or lower by the last digits of its numbers.
+/// Whether the same moves come of a contour that lies higher or lower by the last digits of its numbers.
 ///
 /// Levels come of differences, a contour that is moved off of sums: where one lies on the other but for their last digits,
 /// whether a pass is cut there depends on how the interpreter rounds on its way to either. Numbers that binary fractions hold
@@ -47,9 +47,11 @@ pub(super) fn passes_are_certain(segments: &[Segment], pockets: Pockets, depth: 
                 .map(|round| Round { centre: [round.centre[0], round.centre[1] + by], ..round }),
         };
         let raised: Vec<Segment> = segments.iter().map(raise).collect();
-        cut(&raised, pockets, depth, escape).map_or(0, |strokes| strokes.len())
+        cut(&raised, pockets, depth, escape).unwrap_or_default()
     };
-    moves(LAST_DIGITS) == moves(-LAST_DIGITS)
+    let (above, below) = (moves(LAST_DIGITS), moves(-LAST_DIGITS));
+    let alike = |(a, b): (&Stroke, &Stroke)| length(sub(a.end(), b.end())) < SAME;
+    above.len() == below.len() && above.iter().zip(&below).all(alike)
 }
 
 /// Passes on their way.

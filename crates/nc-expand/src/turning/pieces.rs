@@ -43,6 +43,14 @@ pub(super) enum Stroke {
     },
 }
 
+impl Stroke {
+    pub(super) const fn end(&self) -> Point {
+        match *self {
+            Self::Rapid(end) | Self::Line(end) | Self::Arc { end, .. } => end,
+        }
+    }
+}
+
 /// A line, or an arc.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
