@@ -74,8 +74,8 @@ fn cube(edge: &str) -> tempfile::NamedTempFile {
     file
 }
 
-/// The one machine tool that we have points of, in both cubes: written, the ten points that no fit has seen within the limits,
-/// the forecast within ten points of them.
+/// The one machine tool that we have points of, in both cubes: written, the ten points that no fit has seen within the
+/// limits, the forecast within ten points of them.
 #[test]
 fn both_cubes_of_the_stan_s500_are_written() {
     for (edge, limit_um) in [("240", 60.0), ("315", 40.0)] {
@@ -185,8 +185,8 @@ fn a_slip_of_books_must_beat_the_best_cause() {
     assert!((found - 203.0).abs() < 5.0, "{found}");
 }
 
-/// Three edges of a cube whose corner lies some millimetres off the axes: an angle of thousands of µrad has a lever there, and
-/// stands for a squareness, or for one and a scale. The truth of the rows is in the comments.
+/// Three edges of a cube whose corner lies some millimetres off the axes: an angle of thousands of µrad has a lever
+/// there, and stands for a squareness, or for one and a scale. The truth of the rows is in the comments.
 #[test]
 fn edges_of_a_cube_off_the_axes_are_squarenesses_and_scales() {
     let of = |name: &str| {
@@ -206,7 +206,7 @@ fn edges_of_a_cube_off_the_axes_are_squarenesses_and_scales() {
         let found = all.number(&format!("scale.{axis}"), "scale_um_per_m");
         assert!((found - 140.0).abs() < 25.0, "{found} {}", all.said);
     }
-    for answer in [one, all] {
-        assert!(answer.writes() && !answer.profile.contains("angular"), "{}", answer.said);
-    }
+    assert!(all.writes() && !all.profile.contains("angular"), "{}", all.said);
+    // By chance an angle fits these rows better, and is not so unusual that it could be left out of the risk.
+    assert!(!one.writes(), "{}", one.said);
 }

@@ -1,11 +1,11 @@
 //! Where a correction by the causes may be used: decided by what it risks, not by how large it is.
 //!
-//! The rows do not refute one explanation but several: the causes named, and each rival in the place of the cause or the two
-//! causes it stands for. Under each the truth at a place is normal, with the mean and the covariance of its own fit, the set-up
-//! marginalised. A correction `c` makes a place worse where the truth along it is less than half of it, so that the place passes
-//! where with 95 % probability that happens under none of them, by more than what is left of the gap anyway. What physics carries
-//! outwards (a scale, a squareness) passes as far as its number is known; what rivals have otherwise away from the places
-//! measured does not.
+//! The rows do not refute one explanation but several: the causes named, and each rival in the place of the cause or
+//! the two causes it stands for. Under each the truth at a place is normal, with the mean and the covariance of its own
+//! fit, the set-up marginalised. A correction `c` makes a place worse where the truth along it is less than half of it,
+//! so that the place passes where with 95 % probability that happens under none of them, by more than what is left of
+//! the gap anyway. What physics carries outwards (a scale, a squareness) passes as far as its number is known; what
+//! rivals have otherwise away from the places measured does not.
 
 use diagnostic::{Text, both};
 use machine_model::effects::EffectKind;
@@ -104,7 +104,8 @@ impl Assembly<'_> {
             .fold(tail, |most, own| most.max(tail * own))
     }
 
-    /// Explanations beside the one named that the rows do not refute: another effect, or another form, for one cause or for two.
+    /// Explanations beside the one named that the rows do not refute: another effect, or another form, for one cause or
+    /// for two.
     fn not_refuted(&self) -> Vec<Explained> {
         let model = self.model;
         let (library, parts) = (&model.library, &model.parts);
@@ -128,7 +129,8 @@ impl Assembly<'_> {
             };
             for (part, fit) in by_effect(scanned, limit).into_iter().filter(is_other) {
                 let with: Vec<Part> = rest.iter().copied().chain([part]).collect();
-                // What the rows say and what machines usually have, together: an angle that no carriage has may fit better.
+                // What the rows say and what machines usually have, together: an angle that no carriage has may fit
+                // better.
                 let likelier = prior(&with) - own_prior - 0.5 * (fit.score - score);
                 if likelier > units::math::ln(LEAST_WEIGHT) {
                     found.push(self.explained(&with, Some((group[0], part))));
@@ -145,7 +147,8 @@ impl Assembly<'_> {
         sub.terms.into_iter().zip(values).skip(self.model.library.nuisances).collect()
     }
 
-    /// False for faults of the instrument, and for causes that such a fault could have shown as well: nothing is written of them.
+    /// False for faults of the instrument, and for causes that such a fault could have shown as well: nothing is
+    /// written of them.
     fn corrects(&self, kind: EffectKind) -> bool {
         let mut named = self.ordered.iter().filter(|r| self.model.library.kind(r.part) == kind);
         !kind.is_instrument() && !named.any(|r| r.told().any(|rival| rival.kind.is_instrument()))
@@ -194,8 +197,8 @@ impl Grid {
         Self { axes, nodes, samples }
     }
 
-    /// What one of each term displaces, sample by sample at every node, from its mean over the rows: every part of a program is
-    /// touched off somewhere, and a shift of all is nobody's fault.
+    /// What one of each term displaces, sample by sample at every node, from its mean over the rows: every part of a
+    /// program is touched off somewhere, and a shift of all is nobody's fault.
     fn displacements_um(&self, terms: &[Term], assembly: &Assembly<'_>) -> Vec<Vec<Vector>> {
         let data = assembly.data;
         let of_term = |term: &Term| {

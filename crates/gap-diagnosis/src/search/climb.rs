@@ -22,7 +22,8 @@ pub(super) const MOST_CAUSES: usize = 8;
 pub(crate) enum Task {
     /// Looks for causes.
     Search,
-    /// Looks for causes, two in place of two others as well: once the noise is known, for it costs as much as all before.
+    /// Looks for causes, two in place of two others as well: once the noise is known, for it costs as much as all
+    /// before.
     Exchange,
     /// Looks for shapes of other effects that imitate the causes found.
     Imitate,
@@ -74,8 +75,8 @@ pub(crate) fn pass(
 impl State<'_, '_> {
     fn search(&mut self, task: Task) {
         self.refused = None;
-        // What an earlier search named must pass the tests on these rows, too: beside all others where readings hang together,
-        // for what one cause leaves of the others does so as well.
+        // What an earlier search named must pass the tests on these rows, too: beside all others where readings hang
+        // together, for what one cause leaves of the others does so as well.
         if self.setting.is_doubtful() {
             self.weed();
         }
@@ -91,7 +92,13 @@ impl State<'_, '_> {
         self.fit = self.space.fit(&self.library, &self.parts);
         self.propose();
         for _ in 0..60 {
-            let may = |rest: &[Part], part: Part, fit: &Fit| self.objection(rest, part, fit).is_none();
+            let own = self.unlikely(&self.parts, &self.fit);
+            let may = |rest: &[Part], part: Part, fit: &Fit| {
+                let with: Vec<Part> = rest.iter().copied().chain([part]).collect();
+                // What was taken from angles does not go back to them for a better fit alone.
+                let bends = matches!(self.library.kind(part), EffectKind::Angular { .. });
+                self.objection(rest, part, fit).is_none() && (!bends || self.unlikely(&with, fit) <= own)
+            };
             match next_move(&self.space, &self.library, &self.parts, self.fit.score, may) {
                 Move::Change(parts, fit) => {
                     self.complete(&parts);
@@ -108,30 +115,35 @@ impl State<'_, '_> {
                         }
                         Err(refused) => {
                             self.refused = refused.or_else(|| self.refused.take());
-                            if task == Task::Search || !self.exchange() {
+                            if !self.goes_on(task) {
                                 break;
                             }
                         }
                     }
                 }
                 Move::Stop => {
-                    if task == Task::Search || !self.exchange() {
+                    if !self.goes_on(task) {
                         break;
                     }
                 }
             }
         }
-        self.straighten();
         self.prune();
         self.restrain();
     }
 
-    /// Two causes for two others that explain more, each of which passes its tests beside the other; false where there are
-    /// none.
+    /// Where no single change is for the better: several at once; false where there are none either.
+    fn goes_on(&mut self, task: Task) -> bool {
+        task == Task::Exchange && self.exchange() || self.straighten()
+    }
+
+    /// Two causes for two others that explain more, each of which passes its tests beside the other; false where there
+    /// are none.
     ///
-    /// One after the other, a curve that is a little of two causes comes first and stays, and more curves mend what it gets
-    /// wrong: none of them can be changed for the better alone. So is the curve of high order that has taken a slope over: as
-    /// it is, it leaves the scale too little to be named, and a plainer form of it comes only with the scale.
+    /// One after the other, a curve that is a little of two causes comes first and stays, and more curves mend what it
+    /// gets wrong: none of them can be changed for the better alone. So is the curve of high order that has taken a
+    /// slope over: as it is, it leaves the scale too little to be named, and a plainer form of it comes only with the
+    /// scale.
     fn exchange(&mut self) -> bool {
         let parts = self.parts.clone();
         let mut better: Vec<(Fit, Vec<Part>)> = Vec::new();
@@ -166,7 +178,8 @@ impl State<'_, '_> {
         true
     }
 
-    /// A curve, in a plainer form or its own, with its constant and its slope at once, for itself and for one more cause.
+    /// A curve, in a plainer form or its own, with its constant and its slope at once, for itself and for one more
+    /// cause.
     ///
     /// Where neither is in the model a curve of high order, or damage beside it, stands for both, and neither alone is
     /// better than that.
@@ -202,7 +215,7 @@ impl State<'_, '_> {
     }
 
     /// A model without those of its parts from `first` on whose absence makes it no worse.
-    pub(super) fn what_is_needed(&mut self, mut with: Vec<Part>, first: usize) -> (Fit, Vec<Part>) {
+    fn what_is_needed(&mut self, mut with: Vec<Part>, first: usize) -> (Fit, Vec<Part>) {
         self.complete(&with);
         let mut fit = self.space.fit(&self.library, &with);
         for place in (first..with.len()).rev() {
@@ -250,9 +263,9 @@ impl State<'_, '_> {
     ///
     /// What few runs cannot prove (a knock between two of them explains their offsets) does not keep the next ones from
     /// their tests, and neither does a form that breaks its bounds: two waves of a probe that cancel by tenths of a
-    /// millimetre say nothing of the play behind them. What does not hold on other lines ends the search: the structure is
-    /// there, and has no name. But two faults may hide each other: on circles of either sense a lag adds to a squareness or
-    /// takes off it, and neither alone foretells a circle that was left out.
+    /// millimetre say nothing of the play behind them. What does not hold on other lines ends the search: the structure
+    /// is there, and has no name. But two faults may hide each other: on circles of either sense a lag adds to a
+    /// squareness or takes off it, and neither alone foretells a circle that was left out.
     fn admitted(&mut self, proposed: &[(Part, Fit)]) -> Result<(Vec<Part>, Fit), Option<Refused>> {
         let mut first = None;
         for (part, fit) in proposed.iter().take(MOST_TRIED) {

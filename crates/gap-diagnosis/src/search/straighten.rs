@@ -10,16 +10,19 @@ use crate::search::space::Fit;
 use crate::search::state::State;
 
 impl State<'_, '_> {
-    /// Takes squarenesses and scales for the angles of carriages, all of them, two or one, where that is likelier: by what the
-    /// rows say together with what carriages do ([`log_prior`]).
+    /// Takes squarenesses and scales for the angles of carriages, all of them, two or one, where that is likelier: by
+    /// what the rows say together with what carriages do ([`log_prior`]).
     ///
-    /// Where all lines pass near one corner the levers of angles are small, and one that is large enough stands for a squareness,
-    /// or for one and a scale: the fit hardly tells them apart, and one after the other they cannot be changed for the better.
-    pub(super) fn straighten(&mut self) {
-        while let Some((parts, fit)) = self.straightened() {
-            (self.parts, self.fit) = (parts, fit);
-            self.propose();
-        }
+    /// Where all lines pass near one corner the levers of angles are small, and one that is large enough stands for a
+    /// squareness, or for one and a scale: the fit hardly tells them apart, and one after the other they cannot be
+    /// changed for the better.
+    ///
+    /// False where they are not.
+    pub(super) fn straighten(&mut self) -> bool {
+        let Some((parts, fit)) = self.straightened() else { return false };
+        (self.parts, self.fit) = (parts, fit);
+        self.propose();
+        true
     }
 
     /// The likeliest model that has straight axes in the place of angles; `None` where the one there is likelier.
@@ -39,7 +42,7 @@ impl State<'_, '_> {
         for group in groups.into_iter().filter(|group| !group.is_empty()) {
             let rest = group.iter().rev().fold(self.parts.clone(), |rest, place| without(&rest, *place));
             let with: Vec<Part> = rest.iter().copied().chain(self.straight_beside(&rest)).collect();
-            let (fit, with) = self.what_is_needed(with, rest.len());
+            let (fit, with) = self.least_of(with, rest.len());
             let unlikely = self.unlikely(&with, &fit);
             let limit = best.as_ref().map_or(own - self.space.allowance(), |(known, ..)| *known);
             let passes = |place: usize| self.objection(&without(&with, place), with[place], &fit).is_none();
@@ -48,6 +51,22 @@ impl State<'_, '_> {
             }
         }
         best.map(|(_, parts, fit)| (parts, fit))
+    }
+
+    /// A model without those of its parts from `first` on whose absence makes it no worse, the idlest first: a scale of
+    /// one axis may count as that of another with a squareness or a radius.
+    fn least_of(&mut self, mut with: Vec<Part>, first: usize) -> (Fit, Vec<Part>) {
+        self.complete(&with);
+        let mut fit = self.space.fit(&self.library, &with);
+        loop {
+            let fewer = (first..with.len()).map(|place| without(&with, place));
+            let judged = fewer.map(|fewer| (self.space.fit(&self.library, &fewer), fewer));
+            let best = judged.min_by(|a, b| a.0.score.total_cmp(&b.0.score));
+            match best.filter(|(plainer, _)| plainer.score <= fit.score) {
+                Some((plainer, fewer)) => (fit, with) = (plainer, fewer),
+                None => return (fit, with),
+            }
+        }
     }
 
     /// Squarenesses and scales that a model does not have.
@@ -61,7 +80,7 @@ impl State<'_, '_> {
     }
 
     /// The score of a model with what machines usually have counted in.
-    fn unlikely(&self, parts: &[Part], fit: &Fit) -> f64 {
+    pub(super) fn unlikely(&self, parts: &[Part], fit: &Fit) -> f64 {
         let sub = self.space.gram.select(&self.library.model_columns(parts));
         let values = sub.coefficients(self.space.rho(fit.level));
         let priors = sub.terms.iter().zip(values).skip(self.library.nuisances);
