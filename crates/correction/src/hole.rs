@@ -62,8 +62,8 @@ impl Kept {
         pecks.into_iter().chain(self.out_again(machine, limit_mm)).fold(verdict, worse)
     }
 
-    /// The same for the way out of a hole that is left at feed: on to above R, or on a machine that goes out another way than
-    /// it came in.
+    /// The same for the way out of a hole that is left at feed: on to above R, or on a machine that goes out another
+    /// way than it came in.
     fn out_again(&self, machine: &Machine<'_>, limit_mm: f64) -> Option<Verdict> {
         // Back to where it came in from, the same way is proven already.
         let proven =
@@ -102,8 +102,8 @@ fn on_hole(hole: &Hole, mm: f64) -> Vector {
     hole.at(mm).linear_mm.into()
 }
 
-/// What its moves ask the model for, should it be written as moves: where they lead, and where one level comes twice, as it
-/// mostly does, the middle of the drilled line.
+/// What its moves ask the model for, should it be written as moves: where they lead, and where one level comes twice,
+/// as it mostly does, the middle of the drilled line.
 fn places(hole: &Hole) -> [Vector; LANES] {
     let r_mm = hole.at_r.linear_mm[hole.plane.axes()[2]];
     let (above, after) = (hole.above_mm(), hole.end().linear_mm[hole.plane.axes()[2]]);
@@ -131,7 +131,8 @@ impl<'m> Corrector<'m> {
         self.turn_towards(&start, &at_r);
         let flat = hole.bottom_mm == at_r[normal];
         let expandable = hole.cycle.kind != CycleKind::Synchronised;
-        // A further hole of a series that is written as moves: its cycle says nothing but, with play, where axes come from.
+        // A further hole of a series that is written as moves: its cycle says nothing but, with play, where axes come
+        // from.
         let by_moves = self.expanding && expandable && !flat && !self.model.depends_on_direction();
         let before = (self.standing, self.remembered);
         let mut turns = 0;
@@ -206,8 +207,8 @@ impl<'m> Corrector<'m> {
         Ok(corrected)
     }
 
-    /// Upper bound of the deviation of a cycle block from its hole, mm, and the same where it is more than the tolerance.
-    /// The axes have gone to the hole then; `along`: the axis that drills it, where it has a depth.
+    /// Upper bound of the deviation of a cycle block from its hole, mm, and the same where it is more than the
+    /// tolerance. The axes have gone to the hole then; `along`: the axis that drills it, where it has a depth.
     fn leans(
         &mut self,
         machine: &Machine<'_>,
@@ -255,8 +256,9 @@ impl<'m> Corrector<'m> {
         Ok(())
     }
 
-    /// The axes have come to a hole. That the play along it is taken up on its first micrometres is no deviation from it: the
-    /// tool is late there, in the air or where it has drilled before. Without a depth (`along`: none) nothing takes it up.
+    /// The axes have come to a hole. That the play along it is taken up on its first micrometres is no deviation from
+    /// it: the tool is late there, in the air or where it has drilled before. Without a depth (`along`: none) nothing
+    /// takes it up.
     fn over_the_hole(&mut self, state: &Command, at_mm: Vector, along: Option<usize>) {
         if self.model.depends_on_direction() {
             let at = Command { linear_mm: at_mm, ..*state };

@@ -32,8 +32,8 @@ const OUT_OF_REACH: Code = Code(918);
 /// What is asked of a machine, as it is typed.
 #[derive(Debug, Args)]
 pub struct BudgetOptions {
-    /// Control points: nodes of X, Y and Z, how many over the calibrated volume (22x22x21), or from:to:step in mm for each
-    /// (40:880:40,30:450:20,5:505:25).
+    /// Control points: nodes of X, Y and Z, how many over the calibrated volume (22x22x21), or from:to:step in mm for
+    /// each (40:880:40,30:450:20,5:505:25).
     #[arg(long, value_name = "NXxNYxNZ|X,Y,Z", default_value = "21x21x21", allow_hyphen_values = true)]
     pub grid: Given<Lattice>,
     /// Control points of a file instead (CSV, as for `vpost predict`); - for standard input.

@@ -49,7 +49,8 @@ pub enum CalibrateCommand {
     Volumetric(volumetric::Volumetric),
     /// Ball bar: location errors of a table's rotary axes, or squareness, scale mismatch and backlash of linear axes.
     Ballbar(ballbar::Ballbar),
-    /// Ball deviations at angles of A, B, C, by R-test or by probe and sphere: location errors and error functions of rotary axes.
+    /// Ball deviations at angles of A, B, C, by R-test or by probe and sphere: location errors and error functions of
+    /// rotary axes.
     #[command(name = "rtest")]
     RTest(options::RTest),
     /// Measured test pieces of a lathe: taper, bow, squareness, sizes of the tools, growth and wear.

@@ -34,8 +34,8 @@ pub struct JobOptions {
     pub tolerance: Option<f64>,
     /// Largest deviation where that fails, um.
     ///
-    /// Where the tolerance cannot be held, the motion is corrected as near as can be, up to this, and said; 15 tolerances if not
-    /// given, 0: refused.
+    /// Where the tolerance cannot be held, the motion is corrected as near as can be, up to this, and said; 15
+    /// tolerances if not given, 0: refused.
     #[arg(long, value_name = "UM", global = true, help_heading = "Program", value_parser = finite)]
     pub accept: Option<f64>,
     /// Machine coordinates of a zero, mm (repeatable).
@@ -49,8 +49,9 @@ pub struct JobOptions {
     pub work_offset: Vec<Given<WorkOffset>>,
     /// What work offsets are: touched or true.
     ///
-    /// Those that do not say it themselves: touched on this machine with correction off, so that its error at that place is in
-    /// them, or found through a compensation or by an outside instrument; default: the profile's, else touched.
+    /// Those that do not say it themselves: touched on this machine with correction off, so that its error at that
+    /// place is in them, or found through a compensation or by an outside instrument; default: the profile's, else
+    /// touched.
     #[arg(
         long,
         value_enum,
@@ -125,8 +126,8 @@ pub struct JobOptions {
     pub include: Vec<PathBuf>,
     /// What Z10 is: increments or millimetres.
     ///
-    /// Where the dialect reads increments: `increments` (ten steps) or `millimetres` (Z10.; inches under G20); default: the
-    /// profile's.
+    /// Where the dialect reads increments: `increments` (ten steps) or `millimetres` (Z10.; inches under G20); default:
+    /// the profile's.
     #[arg(
         long,
         value_enum,
@@ -162,7 +163,8 @@ pub struct JobOptions {
     pub at: Vec<Given<Conditions>>,
     /// What is corrected on five axes: xyz or full.
     ///
-    /// The tip alone, its rotary words as they are (xyz), or the tool's direction too (full); default: the profile's, else xyz.
+    /// The tip alone, its rotary words as they are (xyz), or the tool's direction too (full); default: the profile's,
+    /// else xyz.
     #[arg(
         long,
         value_enum,

@@ -1,8 +1,8 @@
 //! What the one reader of programs knows behind the text written so far.
 //!
-//! Whoever writes a block anew has to know where the tool stands and what is in force. This room keeps no state of its own
-//! for that: what it writes is read by [`Interpreter`], as it will be read once more when it is corrected, and what that
-//! does not know for certain nobody here knows.
+//! Whoever writes a block anew has to know where the tool stands and what is in force. This room keeps no state of its
+//! own for that: what it writes is read by [`Interpreter`], as it will be read once more when it is corrected, and what
+//! that does not know for certain nobody here knows.
 
 use nc_program::modal::{Modal, MotionMode};
 use nc_program::{Interpreter, Owner, Setup};
@@ -98,7 +98,8 @@ impl<'d> Known<'d> {
         self.refused.clone()
     }
 
-    /// The state that the codes of a block make before it moves, and whose its axis words are; `None` where it is refused.
+    /// The state that the codes of a block make before it moves, and whose its axis words are; `None` where it is
+    /// refused.
     pub(crate) fn codes(&self, block: &Block<'_>) -> Option<(Modal, Owner)> {
         let mut settings = None;
         self.shorthand.plainly(block, self.dialect, |block| settings = self.interpreter.settings(block).ok());
@@ -216,8 +217,8 @@ impl<'d> Rewriting<'d> {
         self.out.take()
     }
 
-    /// The text and where each stretch of it comes from. Where the program is refused for a block before the `fault`, it is
-    /// for that one: what is not known behind it would be blamed on its followers.
+    /// The text and where each stretch of it comes from. Where the program is refused for a block before the `fault`,
+    /// it is for that one: what is not known behind it would be blamed on its followers.
     pub(crate) fn end(self, fault: Option<Fault>) -> Result<Output, Fault> {
         match fault {
             None => Ok(self.out),

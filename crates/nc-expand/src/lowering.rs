@@ -1,8 +1,8 @@
 //! The one way of every block into the plain program.
 //!
-//! Flow says which blocks come. Each is asked of what stands for motions (a [`Lower`] of its control: drawings, cycles, names
-//! of Siemens), which writes it as it is or what it stands for, and whatever is written is read by the one reader of
-//! programs ([`Rewriting`]). What has to look ahead holds the blocks that it waits for.
+//! Flow says which blocks come. Each is asked of what stands for motions (a [`Lower`] of its control: drawings, cycles,
+//! names of Siemens), which writes it as it is or what it stands for, and whatever is written is read by the one reader
+//! of programs ([`Rewriting`]). What has to look ahead holds the blocks that it waits for.
 
 use nc_program::Setup;
 use nc_syntax::dialect::Action;
@@ -147,8 +147,8 @@ pub(crate) fn short(block: &Block<'_>, dialect: &Dialect) -> bool {
         || returns::needed(block, dialect)
 }
 
-/// True for what is written out later, and what is asked for before it is: corners, polar words, calls by name, cycles of
-/// lathes.
+/// True for what is written out later, and what is asked for before it is: corners, polar words, calls by name, cycles
+/// of lathes.
 fn is_shorthand(block: &Block<'_>, item: &Item, dialect: &Dialect) -> bool {
     match item.kind {
         ItemKind::CommaWord { .. } => dialect.flow.corner_words,

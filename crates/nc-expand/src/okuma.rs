@@ -1,9 +1,9 @@
 //! Okuma's statements and values: text to what they do.
 //!
 //! Source: Okuma OSP-P200M/P20M Programming Manual, user task: common variables `VC1`, arithmetic and comparisons in
-//! square brackets, `IF [ … ] N10` and `GOTO N10`, `CALL O10 Q2`, `CALL OSUB` and `RTS`. Sequence names stand first in their block.
-//! What the machine alone knows (system variables), local variables, whose life in called programs is not told, and logic
-//! between comparisons are refused.
+//! square brackets, `IF [ … ] N10` and `GOTO N10`, `CALL O10 Q2`, `CALL OSUB` and `RTS`. Sequence names stand first in
+//! their block. What the machine alone knows (system variables), local variables, whose life in called programs is not
+//! told, and logic between comparisons are refused.
 
 use diagnostic::{Text, both};
 

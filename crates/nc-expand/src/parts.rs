@@ -22,8 +22,8 @@ pub struct Lowering<'d> {
 pub struct AsAWhole;
 
 impl<'d> Lowering<'d> {
-    /// Of a program that starts with `head` and lies in its `envelope`. `None` for lathes: their cycles name blocks anywhere
-    /// in a program.
+    /// Of a program that starts with `head` and lies in its `envelope`. `None` for lathes: their cycles name blocks
+    /// anywhere in a program.
     #[must_use]
     pub fn new(dialect: &'d Dialect, setup: &'d Setup, head: &[u8], envelope: Envelope) -> Option<Self> {
         let mut driver = Driver::new(dialect, setup, head);
@@ -31,8 +31,8 @@ impl<'d> Lowering<'d> {
         Some(Self { dialect, envelope, driver, expects_name: false })
     }
 
-    /// What the next whole lines stand for, as far as nothing behind them bears on it; they start so many bytes and lines
-    /// into the program.
+    /// What the next whole lines stand for, as far as nothing behind them bears on it; they start so many bytes and
+    /// lines into the program.
     ///
     /// # Errors
     /// [`AsAWhole`].

@@ -1,15 +1,15 @@
 //! Drilling cycles of controls that say their levels by words and codes of their own, written out as plain moves; the
 //! table says which ([`WrittenCycles`]).
 //!
-//! Okuma: `G71 Z50.` says a level, `G81 X Y Z R F M53` drills and returns to it, with M54 to R; every block behind it that
-//! names X or Y drills again, until G80 or a motion code. A control keeps the level in mind, and no word of the cycle's
-//! block names it: so the moves are written, each with its height. Fagor: `G98 G81 X Y Z I F`, where Z is the level where
-//! the feed begins and I the bottom, returns to where the tool stood before, with G99 to Z.
+//! Okuma: `G71 Z50.` says a level, `G81 X Y Z R F M53` drills and returns to it, with M54 to R; every block behind it
+//! that names X or Y drills again, until G80 or a motion code. A control keeps the level in mind, and no word of the
+//! cycle's block names it: so the moves are written, each with its height. Fagor: `G98 G81 X Y Z I F`, where Z is the
+//! level where the feed begins and I the bottom, returns to where the tool stood before, with G99 to Z.
 //!
-//! Source: Okuma OSP-P200M/P20M Programming Manual, fixed cycles: G81, G82 and G83, the return level command. With R the
-//! level where the feed begins, Z the bottom, Q a peck: rapid across, rapid to R, feed to Z (G83: by Q, rapid to R and
-//! back to what is drilled less a clearance), rapid to the level. Fagor CNC 8055 M Programming Manual, chapter 9, G81. The
-//! numbers written have 6 decimals.
+//! Source: Okuma OSP-P200M/P20M Programming Manual, fixed cycles: G81, G82 and G83, the return level command. With R
+//! the level where the feed begins, Z the bottom, Q a peck: rapid across, rapid to R, feed to Z (G83: by Q, rapid to R
+//! and back to what is drilled less a clearance), rapid to the level. Fagor CNC 8055 M Programming Manual, chapter 9,
+//! G81. The numbers written have 6 decimals.
 
 use diagnostic::Refusal;
 use nc_program::modal::ReturnLevel;

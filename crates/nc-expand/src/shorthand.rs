@@ -1,5 +1,5 @@
-//! Shorthand of drawings: polar words (G16), a rotation about the tool (`G68 R30.`) and corners (`,R5.`, `,C2.`; `RND=5`, `CHR=2`, `CHF=2`) written out as plain
-//! blocks.
+//! Shorthand of drawings: polar words (G16), a rotation about the tool (`G68 R30.`) and corners (`,R5.`, `,C2.`;
+//! `RND=5`, `CHR=2`, `CHF=2`) written out as plain blocks.
 //!
 //! Both say where the tool goes by something that only the control works out. What they mean is told by the
 //! manuals for the plain case, and only that is written out; the rest is refused:
@@ -8,7 +8,8 @@
 //!   first axis = radius · cos angle, second = radius · sin angle.
 //! * Corner between two lines of the plane, in G90, the next line in the next block. With u and v the unit
 //!   vectors from the corner along the two lines and θ the angle between them, a chamfer of c goes from c·u to
-//!   c·v, and a rounding of r from t·u to t·v with t = r / tan(θ/2), about the tangent point's r to the inside. A chamfer
+//!   c·v, and a rounding of r from t·u to t·v with t = r / tan(θ/2), about the tangent point's r to the inside. A
+//! chamfer
 //!   of length l has c = l / (2 sin(θ/2)).
 //!
 //! The numbers written have 6 decimals; what that neglects is half a nanometre.

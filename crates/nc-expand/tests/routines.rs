@@ -1,4 +1,5 @@
-//! Cycles whose contour is a subroutine, against LinuxCNC's interpreter: a program and what it was expanded to move alike.
+//! Cycles whose contour is a subroutine, against LinuxCNC's interpreter: a program and what it was expanded to move
+//! alike.
 
 use crate::common;
 
@@ -148,7 +149,8 @@ fn program(dice: &mut Dice) -> String {
                     contour.push(format!("G1 {}", words(r, z)));
                     continue;
                 }
-                // An arc about a centre by two angles from Z, above it (G3) or below (G2); a quarter, or across the top.
+                // An arc about a centre by two angles from Z, above it (G3) or below (G2); a quarter, or across the
+                // top.
                 let half = std::f64::consts::FRAC_PI_2;
                 let radius = dice.between(1.0, 4.0);
                 let dome = dice.of(2) == 0;

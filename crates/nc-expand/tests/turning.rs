@@ -379,8 +379,8 @@ fn a_thread_of_several_passes() {
     assert_eq!(refused(&dialect("A"), "G76 X50. Z-30. P1000 Q500 F2.\n").0, 143);
 }
 
-/// A tip of 60 degrees goes on along the flank by 0.57735 of the depth: of depths 0.5, 0.707107, 0.866025, 0.9 and 1.0 by
-/// 0.288675, 0.408248, 0.5, 0.519615 and 0.57735, counted from where the profile says.
+/// A tip of 60 degrees goes on along the flank by 0.57735 of the depth: of depths 0.5, 0.707107, 0.866025, 0.9 and 1.0
+/// by 0.288675, 0.408248, 0.5, 0.519615 and 0.57735, counted from where the profile says.
 #[test]
 fn a_thread_cut_by_one_edge_goes_along_the_flank() {
     let mut lathe = dialect("A");
@@ -568,8 +568,8 @@ fn r_of_a_hole_is_a_place_or_a_way_in_systems_b_and_c() {
     }
 }
 
-/// A level that only touches a cylinder between two rounds, whose centre has three decimals: the pass ran through the collar
-/// behind it.
+/// A level that only touches a cylinder between two rounds, whose centre has three decimals: the pass ran through the
+/// collar behind it.
 #[test]
 fn a_pass_on_the_level_of_a_cylinder_ends_before_the_collar() {
     let mut on_the_level = 0;

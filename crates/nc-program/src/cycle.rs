@@ -185,8 +185,8 @@ fn returns_to_initial(
     ))
 }
 
-/// The dwell of the cycle's own. P beside a cycle without one (G81, G85) is kept for the next, and P of another cycle is not
-/// that of pecks: of those only Haas' know one.
+/// The dwell of the cycle's own. P beside a cycle without one (G81, G85) is kept for the next, and P of another cycle
+/// is not that of pecks: of those only Haas' know one.
 fn own_dwell(cycle: &CycleState) -> Option<Decimal> {
     let (time, said_by) = cycle.dwell?;
     let pecks = cycle.kind.pecks();
@@ -312,7 +312,8 @@ fn levels(
     }
 }
 
-/// A series of holes that begins between R and the bottom: G98 would lead back into the hole, or to R, as LinuxCNC does.
+/// A series of holes that begins between R and the bottom: G98 would lead back into the hole, or to R, as LinuxCNC
+/// does.
 fn begun_beyond_r(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<()> {
     if env.dialect.cycle_levels == CycleLevels::Reread {
         return Ok(());

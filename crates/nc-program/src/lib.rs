@@ -8,8 +8,10 @@
 //! # Positions
 //!
 //! * The axes stand nowhere known at the start ([`Setup::start_mm`] may say otherwise), after G28, G30
-//!   and probe moves (the axes named; all where none is named), after M codes whose row says so (behind a tool change the
-//!   setup may know better), after G53 under G91, and behind motions that block delete may skip. G53 under G90 makes its axes known.
+//!   and probe moves (the axes named; all where none is named), after M codes whose row says so (behind a tool change
+//! the
+//!   setup may know better), after G53 under G91, and behind motions that block delete may skip. G53 under G90 makes
+//! its axes known.
 //! * A rapid may start from and lead to partly unknown positions. A feed move, an arc, a cycle and an
 //!   increment need the positions they start from.
 //! * A change of work offset or tool length moves nothing: the axis commands stay, and the program's

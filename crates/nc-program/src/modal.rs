@@ -514,7 +514,8 @@ pub struct Modal {
     pub plane_begun: Option<PlaneBegun>,
     /// A curve of several blocks that is not whole yet.
     pub curve: Option<Box<CurveBegun>>,
-    /// From the end of the G5 that the block before was to the control point with which another goes on, program axes, mm.
+    /// From the end of the G5 that the block before was to the control point with which another goes on, program axes,
+    /// mm.
     pub curve_leaves_mm: Option<[f64; 2]>,
     /// G54–G59, G54.1.
     pub work_offset: WorkOffset,
@@ -555,8 +556,8 @@ impl Modal {
         self.distance == Distance::Absolute
     }
 
-    /// Where X, Y and Z stand, as words of this state would say it: those that the program has itself named in the frame in
-    /// force.
+    /// Where X, Y and Z stand, as words of this state would say it: those that the program has itself named in the
+    /// frame in force.
     #[must_use]
     pub fn places(&self) -> [Option<f64>; 3] {
         // Behind a block that may be skipped the tool stands in one of two places.

@@ -1,10 +1,10 @@
 //! Which axes the program has itself named in the frame in force.
 //!
-//! A correction may bring words for axes that a block does not hold. Such a word says a place in program coordinates, so it
-//! moves the axis by whatever is wrong in our idea of the frame: a tool length that G53 has cancelled, an offset that the
-//! control does not have. Where the program has said, in the same frame, where the axis is, a word for it moves it by
-//! the correction and nothing else. So a word is added only for an axis that is [`Naming::Named`]; each code after which
-//! controls may differ in what stands in the frame takes the name from the axes that it concerns.
+//! A correction may bring words for axes that a block does not hold. Such a word says a place in program coordinates,
+//! so it moves the axis by whatever is wrong in our idea of the frame: a tool length that G53 has cancelled, an offset
+//! that the control does not have. Where the program has said, in the same frame, where the axis is, a word for it
+//! moves it by the correction and nothing else. So a word is added only for an axis that is [`Naming::Named`]; each
+//! code after which controls may differ in what stands in the frame takes the name from the axes that it concerns.
 //!
 //! Where controls also differ in whether the axis moves (a tool length that changes without a motion of the axis in the
 //! same block), its position is unknown.
@@ -225,7 +225,8 @@ pub(crate) fn name(
     let motion = matches!(demand.owner, Owner::Motion | Owner::DwellP) && !moved.motions.is_empty();
     if motion {
         for (i, own) in absolutely_written(words, state).into_iter().enumerate() {
-            // A hole's depth is no place where the axis stands; its R level is, where that is said in the frame in force.
+            // A hole's depth is no place where the axis stands; its R level is, where that is said in the frame in
+            // force.
             let named = match state.cycle {
                 Some(cycle) if state.plane.axes()[2] == i && state.distance == Distance::Absolute => {
                     state.return_level == ReturnLevel::R

@@ -1,9 +1,9 @@
 //! Cutter compensation motion by motion: which of its blocks may be written as several.
 //!
-//! Under G41 and G42 the control makes the tool's path of the programmed contour, block by block. The block that leads onto
-//! the contour and the one that leads off it mean another path when they are cut, and so does a block with another D. The
-//! blocks between are offset alike whether a line or an arc is one block or two that go on from one another, as long as
-//! each is long enough for the tool to reach both of its ends: how long, only the tool's radius says.
+//! Under G41 and G42 the control makes the tool's path of the programmed contour, block by block. The block that leads
+//! onto the contour and the one that leads off it mean another path when they are cut, and so does a block with another
+//! D. The blocks between are offset alike whether a line or an arc is one block or two that go on from one another, as
+//! long as each is long enough for the tool to reach both of its ends: how long, only the tool's radius says.
 
 use toolpath::{Division, Motion, Partial};
 
@@ -15,13 +15,13 @@ use crate::modal::{Compensation, Modal};
 use crate::under_way::{Offset, Stage};
 use crate::words::{Preparatory, Words};
 
-/// Shortest piece of an offset path, in radii: in front of an inner corner of 37 degrees the tool stops three radii before
-/// it. Where a corner is sharper the control may refuse the output; it never cuts another path.
+/// Shortest piece of an offset path, in radii: in front of an inner corner of 37 degrees the tool stops three radii
+/// before it. Where a corner is sharper the control may refuse the output; it never cuts another path.
 const LEAST_RADII: f64 = 3.0;
 /// A move in the plane shorter than this is none, mm.
 const STANDS_MM: f64 = 1e-9;
-/// A climb across the plane below this share of the way is what a correction may make of a level block: tables of machines
-/// climb by some 1e-4 of the way.
+/// A climb across the plane below this share of the way is what a correction may make of a level block: tables of
+/// machines climb by some 1e-4 of the way.
 const LEVEL_SHARE: f64 = 1e-3;
 /// No arc is offset to a radius below this share of its own.
 const LEAST_SHARE: f64 = 0.01;

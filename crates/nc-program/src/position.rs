@@ -103,11 +103,11 @@ pub(crate) fn end(words: &Words<'_, '_, '_>, state: &Modal, frame: &Frame) -> Ou
 /// How far ACP and ACN turn at least, degrees: behind an angle that was corrected a shorter way could be a whole turn.
 const LEAST_WAY_DEG: f64 = 2.0;
 
-/// Where `C=DC(90)`, `C=ACP(90)`, `C=ACN(90)` lead, degrees: by the shortest way, upwards, downwards, in the turn from 0 to
-/// 360 that a control shows; `C=AC(90)`: as without a name under G90.
+/// Where `C=DC(90)`, `C=ACP(90)`, `C=ACN(90)` lead, degrees: by the shortest way, upwards, downwards, in the turn from
+/// 0 to 360 that a control shows; `C=AC(90)`: as without a name under G90.
 ///
-/// Across 0 nobody could write the angle without a name so that it is the same; from where nobody knows only a rapid goes,
-/// whose way does not matter.
+/// Across 0 nobody could write the angle without a name so that it is the same; from where nobody knows only a rapid
+/// goes, whose way does not matter.
 fn direct(words: &Words<'_, '_, '_>, span: Span, value_deg: f64, axis: usize, state: &Modal) -> Outcome<f64> {
     let text = words.block.text(span).to_ascii_uppercase();
     let names = |name: &[u8]| text.windows(name.len()).any(|part| part == name);

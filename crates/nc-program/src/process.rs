@@ -2,9 +2,9 @@
 //!
 //! F, S, T, the numbers of tool, length and radius, compensation and every other modal code are *settings*: what counts
 //! is which of them hold while a motion is made, not where they stand in the text. M codes, a dwell, an exact stop, a
-//! switch of the tool's length (controls differ in what H alone does) are *deeds*: each is done at its place between two
-//! motions, and in order. [`said`] reads a block, [`Process`] is the state that settings add up to. Motion codes, cycles
-//! and return levels are not among them: they are the motions ([`crate::Step`]).
+//! switch of the tool's length (controls differ in what H alone does) are *deeds*: each is done at its place between
+//! two motions, and in order. [`said`] reads a block, [`Process`] is the state that settings add up to. Motion codes,
+//! cycles and return levels are not among them: they are the motions ([`crate::Step`]).
 
 use std::fmt;
 

@@ -182,8 +182,8 @@ fn followed(
     Ok(())
 }
 
-/// CYCLE832: the digit of hundreds of its second argument chooses a transformation on the 840D (Programming Manual Cycles); later
-/// controls do not read it, and write names there (`_ORI_FINISH`).
+/// CYCLE832: the digit of hundreds of its second argument chooses a transformation on the 840D (Programming Manual
+/// Cycles); later controls do not read it, and write names there (`_ORI_FINISH`).
 fn may_switch_tip(call: &str, before: &Modal) -> bool {
     let second = brackets::arguments(call).get(1).map_or("", |argument| argument.trim()).to_owned();
     let named = second.is_empty() || second.starts_with('_');

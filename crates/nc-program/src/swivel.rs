@@ -1,7 +1,8 @@
 //! CYCLE800 of Sinumerik: a tilted working plane by its arguments, to which the control turns the rotary axes itself.
 //!
 //! `CYCLE800(_FR, _TC, _ST, _MODE, _X0, _Y0, _Z0, _A, _B, _C, _X1, _Y1, _Z1, _DIR, _FR_I, _DMODE)`: the work offset's zero
-//! goes to X0 Y0 Z0, turns there about three axes one after the other, each as it lies by then (`_MODE` says in which order;
+//! goes to X0 Y0 Z0, turns there about three axes one after the other, each as it lies by then (`_MODE` says in which
+//! order;
 //! `_A` is the first angle, whichever its axis), and goes on to X1 Y1 Z1 along the turned axes. The retraction of `_FR` is
 //! the control's own rapid to places that no program names; behind the cycle nobody knows where X, Y and Z stand in the
 //! plane, with a retraction or without.

@@ -1,9 +1,9 @@
-//! Tilted working planes: G68.2 says where the plane lies in the workpiece, G53.1 turns the tool upright on it, G69 ends it.
-//! Sinumerik's CYCLE800 does all three ([`crate::swivel`]).
+//! Tilted working planes: G68.2 says where the plane lies in the workpiece, G53.1 turns the tool upright on it, G69
+//! ends it. Sinumerik's CYCLE800 does all three ([`crate::swivel`]).
 //!
-//! X, Y and Z are coordinates of the plane in between, and the control brings the tip to that place of the workpiece. That
-//! it does so wherever the rotary axes stand no manual promises; so nothing moves in a plane on which the tool does not
-//! stand upright.
+//! X, Y and Z are coordinates of the plane in between, and the control brings the tip to that place of the workpiece.
+//! That it does so wherever the rotary axes stand no manual promises; so nothing moves in a plane on which the tool
+//! does not stand upright.
 
 use diagnostic::{Diagnostic, Refusal, both};
 use nc_syntax::Span;
@@ -23,8 +23,8 @@ use crate::under_way::PlaneBegun;
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, Words};
 use nc_syntax::Letters;
 
-/// The tool stands upright on a plane where its direction is within this of the plane's normal, rad: whichever of the two
-/// a control adds a length of 200 mm along, its end is within a micrometre.
+/// The tool stands upright on a plane where its direction is within this of the plane's normal, rad: whichever of the
+/// two a control adds a length of 200 mm along, its end is within a micrometre.
 const UPRIGHT_RAD: f64 = 5e-6;
 
 const P: Letters = Letters::of(b"P");
@@ -106,7 +106,8 @@ pub(crate) fn define(
         }
     };
     let Some((origin, turn)) = origin else { return Ok(()) };
-    // Where the words' zero is in the machine with all rotary axes at 0, as no transformation and no length is in force.
+    // Where the words' zero is in the machine with all rotary axes at 0, as no transformation and no length is in
+    // force.
     let zero_mm = require_frame(env, words, state)?.to_machine(origin);
     state.plane_begun = None;
     state.kinematics = Kinematics::Plane(TiltedPlane { turn, zero_mm });
@@ -303,7 +304,8 @@ pub(crate) fn align(
     Ok(())
 }
 
-/// Why the angles are not certain to which a code turns the rotary axes; `by_value`: it chooses the higher or lower one.
+/// Why the angles are not certain to which a code turns the rotary axes; `by_value`: it chooses the higher or lower
+/// one.
 pub(crate) fn not_certain(
     words: &Words<'_, '_, '_>,
     span: Span,

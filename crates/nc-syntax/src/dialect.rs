@@ -222,8 +222,8 @@ pub enum Action {
         /// On top of the one in force (ATRANS); else in its place, and without words in place of all of them.
         adds: bool,
     },
-    /// CYCLE800: a tilted working plane by its arguments, to which the rotary axes turn; without any it ends the plane. What
-    /// else of the frame it ends is not certain.
+    /// CYCLE800: a tilted working plane by its arguments, to which the rotary axes turn; without any it ends the plane.
+    /// What else of the frame it ends is not certain.
     Swivel,
     /// CYCLE832: how far the path may be left; its second argument may switch TRAORI too.
     ContourTolerance,
@@ -328,8 +328,8 @@ pub enum Action {
 }
 
 impl Action {
-    /// True for what changes neither the frame nor where the axes stand, and owns no words: feed modes, compensation, what
-    /// cycles return to.
+    /// True for what changes neither the frame nor where the axes stand, and owns no words: feed modes, compensation,
+    /// what cycles return to.
     #[must_use]
     pub fn keeps_places(&self) -> bool {
         matches!(
@@ -978,8 +978,8 @@ pub struct Flow {
 }
 
 impl Flow {
-    /// True for an M code that calls or returns, and is executed before anything is corrected: M98 and M99, M97 where it
-    /// calls.
+    /// True for an M code that calls or returns, and is executed before anything is corrected: M98 and M99, M97 where
+    /// it calls.
     #[must_use]
     pub fn calls(self, m_code: i64) -> bool {
         match m_code {
@@ -1017,8 +1017,8 @@ pub struct Turning {
     pub systems: Vec<System>,
 }
 
-/// Which depth of a thread's passes begins where its cycle starts; deeper ones begin further along the thread, by what they
-/// are deeper times the tangent of half the tip's angle.
+/// Which depth of a thread's passes begins where its cycle starts; deeper ones begin further along the thread, by what
+/// they are deeper times the tangent of half the tip's angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlankFrom {
     /// None: as if it had no depth.
@@ -1220,8 +1220,8 @@ pub struct Dialect {
     pub length_under_g40: LengthAfter,
     /// What G49 does to it.
     pub length_under_g49: LengthAfter,
-    /// A code of the tool length moves no axis: from there on the same place has other words (LinuxCNC). Where false some
-    /// controls move the axis at once.
+    /// A code of the tool length moves no axis: from there on the same place has other words (LinuxCNC). Where false
+    /// some controls move the axis at once.
     pub length_shifts: bool,
     /// What a T word does.
     pub t_word: TWord,

@@ -25,8 +25,8 @@ pub enum PathKey {
 pub enum Keeps {
     /// On the path: an exact stop at each corner, or corners no faster than the axes can follow.
     Exact,
-    /// Within what these words of its block add up to (`PQ`: corners, and lines that are merged), the second as long as the
-    /// first where it does not stand there; without the first nobody says.
+    /// Within what these words of its block add up to (`PQ`: corners, and lines that are merged), the second as long as
+    /// the first where it does not stand there; without the first nobody says.
     Words(Vec<u8>),
     /// Within the first argument of the command.
     Argument,

@@ -38,8 +38,8 @@ pub fn short(text: &str, most: usize) -> String {
     text.chars().take(most.saturating_sub(1)).chain(['\u{2026}']).collect()
 }
 
-/// JSON for a data block: what could end the block, or begin a comment, is written as JSON's own escape, so that it still
-/// reads back as the same values.
+/// JSON for a data block: what could end the block, or begin a comment, is written as JSON's own escape, so that it
+/// still reads back as the same values.
 #[must_use]
 pub fn json_block(json: &str) -> Markup {
     let mut out = String::with_capacity(json.len());

@@ -94,7 +94,8 @@ pub struct Hole {
     pub rate: FeedRate,
 }
 
-/// More pecks than this in one hole are a mistake, Q without its point: a hundred millimetres deep in steps of a twentieth.
+/// More pecks than this in one hole are a mistake, Q without its point: a hundred millimetres deep in steps of a
+/// twentieth.
 pub const MOST_PECKS: f64 = 2_000.0;
 
 impl CycleKind {
@@ -142,8 +143,8 @@ impl Hole {
 
     /// The level at which it is come to, axis command of the normal axis, mm.
     ///
-    /// A start below R rises first. Under G98 one below the initial level (after a hole under G99) rises to that: LinuxCNC
-    /// goes across at it, and where a control would not, higher is clear too.
+    /// A start below R rises first. Under G98 one below the initial level (after a hole under G99) rises to that:
+    /// LinuxCNC goes across at it, and where a control would not, higher is clear too.
     #[must_use]
     pub fn above_mm(&self) -> f64 {
         let normal = self.plane.axes()[2];
@@ -151,8 +152,8 @@ impl Hole {
         if self.bottom_mm < self.at_r.linear_mm[normal] { start.max(least) } else { start.min(least) }
     }
 
-    /// The moves that a control makes of it; of a cycle that is bound to the spindle those of its axes, as if it fed in and
-    /// positioned out.
+    /// The moves that a control makes of it; of a cycle that is bound to the spindle those of its axes, as if it fed in
+    /// and positioned out.
     ///
     /// * `pecks` – in how many it is drilled ([`whole_pecks`]); without effect on other cycles
     pub fn moves(&self, pecks: u32, retreats: PeckRetreats) -> impl Iterator<Item = HoleMove> {
@@ -248,7 +249,8 @@ pub fn peck_depths(deep: f64, peck: f64, pecks: u32) -> impl Iterator<Item = f64
     (1..pecks).map(move |count| f64::from(count) * peck).chain([deep])
 }
 
-/// In how many pecks a hole is drilled that is so many of them deep: the last one may be shorter, by a billionth also longer.
+/// In how many pecks a hole is drilled that is so many of them deep: the last one may be shorter, by a billionth also
+/// longer.
 #[must_use]
 pub fn whole_pecks(pecks: f64) -> u32 {
     (pecks - 1e-9).ceil().max(1.0) as u32

@@ -211,8 +211,8 @@ pub(crate) fn budget(
     Ok((json, told(&warnings)))
 }
 
-/// What a calibration says and makes: its report; the profile, its tables' folder and their texts; the JSON of `--json`;
-/// warnings.
+/// What a calibration says and makes: its report; the profile, its tables' folder and their texts; the JSON of
+/// `--json`; warnings.
 type Calibrated = (String, Option<(String, String, Vec<(String, Vec<u8>)>)>, Option<String>, Vec<Told>);
 
 /// `vpost calibrate INSTRUMENT …`

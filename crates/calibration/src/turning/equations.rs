@@ -57,8 +57,8 @@ impl Stretch {
     }
 
     /// Even shapes of EXZ without mean and slope, u from −1 to 1 along the stretch: `1/3 − u²`, whose middle is 1 above
-    /// its ends, and the Legendre polynomial `(35 u⁴ − 30 u² + 3)/8`. Outside the ends' values hold: what nobody saw does
-    /// not bend.
+    /// its ends, and the Legendre polynomial `(35 u⁴ − 30 u² + 3)/8`. Outside the ends' values hold: what nobody saw
+    /// does not bend.
     #[must_use]
     pub fn shapes(&self, z_mm: f64) -> [f64; 2] {
         let half = 0.5 * (self.high_mm - self.low_mm);

@@ -163,8 +163,8 @@ impl ToldApart {
         Ok(told)
     }
 
-    /// What else may change the size from part to part: growth where no time is known, an error that goes with the diameter
-    /// where time or the parts' order does.
+    /// What else may change the size from part to part: growth where no time is known, an error that goes with the
+    /// diameter where time or the parts' order does.
     fn rivals(&mut self, readings: &Readings<'_>) {
         let is_timed =
             readings.rows.iter().all(|row| row.feature != Feature::Diameter || row.time_s.is_some());
@@ -215,8 +215,8 @@ impl ToldApart {
 /// * `part_names` – of the parts, for messages
 ///
 /// # Errors
-/// Fewer than two parts, a part with one cross section, fewer readings than unknowns; repeats that disagree, an outlier;
-/// parts that are not of one machine; a taper that cannot be told.
+/// Fewer than two parts, a part with one cross section, fewer readings than unknowns; repeats that disagree, an
+/// outlier; parts that are not of one machine; a taper that cannot be told.
 pub fn calibrate(
     rows: &[TurnedReading],
     base: &TurningBase,
@@ -252,8 +252,8 @@ pub fn calibrate(
     loop {
         let removable = |k: &usize| match told.terms[*k] {
             Term::Bow => !told.terms.contains(&Term::FourthOrder),
-            // Left out though they are there, a squareness or a drift too small to be named would be counted as taper, or as
-            // the other drift, and surely.
+            // Left out though they are there, a squareness or a drift too small to be named would be counted as taper,
+            // or as the other drift, and surely.
             term => term == Term::FourthOrder,
         };
         let least = (0..told.terms.len()).filter(removable).map(|k| (k, tested(&told.terms, &adjusted, k)));
@@ -373,7 +373,8 @@ fn unseen_blunder_mm(readings: &Readings<'_>, within: &Estimate, noise_mm: f64) 
     if noise_mm > 0.0 { limit * noise_mm / least.sqrt() } else { 0.0 }
 }
 
-/// Half width of the 95 % interval of the geometry's part of a diameter against its mean, the largest, mm on the radius.
+/// Half width of the 95 % interval of the geometry's part of a diameter against its mean, the largest, mm on the
+/// radius.
 fn shape_u95_mm(readings: &Readings<'_>, terms: &[Term], adjusted: &Adjusted) -> f64 {
     let mut design = readings.jacobian(terms, &readings.tools, &adjusted.values);
     for k in (0..design.ncols()).filter(|k| terms.get(*k).is_none_or(|term| term.is_drift())) {
@@ -388,8 +389,8 @@ fn shape_u95_mm(readings: &Readings<'_>, terms: &[Term], adjusted: &Adjusted) ->
 }
 
 impl TurningCalibration {
-    /// Judges the change by diameters that the adjustment did not see. Parts of one row are judged at their tool's size,
-    /// or not at all.
+    /// Judges the change by diameters that the adjustment did not see. Parts of one row are judged at their tool's
+    /// size, or not at all.
     ///
     /// # Errors
     /// [`CalibrationError::TooFew`] where no row can be judged.

@@ -95,8 +95,8 @@ impl Taken<'_> {
         Ok(ControlPoints { commands, what })
     }
 
-    /// A ball on the table that the linear axes follow through the angles of the table's axes (Serkov 2017), all rotary axes
-    /// coming from below, the linear ones as they come from place to place.
+    /// A ball on the table that the linear axes follow through the angles of the table's axes (Serkov 2017), all rotary
+    /// axes coming from below, the linear ones as they come from place to place.
     pub(super) fn on_a_ball(&self, ball: &Given<Ball>) -> Result<ControlPoints, Failure> {
         let Ball { radius_mm, height_mm, lead } = **ball;
         let Self { machine, profile, tool_mm, .. } = *self;

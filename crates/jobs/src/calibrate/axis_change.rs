@@ -1,4 +1,5 @@
-//! What an interferometer read, against everything the base says: the change of each axis, and of the angles between them.
+//! What an interferometer read, against everything the base says: the change of each axis, and of the angles between
+//! them.
 
 use calibration::functions::{self, Function, FunctionReading};
 use calibration::measured_line::{
@@ -206,7 +207,8 @@ impl Session {
         Ok(change)
     }
 
-    /// The axis as it is written: the base's functions with the change; those of a model in their place, as far as they go.
+    /// The axis as it is written: the base's functions with the change; those of a model in their place, as far as they
+    /// go.
     ///
     /// # Errors
     /// Functions that have no range in common.
@@ -249,7 +251,8 @@ impl Session {
         Ok(made)
     }
 
-    /// The squareness with which the lines stand at the angles that were read, or, where none was read, at those of the base: (59).
+    /// The squareness with which the lines stand at the angles that were read, or, where none was read, at those of the
+    /// base: (59).
     ///
     /// # Errors
     /// Conditions that the base's effects need.

@@ -29,13 +29,14 @@ use super::work::Work;
 /// `vpost calibrate ballbar FILES… -o PROFILE`
 #[derive(Debug, Args)]
 pub struct Ballbar {
-    /// Readings (CSV): run, x_mm … z_mm of the moving ball, bx_mm … bz_mm of the other at angle 0, length_mm, and a_deg, b_deg,
-    /// c_deg, spindle_deg or dir_x … dir_z.
+    /// Readings (CSV): run, x_mm … z_mm of the moving ball, bx_mm … bz_mm of the other at angle 0, length_mm, and
+    /// a_deg, b_deg, c_deg, spindle_deg or dir_x … dir_z.
     #[arg(value_name = "READINGS.csv", required = true)]
     pub files: Vec<PathBuf>,
     #[command(flatten)]
     pub target: Target,
-    /// A point through which the axes of the table should go, machine coordinates, mm, where the base profile has no centre_mm.
+    /// A point through which the axes of the table should go, machine coordinates, mm, where the base profile has no
+    /// centre_mm.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub crossing: Option<Given<Point3>>,
     /// The same tests after a compensation: a table before and after.

@@ -171,8 +171,8 @@ impl Between {
 /// `vpost calibrate rtest FILES… -m PROFILE -o OUT`
 #[derive(Debug, Args)]
 pub struct RTest {
-    /// Ball deviations (CSV): run, one mounting of the ball; x_mm … z_mm, a_deg … c_deg commanded; dx_um dy_um dz_um, workpiece
-    /// frame; tool_x_mm …, dir_a …, u_um or u_x_um …, repeat, temp_c where known.
+    /// Ball deviations (CSV): run, one mounting of the ball; x_mm … z_mm, a_deg … c_deg commanded; dx_um dy_um dz_um,
+    /// workpiece frame; tool_x_mm …, dir_a …, u_um or u_x_um …, repeat, temp_c where known.
     #[arg(value_name = "ROWS.csv", required = true)]
     pub files: Vec<PathBuf>,
     #[command(flatten)]

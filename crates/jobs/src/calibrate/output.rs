@@ -215,8 +215,8 @@ impl Output {
         }
     }
 
-    /// Writes how the instrument stood, where it stood in one place only: a profile holds one `[setup]`. Takes out how an earlier one
-    /// did.
+    /// Writes how the instrument stood, where it stood in one place only: a profile holds one `[setup]`. Takes out how
+    /// an earlier one did.
     pub(super) fn set_up(&mut self, setups: &[Option<SetUp>]) {
         self.text.remove(&["setup"]);
         if let [Some(SetUp::Frame(motion))] = setups {
@@ -225,8 +225,8 @@ impl Output {
         }
     }
 
-    /// Uncertainty of the whole where some of the base stays, mm: what was not measured is as uncertain as the base says. Warns where it
-    /// does not say.
+    /// Uncertainty of the whole where some of the base stays, mm: what was not measured is as uncertain as the base
+    /// says. Warns where it does not say.
     pub(super) fn with_base_mm(&self, found_mm: f64, work: &Work<'_>) -> f64 {
         let Some(base) = &self.base else { return found_mm };
         let stated = base.calibrated.as_ref().and_then(|calibrated| calibrated.uncertainty_um);
@@ -356,8 +356,8 @@ impl Output {
         self.text.set_calibrated(&calibrated);
     }
 
-    /// The temperature at which the written tables hold, °C: that of the measurement; the base's where its effects say what a change
-    /// of temperature does, since their prediction was taken off, and where nobody said another.
+    /// The temperature at which the written tables hold, °C: that of the measurement; the base's where its effects say
+    /// what a change of temperature does, since their prediction was taken off, and where nobody said another.
     fn temperature_c(&self, measured: Option<f64>) -> Option<f64> {
         let base = self.base.as_ref();
         let before = base.and_then(|base| base.calibrated.as_ref()?.temperature_c);

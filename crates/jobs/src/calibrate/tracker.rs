@@ -43,7 +43,8 @@ pub struct Tracker {
     /// Interval whose directions make G and r01, from 0.
     #[arg(long, value_name = "K", default_value_t = 1)]
     pub interval: usize,
-    /// Show the cosines without their signs, as Tables 2.6 to 2.12 of Pimushkin 2023 print them. The profile keeps the signs.
+    /// Show the cosines without their signs, as Tables 2.6 to 2.12 of Pimushkin 2023 print them. The profile keeps the
+    /// signs.
     #[arg(long)]
     pub as_published: bool,
 }

@@ -58,8 +58,8 @@ struct Parts {
     names: Names,
 }
 
-/// From the gauge point to the tip of the tool of this name, mm: `H1`, or `T0101` whose offset is H1, an edge's name behind it;
-/// else what the user can do. Any name where the profile has no tools.
+/// From the gauge point to the tip of the tool of this name, mm: `H1`, or `T0101` whose offset is H1, an edge's name
+/// behind it; else what the user can do. Any name where the profile has no tools.
 ///
 /// # Errors
 /// What the user can do.

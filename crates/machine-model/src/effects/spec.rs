@@ -39,7 +39,8 @@ const INTERVAL: [&str; 2] = ["from_mm", "to_mm"];
 const PLACE: [&str; 2] = ["centre_mm", "width_mm"];
 const XYZ: [&str; 3] = ["x_um", "y_um", "z_um"];
 
-/// Of a curve along an axis; its slope comes last, for that is mostly the business of a scale, a squareness or the frame.
+/// Of a curve along an axis; its slope comes last, for that is mostly the business of a scale, a squareness or the
+/// frame.
 const CURVE: [&str; 7] = ["p2_um", "p3_um", "p4_um", "p5_um", "p6_um", "p7_um", "p1_um"];
 
 /// Order of the polynomial that a coefficient of [`CURVE`] belongs to.

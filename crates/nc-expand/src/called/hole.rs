@@ -1,8 +1,8 @@
 //! One hole of a called cycle as moves along the axis of drilling.
 //!
 //! Source: SINUMERIK 840D/840Di/810D Programming Guide Cycles, sections 2.1.2 (CYCLE81), 2.1.3 (CYCLE82), 2.1.4
-//! (CYCLE83), 2.1.7 (CYCLE85) and 2.1.8 (CYCLE86). Lengths in units of the program, along the axis that stands upright on
-//! the plane.
+//! (CYCLE83), 2.1.7 (CYCLE85) and 2.1.8 (CYCLE86). Lengths in units of the program, along the axis that stands upright
+//! on the plane.
 
 use diagnostic::{Text, both};
 use nc_syntax::dialect::Called;
@@ -292,8 +292,8 @@ fn ahead_mm(whole_mm: f64) -> f64 {
     if whole_mm <= SHALLOW_DEPTH_MM { SHALLOW_MM } else { (whole_mm * DEEP_SHARE).min(DEEP_MOST_MM) }
 }
 
-/// How long the strokes of a hole are: each shorter than the one before it by `less` until it is no longer than that; the last two share
-/// what is left where the strokes shrink.
+/// How long the strokes of a hole are: each shorter than the one before it by `less` until it is no longer than that;
+/// the last two share what is left where the strokes shrink.
 fn lengths(whole: f64, first: f64, less: f64) -> Option<Vec<f64>> {
     let mut lengths = vec![first];
     let mut left = whole - first;

@@ -1,12 +1,12 @@
 //! Threads of LinuxCNC in several passes: G76.
 //!
-//! G-code reference, "G76 Threading Cycle", and what `rs274` of 2.9 makes of it: with I the crest's distance from the drive
-//! line (where the tool stands; below zero outside), J the first infeed, K the height, R the degression, Q the angle of the
-//! infeed and H the spring passes, all along X as X words count, pass n lies
+//! G-code reference, "G76 Threading Cycle", and what `rs274` of 2.9 makes of it: with I the crest's distance from the
+//! drive line (where the tool stands; below zero outside), J the first infeed, K the height, R the degression, Q the
+//! angle of the infeed and H the spring passes, all along X as X words count, pass n lies
 //! |I| + J·n^(1/R) from the drive line until |I| + K is reached, which is cut 1 + H times; it starts, and ends, nearer to the
-//! chuck by (depth below the crest)·tan Q, its end as much short of Z as the last pass is shifted more. Before and behind a
-//! pass the tool stands off the drive line by what is still to be cut. The tool ends on the drive line at Z. Tapers at the
-//! ends (L, E) are refused: their parts have other leads, and each would have to be a thread of its own.
+//! chuck by (depth below the crest)·tan Q, its end as much short of Z as the last pass is shifted more. Before and
+//! behind a pass the tool stands off the drive line by what is still to be cut. The tool ends on the drive line at Z.
+//! Tapers at the ends (L, E) are refused: their parts have other leads, and each would have to be a thread of its own.
 
 use diagnostic::Refusal;
 use nc_syntax::Span;
@@ -56,8 +56,8 @@ impl Writer<'_, '_, '_> {
         let mut depths = Vec::new();
         for pass in 1..=MOST_PASSES {
             let share = math::powf(f64::from(pass), 1.0 / degression);
-            // In the program's own unit, as the interpreter reckons: whether a pass as deep as the thread, but for the last
-            // digit, is one more or the last one hangs on it.
+            // In the program's own unit, as the interpreter reckons: whether a pass as deep as the thread, but for the
+            // last digit, is one more or the last one hangs on it.
             if crest / MILLION + first / MILLION * share >= height / MILLION + crest / MILLION {
                 break;
             }

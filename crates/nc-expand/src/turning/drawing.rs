@@ -1,9 +1,9 @@
 //! Words of drawings on a lathe: corners (`,R2.`, `,C1.`) and angles (`,A160.`), written out as lines and arcs.
 //!
-//! B-64304EN-1, "Direct drawing dimension programming", in the plane of radius and Z. `,A` is the angle of a line from +Z
-//! towards +X; with X or Z it gives the other one, alone it needs a next line with `,A`, X and Z, and both meet where their
-//! lines cross. `,R` rounds the corner to the next line, `,C` cuts it off by as much along each. Lines alone (G1) have
-//! them, between the blocks that P and Q of a cycle name too. What is written has six decimals.
+//! B-64304EN-1, "Direct drawing dimension programming", in the plane of radius and Z. `,A` is the angle of a line from
+//! +Z towards +X; with X or Z it gives the other one, alone it needs a next line with `,A`, X and Z, and both meet
+//! where their lines cross. `,R` rounds the corner to the next line, `,C` cuts it off by as much along each. Lines
+//! alone (G1) have them, between the blocks that P and Q of a cycle name too. What is written has six decimals.
 //!
 //! A contour's lines are drawn when its cycle reads them.
 

@@ -1,12 +1,13 @@
 //! Holes on the axis: G83 and G85.
 //!
-//! B-64304EN-1, "Front drilling cycle", "Front boring cycle": along X to the hole, a rapid to R, a feed to Z, dwell P at the
-//! bottom, a rapid back. With Q in pecks: parameter 5101.2 (RTR) says whether each goes back to R or by the return 5114 (d);
-//! down again a rapid ends d above what is drilled. Q is a depth, without a point in least increments. G85 comes back to R in
-//! a feed, by parameter 5121 (0 there doubles F), and from there in a rapid. In system A R counts from where the cycle starts,
-//! and the tool goes back there; in B and C R is a place or a way by parameter 5102.6 (RAB), and G99 leaves the tool at R.
-//! Controls that follow Fanuc take it for a place in system A too: the profile may say so, and has to where a way of R would
-//! lead off the hole. The manual's W counts from R, a word of the block from where the tool stands: with W alone nobody knows.
+//! B-64304EN-1, "Front drilling cycle", "Front boring cycle": along X to the hole, a rapid to R, a feed to Z, dwell P
+//! at the bottom, a rapid back. With Q in pecks: parameter 5101.2 (RTR) says whether each goes back to R or by the
+//! return 5114 (d); down again a rapid ends d above what is drilled. Q is a depth, without a point in least increments.
+//! G85 comes back to R in a feed, by parameter 5121 (0 there doubles F), and from there in a rapid. In system A R
+//! counts from where the cycle starts, and the tool goes back there; in B and C R is a place or a way by parameter
+//! 5102.6 (RAB), and G99 leaves the tool at R. Controls that follow Fanuc take it for a place in system A too: the
+//! profile may say so, and has to where a way of R would lead off the hole. The manual's W counts from R, a word of the
+//! block from where the tool stands: with W alone nobody knows.
 
 use diagnostic::{Refusal, both};
 use nc_program::modal::ReturnLevel;
@@ -141,8 +142,8 @@ impl Writer<'_, '_, '_> {
         Ok(Hole { x, start: start[1], level, sign, deep: (bottom - level) * sign })
     }
 
-    /// True where R is a place, false where it is a way from the start; `onwards`: that way leads towards the bottom (1), or
-    /// off it (-1).
+    /// True where R is a place, false where it is a way from the start; `onwards`: that way leads towards the bottom
+    /// (1), or off it (-1).
     fn r_is_place(&self, words: &Words<'_, '_>, span: Span, onwards: i64) -> Result<bool, Fault> {
         if !self.here.says_places() {
             return Ok(false);

@@ -97,8 +97,8 @@ impl Writer<'_, '_, '_> {
         Ok(Moves { before, behind, places: moves.places || increments.is_some(), incremental, ..moves })
     }
 
-    /// A move to a place. Axes that a feed leaves where they are get no word; a rapid names both, so that both are corrected
-    /// for where it ends, and what follows starts there.
+    /// A move to a place. Axes that a feed leaves where they are get no word; a rapid names both, so that both are
+    /// corrected for where it ends, and what follows starts there.
     pub(super) fn go(&mut self, moves: &mut Moves, code: Code, to: Spot) {
         self.go_with(moves, code, to, b"");
     }

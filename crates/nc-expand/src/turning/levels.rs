@@ -1,9 +1,9 @@
 //! Passes of LinuxCNC's G71 and G72, in the frame of a laid contour ([`super::profile`]).
 //!
 //! Levels lie whole depths below the start. Each goes to where the diving piece reaches it, along the first axis
-//! to the contour, off by the escape in both axes, back by as much, and down again. Behind the lowest the contour itself
-//! is cut, up to where it dives again: there a pocket begins, which is cut likewise. Without pockets only what rises is
-//! cut; pockets alone begin at the bottom of the first dive.
+//! to the contour, off by the escape in both axes, back by as much, and down again. Behind the lowest the contour
+//! itself is cut, up to where it dives again: there a pocket begins, which is cut likewise. Without pockets only what
+//! rises is cut; pockets alone begin at the bottom of the first dive.
 
 use nc_syntax::dialect::Pockets;
 
@@ -28,9 +28,9 @@ pub(super) fn cut(
 
 /// Whether the same moves come of a contour that lies higher or lower by the last digits of its numbers.
 ///
-/// Levels come of differences, a contour that is moved off of sums: where one lies on the other but for their last digits,
-/// whether a pass is cut there depends on how the interpreter rounds on its way to either. Numbers that binary fractions hold
-/// are the same to everybody.
+/// Levels come of differences, a contour that is moved off of sums: where one lies on the other but for their last
+/// digits, whether a pass is cut there depends on how the interpreter rounds on its way to either. Numbers that binary
+/// fractions hold are the same to everybody.
 pub(super) fn passes_are_certain(segments: &[Segment], pockets: Pockets, depth: f64, escape: f64) -> bool {
     let exact = |value: f64| (value * f64::from(1_u32 << 20)).fract() == 0.0;
     if exact(depth) && segments.iter().all(|segment| exact(segment.start[1]) && exact(segment.end[1])) {

@@ -1,9 +1,9 @@
 //! Single passes: G90, G92, G94 of system A, G77 to G79 of B, G20, G21, G24 of C.
 //!
-//! Four moves from where the tool stands and back there (B-64304EN-1, "Canned cycle (G90, G92, G94)"): to the first place
-//! in a rapid, the cut, out, and back in a rapid. Out is a feed behind a cut and a rapid behind a thread. R is the taper:
-//! what the radius (along X: Z, of a face) at the start of the cut is more than at its end. Words hold until they are
-//! written again, and each block that has one makes a pass.
+//! Four moves from where the tool stands and back there (B-64304EN-1, "Canned cycle (G90, G92, G94)"): to the first
+//! place in a rapid, the cut, out, and back in a rapid. Out is a feed behind a cut and a rapid behind a thread. R is
+//! the taper: what the radius (along X: Z, of a face) at the start of the cut is more than at its end. Words hold until
+//! they are written again, and each block that has one makes a pass.
 //!
 //! A thread ends in a chamfer of so many leads, under an angle, which parameters of the control say: it is written as a
 //! thread that goes on outwards, in step with the spindle. What a control makes of a stop (feed hold) during a cycle is
@@ -62,8 +62,9 @@ impl Writer<'_, '_, '_> {
 
     /// G90 of system A among the codes at a program's head, where people are used to it as the code of places.
     ///
-    /// It has no place and none is held from a pass before it, so nothing moves; and what a control might make of it all the
-    /// same would come back to where the tool stands. It is left out, and which motion is in force behind it nobody knows.
+    /// It has no place and none is held from a pass before it, so nothing moves; and what a control might make of it
+    /// all the same would come back to where the tool stands. It is left out, and which motion is in force behind it
+    /// nobody knows.
     fn idle_pass(&mut self, at: usize) {
         let words = self.words(at);
         self.unsure_feed &= words.number(b'F').is_none();
@@ -231,8 +232,8 @@ impl Writer<'_, '_, '_> {
         if share < 0.0 {
             return Err(words.fault(refusal::thread_shorter_than_chamfer(length), words.whole()));
         }
-        // Where the cycle starts nothing stands along the thread: every pass comes back there in a rapid. A chamfer that gets
-        // there before its end goes on along it.
+        // Where the cycle starts nothing stands along the thread: every pass comes back there in a rapid. A chamfer
+        // that gets there before its end goes on along it.
         let room = (clear_mm - begins[0]).abs();
         let made = if outwards > room { room / outwards } else { 1.0 };
         let ends = [

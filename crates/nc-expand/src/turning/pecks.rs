@@ -1,10 +1,11 @@
 //! Pecks: G74 along Z, G75 along X (systems A and B), G76 and G77 of C.
 //!
-//! B-64304EN-1, "End face peck drilling cycle", "Outer diameter / internal diameter drilling cycle". From where the tool
-//! stands it goes down in steps (G74: Q, G75: P), back by the return (R of the first block) behind each but the last, and from
-//! the bottom in a rapid to where it began; then along by the other step, until it has been at the place of X and Z; then back
-//! to the start. P and Q are radius or Z, without a point least increments. R of the second block, the relief at the
-//! bottom, is refused: at the first groove there is no room for it, and what a control does there the manual leaves open.
+//! B-64304EN-1, "End face peck drilling cycle", "Outer diameter / internal diameter drilling cycle". From where the
+//! tool stands it goes down in steps (G74: Q, G75: P), back by the return (R of the first block) behind each but the
+//! last, and from the bottom in a rapid to where it began; then along by the other step, until it has been at the place
+//! of X and Z; then back to the start. P and Q are radius or Z, without a point least increments. R of the second
+//! block, the relief at the bottom, is refused: at the first groove there is no room for it, and what a control does
+//! there the manual leaves open.
 
 use diagnostic::{Refusal, both};
 use nc_syntax::Span;

@@ -1,20 +1,22 @@
 //! Contours with pockets: type II of G71 and G72.
 //!
-//! B-64304EN-1, "Stock removal in turning", type II: the block of P names both axes, the contour goes on along Z (X of G72) all
-//! the way and may turn back along the other axis. In which order a control cuts pockets, and how it comes out of each pass,
-//! differs; what all of them leave is the contour off by the allowance. So passes are laid here by rules of our own, of which
-//! none cuts into that contour, goes deeper than one depth of cut below what is cut already, or crosses in a rapid what still
-//! stands:
+//! B-64304EN-1, "Stock removal in turning", type II: the block of P names both axes, the contour goes on along Z (X of
+//! G72) all the way and may turn back along the other axis. In which order a control cuts pockets, and how it comes out
+//! of each pass, differs; what all of them leave is the contour off by the allowance. So passes are laid here by rules
+//! of our own, of which none cuts into that contour, goes deeper than one depth of cut below what is cut already, or
+//! crosses in a rapid what still stands:
 //!
 //! * Levels lie whole depths below the start. What lies deeper than a level are stretches of the contour, and those of a deeper
 //!   level lie within them: a tree, which is cut pocket by pocket, each level before the ones below it.
 //! * The first stretch of a level is reached along the contour from the pass above, down the flank which the finishing tool
-//!   goes down too; a further one along the contour from the ridge before it, over which the tool goes in the slot of the pass
+//!   goes down too; a further one along the contour from the ridge before it, over which the tool goes in the slot of
+//! the pass
 //!   above.
 //! * A pass ends where the contour comes up to it, and is left by the escape at 45 degrees.
 //! * Behind all of them the contour is cut as a whole, as in type I.
 //!
-//! W shifts one wall of a pocket into the other, so with pockets it has to be zero; U must lead away from the workpiece.
+//! W shifts one wall of a pocket into the other, so with pockets it has to be zero; U must lead away from the
+//! workpiece.
 
 use super::Writer;
 use super::contour::{Axis, Contour, Way};

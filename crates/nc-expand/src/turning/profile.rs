@@ -1,14 +1,15 @@
 //! Geometry of LinuxCNC's G70, G71 and G72: a contour, what lies off it by a distance, and the moves down to it.
 //!
-//! G-code reference, "G70 Lathe finishing cycle", "G71 G72 Lathe roughing cycles", and what `rs274` of 2.9 makes of them,
-//! with which the moves agree one by one.
+//! G-code reference, "G70 Lathe finishing cycle", "G71 G72 Lathe roughing cycles", and what `rs274` of 2.9 makes of
+//! them, with which the moves agree one by one.
 //!
 //! The contour is laid so that it falls along its first axis and rises along the second ([`Layout`]); for G72 the axes
 //! change places first. Its first piece is the way from where the cycle starts to the contour: it may dive, and stays
 //! where it is when the rest is moved off.
 //!
 //! * Off by a distance: in steps of at most half the smallest piece, each time every piece along its normal; where two
-//!   pieces part by more than [`GAP`] along the first axis an arc about their corner closes the gap, else they are cut or
+//!   pieces part by more than [`GAP`] along the first axis an arc about their corner closes the gap, else they are cut
+//! or
 //!   lengthened to where they meet. A piece shorter than [`SHORT`] goes.
 //!
 //! Passes down to it are a room of their own: [`super::levels`].
@@ -134,7 +135,8 @@ impl Profile {
         Ok(self.told(strokes))
     }
 
-    /// A way to the contour that would begin on the side of the workpiece goes along to above its place first, then down.
+    /// A way to the contour that would begin on the side of the workpiece goes along to above its place first, then
+    /// down.
     fn dive_straight(&mut self) {
         let first = &mut self.segments[0];
         first.start[0] = first.start[0].max(first.end[0]);

@@ -1,15 +1,15 @@
 //! Contours: G70 to G73 (systems A and B), G72 to G75 (C).
 //!
-//! B-64304EN-1, "Multiple repetitive cycle". G71, with A where the tool stands, A' the end of the block of P and B that of Q:
-//! the tool goes to C, which lies off A by the finishing allowances, and from there down in depths of cut; each pass runs
-//! along Z to the contour that lies off the programmed one by the allowances, leaves it by the escape at 45 degrees, and goes
-//! back in a rapid. Behind the last whole depth that contour is cut as a whole, and the tool goes back to A. Infeeds are
-//! rapids or feeds as the block of P is. G72 is the same with the axes changed. Type I: the block of P names the axis of the
-//! infeed only, and the contour turns back along neither axis. G73 cuts the contour so many times, the first one off by the
-//! relief, the last one by the allowances.
+//! B-64304EN-1, "Multiple repetitive cycle". G71, with A where the tool stands, A' the end of the block of P and B that
+//! of Q: the tool goes to C, which lies off A by the finishing allowances, and from there down in depths of cut; each
+//! pass runs along Z to the contour that lies off the programmed one by the allowances, leaves it by the escape at 45
+//! degrees, and goes back in a rapid. Behind the last whole depth that contour is cut as a whole, and the tool goes
+//! back to A. Infeeds are rapids or feeds as the block of P is. G72 is the same with the axes changed. Type I: the
+//! block of P names the axis of the infeed only, and the contour turns back along neither axis. G73 cuts the contour so
+//! many times, the first one off by the relief, the last one by the allowances.
 //!
-//! Roughing heeds F and S of its own block, not those of the contour. G70 makes the contour's blocks as they stand, with F
-//! and S of their own, and goes back in a rapid to where it began.
+//! Roughing heeds F and S of its own block, not those of the contour. G70 makes the contour's blocks as they stand,
+//! with F and S of their own, and goes back in a rapid to where it began.
 
 use diagnostic::both;
 use nc_program::Compensation;

@@ -1,12 +1,13 @@
 //! Contours of LinuxCNC: G70, G71, G71.1, G71.2, G72, G72.1, G72.2 with a subroutine as their contour.
 //!
-//! G-code reference, "G70 Lathe finishing cycle", "G71 G72 Lathe roughing cycles"; what it leaves open is told by `rs274` of
-//! 2.9. Q is the number of the subroutine, X and Z where the cycle starts (else where the tool stands). G71, G72: D is
-//! the distance that stays, I the depth of a pass, R the escape; .1 cuts no pockets, .2 nothing but pockets. G70: P passes
-//! from D down to E off the contour. All of them are radii. The tool ends where the last move ends.
+//! G-code reference, "G70 Lathe finishing cycle", "G71 G72 Lathe roughing cycles"; what it leaves open is told by
+//! `rs274` of 2.9. Q is the number of the subroutine, X and Z where the cycle starts (else where the tool stands). G71,
+//! G72: D is the distance that stays, I the depth of a pass, R the escape; .1 cuts no pockets, .2 nothing but pockets.
+//! G70: P passes from D down to E off the contour. All of them are radii. The tool ends where the last move ends.
 //!
-//! The interpreter reads the blocks of the subroutine and executes none: of their codes it takes G0 to G3, and F, S, M and T
-//! do nothing. [`crate::run`] puts those blocks behind the block of the cycle, its variables and loops worked out.
+//! The interpreter reads the blocks of the subroutine and executes none: of their codes it takes G0 to G3, and F, S, M
+//! and T do nothing. [`crate::run`] puts those blocks behind the block of the cycle, its variables and loops worked
+//! out.
 
 use std::ops::Range;
 

@@ -1,17 +1,17 @@
 //! Threads in several passes: G76 (systems A and B), G78 of C.
 //!
-//! B-64304EN-1, "Multiple threading cycle". The first block says in P six digits: finishing passes, chamfer in tenths of the
-//! lead, angle of the tool's tip; in Q the least infeed; in R the finishing allowance. The second one: X and Z of the thread's
-//! root at its end, R the taper (what the radius at the start is more), P the height, Q the first infeed, F the lead. The
-//! n-th pass lies the first infeed times the root of n deep, and at least the least infeed below the one before, down to the
-//! finishing allowance above the root; then the finishing passes, at the root.
+//! B-64304EN-1, "Multiple threading cycle". The first block says in P six digits: finishing passes, chamfer in tenths
+//! of the lead, angle of the tool's tip; in Q the least infeed; in R the finishing allowance. The second one: X and Z
+//! of the thread's root at its end, R the taper (what the radius at the start is more), P the height, Q the first
+//! infeed, F the lead. The n-th pass lies the first infeed times the root of n deep, and at least the least infeed
+//! below the one before, down to the finishing allowance above the root; then the finishing passes, at the root.
 //!
-//! In one block (the format of series 10 and 11, and Haas's) K is the height, D the first infeed, I the taper, A the angle;
-//! the rest parameters say.
+//! In one block (the format of series 10 and 11, and Haas's) K is the height, D the first infeed, I the taper, A the
+//! angle; the rest parameters say.
 //!
-//! With a tip of zero degrees the tool feeds straight in. Of other angles one edge cuts: each pass starts further along Z, by
-//! its depth times the tangent of half the angle. From where that counts the manual shows in a figure and says in no
-//! sentence; the profile has to say it ([`FlankFrom`]).
+//! With a tip of zero degrees the tool feeds straight in. Of other angles one edge cuts: each pass starts further along
+//! Z, by its depth times the tangent of half the angle. From where that counts the manual shows in a figure and says in
+//! no sentence; the profile has to say it ([`FlankFrom`]).
 
 use diagnostic::{Refusal, Text, both};
 use nc_syntax::Span;

@@ -1,9 +1,9 @@
 //! Curves by control points: G5, G5.1, G5.2 with G5.3, G6.2.
 //!
-//! LinuxCNC's as its interpreter reads them (`interp_convert.cc`: `convert_spline`, `convert_nurbs`; G5.2 outside the plane of
-//! G17 and G6.2 since the versions behind 2.9, which refuse them), Fanuc's as the operator's manual of the series 15i has them
-//! (NURBS interpolation). A curve becomes rational Bézier curves
-//! ([`toolpath::Nurbs::beziers`]), each a feed motion of the block with which the curve is whole.
+//! LinuxCNC's as its interpreter reads them (`interp_convert.cc`: `convert_spline`, `convert_nurbs`; G5.2 outside the
+//! plane of G17 and G6.2 since the versions behind 2.9, which refuse them), Fanuc's as the operator's manual of the
+//! series 15i has them (NURBS interpolation). A curve becomes rational Bézier curves ([`toolpath::Nurbs::beziers`]),
+//! each a feed motion of the block with which the curve is whole.
 
 mod bezier;
 mod faults;

@@ -1,4 +1,5 @@
-//! Wear offsets of X, for who may change offsets only: what one number per tool takes off the radius, and what it leaves.
+//! Wear offsets of X, for who may change offsets only: what one number per tool takes off the radius, and what it
+//! leaves.
 
 use std::fmt::Write;
 

@@ -96,7 +96,8 @@ impl Rows {
 
     /// The run in which the ball's place in the workpiece moves farthest by the profile, and how far, mm.
     ///
-    /// A ball in its nest stays where it is. Where it does not, a sign or a centre may be wrong, or the linear axes did not follow.
+    /// A ball in its nest stays where it is. Where it does not, a sign or a centre may be wrong, or the linear axes did
+    /// not follow.
     pub(super) fn moving_ball(&self) -> Option<(&str, f64)> {
         let (run, mm) = self.farthest(&self.nominal_mm)?;
         (mm > MOST_MM).then_some((self.runs[run].as_str(), mm))
