@@ -6,11 +6,10 @@
 //!
 //! * Polar: in G90, about the program's zero, both words named once, then each held until it is named again:
 //!   first axis = radius · cos angle, second = radius · sin angle.
-//! * Corner between two lines of the plane, in G90, the next line in the next block. With u and v the unit
-//!   vectors from the corner along the two lines and θ the angle between them, a chamfer of c goes from c·u to
-//!   c·v, and a rounding of r from t·u to t·v with t = r / tan(θ/2), about the tangent point's r to the inside. A
-//! chamfer
-//!   of length l has c = l / (2 sin(θ/2)).
+//! * Corner between two lines of the plane, in G90, the next line in the next block. With u and v the unit vectors from
+//!   the corner along the two lines and θ the angle between them, a chamfer of c goes from c·u to c·v, and a rounding
+//!   of r from t·u to t·v with t = r / tan(θ/2), about the tangent point's r to the inside. A chamfer of length l has c
+//!   = l / (2 sin(θ/2)).
 //!
 //! The numbers written have 6 decimals; what that neglects is half a nanometre.
 

@@ -7,11 +7,10 @@
 //!
 //! # Positions
 //!
-//! * The axes stand nowhere known at the start ([`Setup::start_mm`] may say otherwise), after G28, G30
-//!   and probe moves (the axes named; all where none is named), after M codes whose row says so (behind a tool change
-//! the
-//!   setup may know better), after G53 under G91, and behind motions that block delete may skip. G53 under G90 makes
-//! its axes known.
+//! * The axes stand nowhere known at the start ([`Setup::start_mm`] may say otherwise), after G28, G30 and probe moves
+//!   (the axes named; all where none is named), after M codes whose row says so (behind a tool change the setup may
+//!   know better), after G53 under G91, and behind motions that block delete may skip. G53 under G90 makes its axes
+//!   known.
 //! * A rapid may start from and lead to partly unknown positions. A feed move, an arc, a cycle and an
 //!   increment need the positions they start from.
 //! * A change of work offset or tool length moves nothing: the axis commands stay, and the program's
@@ -30,11 +29,10 @@
 //! * I, J, K that are missing are 0, but an arc without any and without R is refused: neither is modal.
 //! * A cycle makes a hole in each block that has an axis word or R, none for F, S, M or P alone, none for
 //!   K0 or L0. Its initial level is the normal axis where the series of cycles began.
-//! * `/`: see the module `delete`: blocks of one switch behind each other are executed all or skipped all; settings that
-//!   would differ behind them are refused, positions are forgotten.
-//! * Words no code here asks for (S, T, D, E, unknown M) pass; unknown M codes are counted ([`Evidence`]). What they mean
-//!   for the part: [`process`]. Unknown G codes, variables, flow and bracket
-//!   commands are refused.
+//! * `/`: see the module `delete`: blocks of one switch behind each other are executed all or skipped all; settings
+//!   that would differ behind them are refused, positions are forgotten.
+//! * Words no code here asks for (S, T, D, E, unknown M) pass; unknown M codes are counted ([`Evidence`]). What they
+//!   mean for the part: [`process`]. Unknown G codes, variables, flow and bracket commands are refused.
 //! * The first `%` opens the program, the next one, M2 or M30 ends it; nothing after that is looked at.
 
 mod alike;

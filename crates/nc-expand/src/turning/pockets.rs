@@ -6,12 +6,11 @@
 //! of our own, of which none cuts into that contour, goes deeper than one depth of cut below what is cut already, or
 //! crosses in a rapid what still stands:
 //!
-//! * Levels lie whole depths below the start. What lies deeper than a level are stretches of the contour, and those of a deeper
-//!   level lie within them: a tree, which is cut pocket by pocket, each level before the ones below it.
-//! * The first stretch of a level is reached along the contour from the pass above, down the flank which the finishing tool
-//!   goes down too; a further one along the contour from the ridge before it, over which the tool goes in the slot of
-//! the pass
-//!   above.
+//! * Levels lie whole depths below the start. What lies deeper than a level are stretches of the contour, and those of
+//!   a deeper level lie within them: a tree, which is cut pocket by pocket, each level before the ones below it.
+//! * The first stretch of a level is reached along the contour from the pass above, down the flank which the finishing
+//!   tool goes down too; a further one along the contour from the ridge before it, over which the tool goes in the slot
+//!   of the pass above.
 //! * A pass ends where the contour comes up to it, and is left by the escape at 45 degrees.
 //! * Behind all of them the contour is cut as a whole, as in type I.
 //!

@@ -9,8 +9,7 @@
 //!
 //! * Off by a distance: in steps of at most half the smallest piece, each time every piece along its normal; where two
 //!   pieces part by more than [`GAP`] along the first axis an arc about their corner closes the gap, else they are cut
-//! or
-//!   lengthened to where they meet. A piece shorter than [`SHORT`] goes.
+//!   or lengthened to where they meet. A piece shorter than [`SHORT`] goes.
 //!
 //! Passes down to it are a room of their own: [`super::levels`].
 
