@@ -8,7 +8,7 @@ use nc_syntax::{Block, Dialect, EnvelopeFinder, Item, Place, Reader};
 /// A place in a source file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
-    /// 0: the program itself; n: [`Expanded::file`] n.
+    /// 0: the program itself; n: [`crate::Expanded::file`] n.
     pub file: usize,
     /// Bytes of that file.
     pub span: Range<u64>,
