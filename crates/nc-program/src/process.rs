@@ -210,7 +210,7 @@ impl Process {
         let cycle = cycle.map(|cycle| {
             let peck = cycle.peck_mm.map(|mm| Decimal { mantissa: (mm * 1e6).round() as i64, decimals: 6 });
             let dwell = cycle.dwell.filter(|_| cycle.kind == CycleKind::Synchronised).map(|(time, _)| time);
-            let peck = peck.filter(|_| cycle.kind != CycleKind::Drill && !cycle.kind.bores());
+            let peck = peck.filter(|_| cycle.kind.takes_q());
             let words = [(b'P', dwell), (b'Q', peck)];
             let arguments = words.iter().filter_map(|(letter, word)| Some(Argument::new(*letter, (*word)?)));
             Mode { group: MOTION_GROUP, code: cycle.code, arguments: arguments.collect() }

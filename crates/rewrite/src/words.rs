@@ -6,7 +6,7 @@ use nc_program::{Context, DirectionWords};
 use nc_syntax::dialect::{Action, Dialect, GCode};
 use nc_syntax::{Block, Letters};
 use smallvec::SmallVec;
-use toolpath::{CycleKind, Feed, Hole, Motion, PeckRetreats, RotaryChain, Shape};
+use toolpath::{Feed, Hole, Motion, PeckRetreats, RotaryChain, Shape};
 use units::decimal::Decimal;
 
 /// The dialect's own codes for the motions that correction writes.
@@ -70,8 +70,7 @@ pub(crate) fn lost(
     if row.is_some_and(|row| matches!(row.action, Action::Cycle(_))) {
         return WordEdits::new();
     }
-    let pecks = cycle.kind != CycleKind::Drill && !cycle.kind.bores();
-    let peck = cycle.peck_mm.filter(|_| pecks).map(|mm| {
+    let peck = cycle.peck_mm.filter(|_| cycle.kind.takes_q()).map(|mm| {
         let steps = mm / context.word_mm(plane.axes()[2]) * f64::from(10u32.pow(DECIMALS.into()));
         Decimal { mantissa: units::decimal::round(steps), decimals: DECIMALS }
     });

@@ -105,10 +105,10 @@ impl CycleKind {
         matches!(self, Self::PeckFull | Self::PeckChip)
     }
 
-    /// Leaves the hole at feed rate.
+    /// Q says something of it: the depth of a peck, or what is bound to the spindle.
     #[must_use]
-    pub const fn bores(self) -> bool {
-        matches!(self, Self::Bore | Self::BoreOut)
+    pub const fn takes_q(self) -> bool {
+        !matches!(self, Self::Drill | Self::Bore | Self::BoreOut)
     }
 }
 
