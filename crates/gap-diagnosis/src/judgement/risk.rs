@@ -110,8 +110,7 @@ impl Assembly<'_> {
         let model = self.model;
         let (library, parts) = (&model.library, &model.parts);
         let score = model.space.fit(library, parts).score;
-        let prior =
-            |parts: &[Part]| -> f64 { self.values(parts).iter().map(|(t, v)| log_prior(t, *v)).sum() };
+        let prior = |parts: &[Part]| log_prior(&model.space.values(library, parts, model.solution.rho));
         let own_prior = prior(parts);
         let pairs = (0..parts.len()).flat_map(|a| (0..a).map(move |b| vec![b, a]));
         let written =
@@ -138,13 +137,6 @@ impl Assembly<'_> {
             }
         }
         found
-    }
-
-    /// Columns of some parts with the values that they have together, the set-up's left out.
-    fn values(&self, parts: &[Part]) -> Vec<(Term, f64)> {
-        let sub = self.model.space.gram.select(&self.model.library.model_columns(parts));
-        let values = sub.coefficients(self.model.solution.rho);
-        sub.terms.into_iter().zip(values).skip(self.model.library.nuisances).collect()
     }
 
     /// False for faults of the instrument, and for causes that such a fault could have shown as well: nothing is

@@ -154,11 +154,16 @@ impl Library {
             ) => direction == component,
             _ => false,
         };
-        let named = |(candidate, own): (usize, &Candidate)| {
+        self.named(owns)
+    }
+
+    /// The first form that may be named of every effect of some kinds.
+    pub(crate) fn named(&self, is_one: impl Fn(EffectKind) -> bool) -> Vec<Part> {
+        let of = |(candidate, own): (usize, &Candidate)| {
             let variant = own.variants.iter().position(|form| !form.only_rival)?;
-            owns(own.kind).then_some(Part { candidate, variant })
+            is_one(own.kind).then_some(Part { candidate, variant })
         };
-        self.candidates.iter().enumerate().filter_map(named).collect()
+        self.candidates.iter().enumerate().filter_map(of).collect()
     }
 
     /// True where a part completes one of some curves: it is their constant or their slope.

@@ -152,18 +152,21 @@ pub(crate) const fn is_straight(kind: EffectKind) -> bool {
     matches!(kind, EffectKind::Scale(_) | EffectKind::Squareness(..))
 }
 
-/// Logarithm of how plausible a coefficient is before anything is measured, as far as it parts effects that look alike: what
+/// Logarithm of how plausible coefficients are before anything is measured, as far as it parts effects that look alike: what
 /// assembly leaves between axes, and what an instrument's temperature does to a scale, is hundreds of µrad and µm/m; an angle of
 /// a carriage changes by tens of µrad on its way (20 arc seconds are a bad one), and a screw errs by some µm within a turn.
-pub(crate) fn log_prior(term: &Term, value: f64) -> f64 {
-    let Term::Effect { kind, .. } = term else { return 0.0 };
-    let usual = match kind {
+pub(crate) fn log_prior(values: &[(Term, f64)]) -> f64 {
+    let usual = |kind: &EffectKind| match kind {
         EffectKind::Angular { .. } => 100.0,
         EffectKind::Scale(_) | EffectKind::Squareness(..) => 500.0,
         EffectKind::Pitch(_) => 10.0,
-        _ => return 0.0,
+        _ => f64::INFINITY,
     };
-    -0.5 * (value / usual) * (value / usual)
+    let of = |(term, value): &(Term, f64)| match term {
+        Term::Effect { kind, .. } => -0.5 * (value / usual(kind)).powi(2),
+        _ => 0.0,
+    };
+    values.iter().map(of).sum()
 }
 
 /// Numbers that no machine has, far beyond what wear, crashes and bad assembly do.

@@ -92,12 +92,8 @@ impl State<'_, '_> {
         self.fit = self.space.fit(&self.library, &self.parts);
         self.propose();
         for _ in 0..60 {
-            let own = self.unlikely(&self.parts, &self.fit);
             let may = |rest: &[Part], part: Part, fit: &Fit| {
-                let with: Vec<Part> = rest.iter().copied().chain([part]).collect();
-                // What was taken from angles does not go back to them for a better fit alone.
-                let bends = matches!(self.library.kind(part), EffectKind::Angular { .. });
-                self.objection(rest, part, fit).is_none() && (!bends || self.unlikely(&with, fit) <= own)
+                self.objection(rest, part, fit).is_none() && self.may_bend(rest, part, fit)
             };
             match next_move(&self.space, &self.library, &self.parts, self.fit.score, may) {
                 Move::Change(parts, fit) => {

@@ -8,6 +8,7 @@ use units::math;
 
 use crate::equations::gram::{Gram, dot, forward};
 use crate::equations::linear::{Factor, Products, RANK_TOLERANCE, explained};
+use crate::equations::term::Term;
 use crate::library::candidates::{Library, Part};
 
 /// Ratios of run-offset variance to row variance among which the likelihood chooses.
@@ -219,6 +220,13 @@ impl Space {
         let columns = self.columns(library, parts);
         let (explained, rank) = explained(&self.products(level), &columns, &self.reference);
         ((self.total(level) - explained).max(0.0), rank)
+    }
+
+    /// Columns of some parts with the values that they have together under a run-offset ratio, the set-up's left out.
+    pub(crate) fn values(&self, library: &Library, parts: &[Part], rho: f64) -> Vec<(Term, f64)> {
+        let sub = self.gram.select(&library.model_columns(parts));
+        let values = sub.coefficients(rho);
+        sub.terms.into_iter().zip(values).skip(library.nuisances).collect()
     }
 
     /// What looking at this many forms of this many effects costs, and what its columns cost.

@@ -25,23 +25,32 @@ impl State<'_, '_> {
         true
     }
 
+    /// What was taken from angles does not go back to them for a better fit alone: an angle must be likelier.
+    pub(super) fn may_bend(&self, rest: &[Part], part: Part, fit: &Fit) -> bool {
+        let with = || rest.iter().copied().chain([part]).collect::<Vec<Part>>();
+        !self.bends(part) || self.unlikely(&with(), fit) <= self.unlikely(&self.parts, &self.fit)
+    }
+
+    fn bends(&self, part: Part) -> bool {
+        matches!(self.library.kind(part), EffectKind::Angular { .. })
+    }
+
     /// The likeliest model that has straight axes in the place of angles; `None` where the one there is likelier.
     fn straightened(&mut self) -> Option<(Vec<Part>, Fit)> {
-        let bends =
-            |place: &usize| matches!(self.library.kind(self.parts[*place]), EffectKind::Angular { .. });
-        let angles: Vec<usize> = (0..self.parts.len()).filter(bends).collect();
+        let angles: Vec<usize> = (0..self.parts.len()).filter(|k| self.bends(self.parts[*k])).collect();
         let pairs =
             angles.iter().flat_map(|b| angles.iter().filter(move |a| *a < b).map(move |a| vec![*a, *b]));
-        let groups: Vec<Vec<usize>> = [angles.clone()]
-            .into_iter()
-            .chain(pairs)
-            .chain(angles.iter().map(|place| vec![*place]))
-            .collect();
+        let all = (angles.len() > 2).then(|| angles.clone());
+        let groups = all.into_iter().chain(pairs).chain(angles.iter().map(|place| vec![*place]));
+        let straight = self.library.named(is_straight);
         let own = self.unlikely(&self.parts, &self.fit);
         let mut best: Option<(f64, Vec<Part>, Fit)> = None;
-        for group in groups.into_iter().filter(|group| !group.is_empty()) {
+        for group in groups {
             let rest = group.iter().rev().fold(self.parts.clone(), |rest, place| without(&rest, *place));
-            let with: Vec<Part> = rest.iter().copied().chain(self.straight_beside(&rest)).collect();
+            let mut with = rest.clone();
+            with.extend(
+                straight.iter().filter(|part| rest.iter().all(|other| other.candidate != part.candidate)),
+            );
             let (fit, with) = self.least_of(with, rest.len());
             let unlikely = self.unlikely(&with, &fit);
             let limit = best.as_ref().map_or(own - self.space.allowance(), |(known, ..)| *known);
@@ -69,21 +78,9 @@ impl State<'_, '_> {
         }
     }
 
-    /// Squarenesses and scales that a model does not have.
-    fn straight_beside(&self, rest: &[Part]) -> Vec<Part> {
-        let all = self.library.candidates.iter().enumerate().filter(|(_, own)| is_straight(own.kind));
-        let named = all.filter_map(|(candidate, own)| {
-            let variant = own.variants.iter().position(|form| !form.only_rival)?;
-            Some(Part { candidate, variant })
-        });
-        named.filter(|part| rest.iter().all(|other| other.candidate != part.candidate)).collect()
-    }
-
     /// The score of a model with what machines usually have counted in.
-    pub(super) fn unlikely(&self, parts: &[Part], fit: &Fit) -> f64 {
-        let sub = self.space.gram.select(&self.library.model_columns(parts));
-        let values = sub.coefficients(self.space.rho(fit.level));
-        let priors = sub.terms.iter().zip(values).skip(self.library.nuisances);
-        fit.score - 2.0 * priors.map(|(term, value)| log_prior(term, value)).sum::<f64>()
+    fn unlikely(&self, parts: &[Part], fit: &Fit) -> f64 {
+        let values = self.space.values(&self.library, parts, self.space.rho(fit.level));
+        fit.score - 2.0 * log_prior(&values)
     }
 }
