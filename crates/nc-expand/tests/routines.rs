@@ -118,6 +118,11 @@ impl Dice {
     }
 }
 
+/// Moved off by D the arc ends a last digit above the cylinder, which is no pocket for that.
+const CYLINDER_BEHIND_AN_ARC: &str = "G21 G18 G90 G8 F100\no102 sub\nG0 X5 Z0\nG1 Z-5\nX9\nG1 Z-17\nX11 Z-19\n\
+    G1 Z-27\nG3 X14 Z-30 R3\nG1 Z-41\nX12 Z-43\nZ-46\nX16\nG1 Z-54\no102 endsub\nG0 X21.5 Z3\n\
+    G71.2 Q102 X21.5 Z3 D0.1 I1.96 R0.7 F100\nG0 X21.5 Z3\nM2\n";
+
 /// A random contour along Z with a random cycle, in one of four quadrants, with radii or diameters.
 fn program(dice: &mut Dice) -> String {
     let pockets = dice.of(2) == 0;
@@ -221,10 +226,11 @@ fn cycles_with_a_subroutine_move_as_the_interpreter_moves() {
     };
     // More with `ROUTINES=1000 SEED=7`.
     let (count, mut dice) = (asked("ROUTINES", 60), Dice(asked("SEED", 1)));
+    let mut programs: Vec<String> = (0..count).map(|_| program(&mut dice)).collect();
+    programs.push(CYLINDER_BEHIND_AN_ARC.to_owned());
     let (mut compared, mut moved, mut largest) = (0, 0, 0.0_f64);
     let (mut refused, mut endless, mut other, mut stricter) = (0, 0, Vec::new(), Vec::new());
-    for _ in 0..count {
-        let text = program(&mut dice);
+    for text in programs {
         match (written_out(&text), play(&text)) {
             (Ok(flat), Played::Moves(wanted)) => {
                 let Played::Moves(got) = play(&flat) else {
@@ -258,8 +264,8 @@ fn cycles_with_a_subroutine_move_as_the_interpreter_moves() {
     }
     assert!(largest < PRINTED, "{figures}");
     assert!(compared * 2 > count, "{figures}");
-    // At the top of an arc rounding decides whether there is a pass of a thousandth of a millimetre.
-    assert!(other.len() as u64 <= 1 + count / 100, "{other:#?}");
+    // At the top of an arc rounding decides whether there is a move of a thousandth of a millimetre.
+    assert!(other.len() as u64 * 500 <= count, "{other:#?}");
     assert!(stricter.len() as u64 * 8 <= count, "{stricter:#?}");
 }
 

@@ -7,7 +7,7 @@
 
 use nc_syntax::dialect::Pockets;
 
-use super::pieces::{MOST, Misfit, Round, SAME, SLACK, Segment, Stroke, length, sub};
+use super::pieces::{MOST, Misfit, NO_ARC, Round, SAME, SLACK, Segment, Stroke, length, sub};
 use super::place::Point;
 
 /// What a few dozen roundings of lengths below a metre come to, mm.
@@ -70,7 +70,9 @@ impl Cut<'_> {
     }
 
     fn arc(&mut self, round: Round, to: Point) {
-        self.strokes.push(Stroke::Arc { counter: round.counter, centre: round.centre, end: to });
+        if sub(to, self.at).iter().any(|way| way.abs() >= NO_ARC) {
+            self.strokes.push(Stroke::Arc { counter: round.counter, centre: round.centre, end: to });
+        }
         self.at = to;
     }
 
@@ -87,7 +89,7 @@ impl Cut<'_> {
     fn dive(&mut self, k: usize, level: f64) -> Result<bool, Misfit> {
         let segment = self.segments[k];
         let Some(round) = segment.round else {
-            if segment.start[1] <= segment.end[1] {
+            if segment.start[1] <= segment.end[1] + SAME {
                 return Ok(false);
             }
             let to = if level < segment.end[1] {
@@ -104,24 +106,25 @@ impl Cut<'_> {
             }
             return Ok(true);
         };
-        if length(sub(self.at, segment.end)) < SLACK {
+        if self.at[0] - segment.end[0] <= SAME {
+            self.at = segment.end;
             return Ok(true);
         }
         let beyond = self.at[0] - round.centre[0];
-        if if round.counter { beyond > 0.0 } else { beyond <= 0.0 } {
+        if if round.counter { beyond > SAME } else { beyond <= 0.0 } {
             return Ok(false);
         }
-        let places = segment.at_level(level);
-        let reached = if round.counter {
-            places.last().filter(|place| **place <= round.centre[0])
-        } else {
-            places.first().filter(|place| **place >= round.centre[0])
-        };
-        let to = reached.map_or(segment.end, |place| [*place, level]);
-        if reached.is_none() || length(sub(self.at, to)) > SLACK {
-            self.arc(round, to);
+        let mut places = segment.at_level(level);
+        if places.is_empty() {
+            places = segment.at_level(level - SAME);
         }
-        self.at = to;
+        let behind = |place: f64| place <= round.centre[0];
+        match if round.counter { places.last() } else { places.first() } {
+            Some(place) if behind(*place) == round.counter => self.arc(round, [*place, level]),
+            // A valley that has the level on its far side alone is left for the next level.
+            Some(_) if !round.counter => {}
+            _ => self.arc(round, segment.end),
+        }
         Ok(true)
     }
 
@@ -129,7 +132,7 @@ impl Cut<'_> {
     fn climb(&mut self, k: usize) -> Result<bool, Misfit> {
         let segment = self.segments[k];
         let Some(round) = segment.round else {
-            if segment.end[1] < segment.start[1] {
+            if segment.end[1] + SAME < segment.start[1] {
                 return Ok(false);
             }
             if length(sub(self.at, segment.start)) > SAME {
@@ -177,7 +180,7 @@ impl Cut<'_> {
     }
 
     /// Passes down, pocket by pocket, and the contour behind them.
-    fn down(&mut self, mut pockets: Pockets) -> Result<(), Misfit> {
+    fn down(&mut self, pockets: Pockets) -> Result<(), Misfit> {
         let highest = self.segments[0].start[1];
         let lowest = self.segments.iter().map(|segment| segment.end[1]).fold(highest, f64::min);
         if (highest - lowest) / self.depth > MOST as f64 {
@@ -189,14 +192,14 @@ impl Cut<'_> {
             while k < self.segments.len() && self.dive(k, -1e9)? {
                 k += 1;
             }
-            (pockets, origin) = (Pockets::All, self.at[1]);
+            origin = self.at[1];
         }
         while k < self.segments.len() {
             turns += 1;
             if turns > MOST {
                 return Err(Misfit::Endless);
             }
-            while level > self.at[1] {
+            while level - SAME > self.at[1] {
                 level -= self.depth;
             }
             if !self.dive(k, level)? {
@@ -208,17 +211,19 @@ impl Cut<'_> {
                     k += 1;
                 }
                 // Where pockets alone are cut, levels count from the highest place so far.
-                origin = origin.max(self.at[1]);
+                if pockets == Pockets::Only {
+                    origin = origin.max(self.at[1]);
+                }
                 level = origin;
                 continue;
             }
-            if self.at[1] > level || (self.at[1] - level).abs() > SAME {
+            if (self.at[1] - level).abs() > SAME {
                 k += 1;
                 continue;
             }
             match self.pass(k)? {
                 Pass::Cut => level -= self.depth,
-                Pass::Met => k += 1,
+                Pass::Met(ahead) => k = ahead,
             }
         }
         Ok(())
@@ -233,12 +238,13 @@ impl Cut<'_> {
             let Some(to) = (if ahead == k { places.last() } else { places.first() }).copied() else {
                 continue;
             };
-            let distance = (to - here[0]).abs();
+            let distance = here[0] - to;
+            if distance < -SAME || distance < SAME && ahead == k {
+                continue;
+            }
             if distance < SAME {
-                if ahead == k {
-                    continue;
-                }
-                return Ok(Pass::Met);
+                let meets = length(sub(here, self.segments[ahead].start)) < SAME;
+                return Ok(if meets { Pass::Met(ahead) } else { Pass::Cut });
             }
             let off = self.escape * (0.5 * distance / self.escape).min(1.0);
             self.feed([to, here[1]]);
@@ -254,7 +260,8 @@ impl Cut<'_> {
 
 /// What became of a pass.
 enum Pass {
+    /// It is done, or has no length.
     Cut,
-    /// Another piece begins where it would start.
-    Met,
+    /// A further piece begins where it would start.
+    Met(usize),
 }

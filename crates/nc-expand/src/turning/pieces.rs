@@ -6,6 +6,8 @@ use super::place::Point;
 
 /// Largest reversal inside one piece; moves shorter than this are dropped.
 pub(super) const SLACK: f64 = 1e-3;
+/// An arc that is shorter along both axes is not run.
+pub(super) const NO_ARC: f64 = 1e-5;
 /// Two places nearer than this are one.
 pub(super) const SAME: f64 = 1e-6;
 /// Steps of one offset, and moves of one cycle; more are a wrong distance or depth.
@@ -110,9 +112,9 @@ impl Segment {
         match self.round {
             None => {
                 let back = sub(self.start, self.end);
-                let by = distance / length(back);
-                let normal = [-back[1], back[0]];
-                (self.start, self.end) = (along(self.start, normal, by), along(self.end, normal, by));
+                // In the interpreter's order: the last digit decides whether a cylinder rises or dives.
+                let by = [-distance * back[1] / length(back), distance * back[0] / length(back)];
+                (self.start, self.end) = (along(self.start, by, 1.0), along(self.end, by, 1.0));
             }
             Some(Round { centre, counter }) => {
                 let radius = length(sub(self.start, centre));
