@@ -12,8 +12,8 @@ use diagnostic::Refusal;
 use nc_syntax::Span;
 use units::math;
 
-use super::place::Code;
-use super::{MILLION, Spot, Writer};
+use super::place::{Code, MILLION, Spot};
+use super::writer::Writer;
 use crate::came::Fault;
 use crate::refusals::threads as refusal;
 

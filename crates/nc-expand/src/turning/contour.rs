@@ -1,16 +1,15 @@
 //! The blocks between P and Q as a way in the plane of radius and Z.
 
-use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use diagnostic::{Text, both};
 use nc_syntax::dialect::{Action, TurningCycle};
-use nc_syntax::{Dialect, ItemKind, Span, Value};
+use nc_syntax::{ItemKind, Span, Value};
 use units::math;
 
 use super::drawing::{self, Drawing};
-use super::place::{Code, Point, may_stand_beside};
-use super::{Spot, Writer, cycle_of};
+use super::place::{Code, Point, Spot, may_stand_beside};
+use super::writer::{Writer, cycle_of};
 use crate::came::{Came, Fault, Held};
 use crate::refusals::contours as refusal;
 use crate::shorthand::Words;
@@ -19,24 +18,6 @@ use crate::shorthand::Words;
 const TURNS_BACK: f64 = 1e-3;
 /// Angles nearer to an end of an arc than this are that end, rad.
 const AT_AN_END_RAD: f64 = 1e-9;
-
-/// Indices of blocks by their N, and whether all of one N stand in one place of the source.
-pub(super) type Numbers = BTreeMap<i64, (Vec<usize>, bool)>;
-
-/// The blocks that have an N, or had one in the source.
-pub(super) fn numbers(blocks: &[Came<'_>], dialect: &Dialect) -> Numbers {
-    let mut numbers = Numbers::new();
-    for (index, came) in blocks.iter().enumerate() {
-        let own = Words::of(came, dialect).number(b'N');
-        let number = own.map_or(came.from.number.map(i64::from), |(number, _)| number.integer());
-        let Some(number) = number else { continue };
-        let (indices, one_place) = numbers.entry(number).or_insert((Vec::new(), true));
-        let place = |index: usize| (blocks[index].from.file, blocks[index].from.offset);
-        *one_place &= indices.last().is_none_or(|last| place(*last) == place(index));
-        indices.push(index);
-    }
-    numbers
-}
 
 /// Index in the plane: radius (X), or Z.
 pub(super) type Axis = usize;

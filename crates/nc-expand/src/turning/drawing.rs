@@ -13,8 +13,8 @@ use nc_syntax::dialect::{Action, CornerForm, Turning};
 use nc_syntax::{Block, Item, ItemKind, Span, Value};
 use units::math;
 
-use super::place::{Code, Point, diameters, plane, spot, standing};
-use super::{AXES, MILLION, Spot, cycle_of};
+use super::place::{AXES, Code, MILLION, Point, Spot, diameters, plane, spot, standing};
+use super::writer::cycle_of;
 use crate::came::{Came, Fault};
 use crate::known::{Known, Rewriting};
 use crate::refusals::drawings;

@@ -16,8 +16,8 @@ use nc_syntax::{Item, ItemKind, Number, Span, Value};
 use toolpath::{MOST_PECKS, Retreat, Stroke, peck_depths, strokes, whole_pecks};
 
 use super::emit::Moves;
-use super::place::Code;
-use super::{Spot, Writer};
+use super::place::{Code, MILLION, Spot};
+use super::writer::Writer;
 use crate::came::Fault;
 use crate::output::{Style, word};
 use crate::refusals::turning as refusal;
@@ -134,10 +134,7 @@ impl Writer<'_, '_, '_> {
         let bottom = if self.here.says_places() { target } else { target - start[1] + level };
         let sign = (bottom - level).signum();
         if sign == 0 || sign != sign_to(start[1]) {
-            return refuse(refusal::r_not_above_bottom(
-                start[1] as f64 / super::MILLION,
-                level as f64 / super::MILLION,
-            ));
+            return refuse(refusal::r_not_above_bottom(start[1] as f64 / MILLION, level as f64 / MILLION));
         }
         Ok(Hole { x, start: start[1], level, sign, deep: (bottom - level) * sign })
     }

@@ -4,8 +4,8 @@ use nc_program::modal::Modal;
 use nc_syntax::dialect::Action;
 use nc_syntax::{Item, ItemKind, Span, Value};
 
-use super::place::{CODES, Code, may_stand_beside, millionths};
-use super::{AXES, MILLION, Spot, Writer};
+use super::place::{AXES, CODES, Code, MILLION, Spot, may_stand_beside, millionths};
+use super::writer::Writer;
 use crate::came::{Fault, From};
 use crate::refusals::turning as refusal;
 use crate::shorthand::{Words, add, number, shown};

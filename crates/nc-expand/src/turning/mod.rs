@@ -11,6 +11,7 @@
 //! * [`rough`]: passes down to a contour, and the contour itself; [`pockets`]: where it has pockets.
 //! * [`pecks`]: grooves and holes; [`drill`]: holes on the axis.
 //! * [`routine`]: LinuxCNC's contours, which are subroutines; [`profile`]: their geometry; [`levels`]: passes down to them.
+//! * [`writer`]: what all of them know at a block, and [`held`]: what they hold from block to block.
 //! * [`threads`]: a thread in several passes; [`compound`]: that of LinuxCNC.
 //!
 //! Places are whole millionths of the program's unit, X as its words have it: sums of them are exact. Where a pass ends
@@ -21,6 +22,7 @@ mod contour;
 mod drawing;
 mod drill;
 mod emit;
+mod held;
 mod levels;
 mod pass;
 mod pecks;
@@ -31,43 +33,25 @@ mod profile;
 mod rough;
 mod routine;
 mod threads;
+mod writer;
 
-use diagnostic::Text;
 use nc_program::Compensation;
-use nc_program::modal::Modal;
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
-use nc_syntax::{Block, Dialect, Number, Span};
+use nc_syntax::{Block, Dialect};
 
 use crate::came::{Came, Fault, Held};
 use crate::known::{Lower, Rewriting};
 use crate::refusals::turning as refusal;
-use crate::shorthand::{Words, actions};
+use crate::shorthand::actions;
 use drawing::Drawing;
-use pass::Pass;
-use place::{diameters, ends_pass, may_stand_beside, plane, spot, standing};
-
-/// X word and Z, in millionths of the unit.
-type Spot = [i64; 2];
-
-/// Millionths in a unit.
-const MILLION: f64 = 1e6;
-
-/// X and Z.
-const AXES: [u8; 2] = *b"XZ";
+use place::may_stand_beside;
+use writer::{Writer, cycle_of};
 
 /// True where the block has a cycle that is written out, or may have words of a drawing without a comma.
 pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
     dialect.turning.as_ref().is_some_and(|turning| {
         let draws = turning.cycles.plain_drawing && drawing::may_draw(block, turning);
         draws || actions(block, dialect).any(|(action, _)| matches!(action, Action::Turning(_)))
-    })
-}
-
-/// The cycle whose code stands in a block.
-fn cycle_of(words: &Words<'_, '_>) -> Option<(TurningCycle, Span)> {
-    words.actions().find_map(|(action, span)| match action {
-        Action::Turning(cycle) => Some((*cycle, span)),
-        _ => None,
     })
 }
 
@@ -107,44 +91,7 @@ impl<'d> Lower<'d> for Lathe<'d> {
     }
 }
 
-/// Writes the program block by block.
-struct Writer<'b, 'a, 'd> {
-    dialect: &'d Dialect,
-    turning: &'d Turning,
-    blocks: &'b [Came<'a>],
-    numbers: contour::Numbers,
-    out: &'b mut Rewriting<'d>,
-    /// What the codes of the block in hand make of the one reader's state.
-    here: Modal,
-    /// The single pass in force, which each block with a place repeats.
-    pass: Option<Pass>,
-    /// Behind a cycle no motion code was said: which one is in force nobody knows.
-    open: bool,
-    /// The program has made a single pass, whose words may still be held.
-    passed: bool,
-    /// What the blocks without P and Q said, which hold for those with them.
-    first_blocks: rough::FirstBlocks,
-    /// The last F stood in a roughing block: whether it holds behind that the manual leaves open.
-    unsure_feed: bool,
-}
-
-impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
-    fn new(blocks: &'b [Came<'a>], turning: &'d Turning, out: &'b mut Rewriting<'d>) -> Self {
-        Self {
-            dialect: out.dialect,
-            turning,
-            blocks,
-            numbers: contour::numbers(blocks, out.dialect),
-            pass: None,
-            passed: false,
-            open: false,
-            here: out.known.modal().clone(),
-            out,
-            first_blocks: rough::FirstBlocks::default(),
-            unsure_feed: false,
-        }
-    }
-
+impl Writer<'_, '_, '_> {
     fn all(mut self) -> Result<(), Fault> {
         let mut at = 0;
         while at < self.blocks.len() {
@@ -207,10 +154,6 @@ impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
         Ok(at + 1)
     }
 
-    fn words(&self, at: usize) -> Words<'b, 'a> {
-        Words::of(&self.blocks[at], self.dialect)
-    }
-
     /// A block that is no cycle's.
     fn plain(&mut self, at: usize) -> Result<(), Fault> {
         let words = &self.words(at);
@@ -220,80 +163,5 @@ impl<'b, 'a, 'd> Writer<'b, 'a, 'd> {
         self.said(words);
         self.out.block(&self.blocks[at]);
         Ok(())
-    }
-
-    /// What a block that is no cycle's says of what cycles have left.
-    fn said(&mut self, words: &Words<'_, '_>) {
-        self.unsure_feed &= words.number(b'F').is_none();
-        if words.motion().is_some() {
-            (self.pass, self.open) = (None, false);
-        } else if self.pass.is_some() && words.actions().any(|(action, _)| ends_pass(action)) {
-            self.leave_open();
-        }
-    }
-
-    /// Behind a cycle.
-    fn leave_open(&mut self) {
-        (self.pass, self.open) = (None, true);
-    }
-
-    /// The last F; `words`: of the block in hand.
-    fn feed(&self, words: &Words<'_, '_>) -> Option<Number> {
-        words.number(b'F').map(|(feed, _)| feed).or(self.out.known.modal().feed)
-    }
-
-    /// Where the tool stands, both axes.
-    fn standing(&self, words: &Words<'_, '_>, span: Span) -> Result<Spot, Fault> {
-        if let [Some(x), Some(z)] = standing(self.out.known.modal()) {
-            return Ok([x, z]);
-        }
-        Err(words.fault(refusal::START_NOT_KNOWN, span))
-    }
-
-    /// Where the words of the block in hand lead.
-    fn target(&self, words: &Words<'_, '_>) -> [Option<i64>; 2] {
-        words.target(&self.here, standing(self.out.known.modal()))
-    }
-
-    /// The same where it is known.
-    fn known_target(&self, words: &Words<'_, '_>, span: Span) -> Result<Spot, Fault> {
-        if let [Some(x), Some(z)] = self.target(words) {
-            return Ok([x, z]);
-        }
-        Err(words.fault(refusal::END_NOT_KNOWN, span))
-    }
-
-    /// A length in millionths of the unit.
-    fn length(&self, words: &Words<'_, '_>, letter: u8) -> Option<i64> {
-        words.millionths(&self.here, letter)
-    }
-
-    /// Millionths of an X word in one of the radius.
-    fn twice(&self) -> i64 {
-        if diameters(&self.here) == Some(true) { 2 } else { 1 }
-    }
-
-    /// A place in the plane of radius and Z.
-    fn plane(&self, spot: Spot) -> [f64; 2] {
-        plane(&self.here, spot)
-    }
-
-    /// The place whose words are nearest.
-    fn spot(&self, place: [f64; 2]) -> Spot {
-        spot(&self.here, place)
-    }
-
-    /// Whether X is a diameter must be known for depths and tapers, which are radii.
-    fn require_diameters(&self, words: &Words<'_, '_>, span: Span) -> Result<(), Fault> {
-        if diameters(&self.here).is_some() {
-            return Ok(());
-        }
-        Err(words.fault(refusal::DIAMETER_OR_RADIUS, span))
-    }
-}
-
-impl Words<'_, '_> {
-    fn parameter_fault(&self, span: Span, what: &Text, key: &str, value: &str) -> Fault {
-        self.fault(refusal::parameter_of_the_control(what, key, value), span)
     }
 }

@@ -15,23 +15,12 @@ use nc_syntax::{ItemKind, Span};
 use units::math;
 
 use super::emit::Moves;
-use super::place::Code;
-use super::{MILLION, Spot, Writer};
+use super::held::Pass;
+use super::place::{Code, MILLION, Spot};
+use super::writer::Writer;
 use crate::came::Fault;
 use crate::refusals::turning as refusal;
 use crate::shorthand::{Words, shown};
-
-/// What a pass holds.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pass {
-    cycle: TurningCycle,
-    /// Where each pass starts and ends.
-    start: Spot,
-    /// Where the cut ends; `None`: not named yet.
-    to: [Option<i64>; 2],
-    /// R: millionths of the unit, of radius or Z.
-    taper: i64,
-}
 
 /// Chamfer at the end of a thread: 45 degrees where the parameter is zero or not said.
 const CHAMFER_DEG: f64 = 45.0;

@@ -12,8 +12,8 @@ use nc_syntax::Span;
 use nc_syntax::dialect::TurningCycle;
 use toolpath::{Retreat, peck_depths, whole_pecks};
 
-use super::place::Code;
-use super::{Spot, Writer};
+use super::place::{Code, Spot};
+use super::writer::Writer;
 use crate::came::Fault;
 use crate::codes;
 use crate::refusals::turning as refusal;

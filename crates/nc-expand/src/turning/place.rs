@@ -4,8 +4,16 @@ use nc_program::modal::{Modal, Units, XWords};
 use nc_syntax::dialect::Action;
 use units::decimal::{self, Decimal};
 
-use super::{AXES, MILLION, Spot};
 use crate::shorthand::Words;
+
+/// X word and Z, in millionths of the unit.
+pub(super) type Spot = [i64; 2];
+
+/// Millionths in a unit.
+pub(super) const MILLION: f64 = 1e6;
+
+/// X and Z.
+pub(super) const AXES: [u8; 2] = *b"XZ";
 
 /// Radius and Z.
 pub(super) type Point = [f64; 2];

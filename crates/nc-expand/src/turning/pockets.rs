@@ -17,11 +17,11 @@
 //! W shifts one wall of a pocket into the other, so with pockets it has to be zero; U must lead away from the
 //! workpiece.
 
-use super::Writer;
 use super::contour::{Axis, Contour, Way};
 use super::emit::Moves;
 use super::place::{Code, Point};
 use super::rough::{MOST_PASSES, Passes, SAME};
+use super::writer::Writer;
 use crate::came::Fault;
 use crate::output::{Style, word};
 use crate::refusals::contours as refusal;

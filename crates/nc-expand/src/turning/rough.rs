@@ -18,8 +18,8 @@ use nc_syntax::{ItemKind, Span};
 
 use super::contour::{Axis, Contour, Way};
 use super::emit::Moves;
-use super::place::{Code, Point};
-use super::{MILLION, Spot, Writer, cycle_of};
+use super::place::{Code, MILLION, Point, Spot};
+use super::writer::{Writer, cycle_of};
 use crate::came::{Fault, Held};
 use crate::refusals::{contours, turning as refusal};
 use crate::shorthand::{Words, shown};
@@ -47,23 +47,6 @@ pub(super) struct Passes {
     /// Off the contour, and where the passes start.
     pub(super) allowance: Spot,
     pub(super) corner: Spot,
-}
-
-/// What the blocks without P and Q said.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct FirstBlocks {
-    /// Depth of cut of G71 and G72, millionths of the unit, radius.
-    depth: [Option<i64>; 2],
-    /// Escape of G71 and G72.
-    escape: [Option<i64>; 2],
-    /// Relief of G73 along radius and Z.
-    relief: Option<[i64; 2]>,
-    /// Cuts of G73.
-    cuts: Option<i64>,
-    /// Return of G74 and G75.
-    pub(super) peck_return: [Option<i64>; 2],
-    /// What the first block of G76 says.
-    pub(super) thread: Option<super::threads::Settings>,
 }
 
 impl Writer<'_, '_, '_> {

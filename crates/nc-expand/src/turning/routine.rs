@@ -19,9 +19,9 @@ use nc_syntax::{ItemKind, Span, Value};
 use toolpath::Plane;
 
 use super::pieces::{Misfit, Round, Segment, Stroke};
-use super::place::Code;
+use super::place::{Code, MILLION, Spot};
 use super::profile::Profile;
-use super::{MILLION, Spot, Writer};
+use super::writer::Writer;
 use crate::came::Fault;
 use crate::refusals::routines as refusal;
 use crate::shorthand::{Words, numbers, shown};

@@ -18,24 +18,15 @@ use nc_syntax::Span;
 use nc_syntax::dialect::FlankFrom;
 use units::math;
 
-use super::place::Code;
-use super::{Spot, Writer};
+use super::held::ThreadSettings;
+use super::place::{Code, Spot};
+use super::writer::Writer;
 use crate::came::Fault;
 use crate::refusals::threads as refusal;
 use crate::shorthand::Words;
 
 /// Passes of one thread; more are a wrong infeed.
 const MOST_PASSES: usize = 1000;
-
-/// What the first block says; lengths are millionths of the unit, radius.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Settings {
-    finishing_passes: i64,
-    chamfer_leads: f64,
-    tip_deg: f64,
-    least: i64,
-    allowance: i64,
-}
 
 impl Writer<'_, '_, '_> {
     pub(super) fn thread(&mut self, at: usize, span: Span) -> Result<(), Fault> {
@@ -102,7 +93,7 @@ impl Writer<'_, '_, '_> {
         &self,
         words: &Words<'_, '_>,
         span: Span,
-        settings: &Settings,
+        settings: &ThreadSettings,
         depths: &[i64],
     ) -> Result<impl Fn(i64) -> i64 + use<>, Fault> {
         let zero = if settings.tip_deg == 0.0 {
@@ -130,7 +121,7 @@ impl Writer<'_, '_, '_> {
     }
 
     /// What parameters of the control say of a thread in one block.
-    fn settings_of_control(&self, words: &Words<'_, '_>, span: Span) -> Result<Settings, Fault> {
+    fn settings_of_control(&self, words: &Words<'_, '_>, span: Span) -> Result<ThreadSettings, Fault> {
         let cycles = &self.turning.cycles;
         let said = |value: Option<f64>, what: Text, key: &str, like: &str| {
             value.ok_or_else(|| words.parameter_fault(span, &what, key, like))
@@ -163,7 +154,7 @@ impl Writer<'_, '_, '_> {
         if !(0.0..=120.0).contains(&tip_deg) {
             return Err(words.fault(refusal::tip_angle(tip_deg), span));
         }
-        Ok(Settings {
+        Ok(ThreadSettings {
             finishing_passes: passes as i64,
             chamfer_leads: chamfer,
             tip_deg,
@@ -185,7 +176,7 @@ impl Writer<'_, '_, '_> {
         };
         let moves = self.begin(&words, [0; 2], b"PQR")?;
         self.end(moves);
-        self.first_blocks.thread = Some(Settings {
+        self.first_blocks.thread = Some(ThreadSettings {
             finishing_passes: (digits / 10_000).max(1),
             chamfer_leads: (digits / 100 % 100) as f64 * 0.1,
             tip_deg: (digits % 100) as f64,
@@ -197,7 +188,7 @@ impl Writer<'_, '_, '_> {
 }
 
 /// How deep each pass lies, millionths; `None` where there are too many.
-fn depths(height: i64, first: i64, settings: &Settings) -> Option<Vec<i64>> {
+fn depths(height: i64, first: i64, settings: &ThreadSettings) -> Option<Vec<i64>> {
     let rough = height - settings.allowance;
     let (mut depths, mut depth) = (Vec::new(), 0);
     while depth < rough {
