@@ -5,7 +5,7 @@ use nc_syntax::Letters;
 use nc_syntax::dialect::CurveCode;
 use toolpath::{Bezier, Division, Feed, MOST_DEGREE, Motion, Position, Shape};
 
-use super::{is_curve, plane_axes};
+use super::parts::{is_curve, plane_axes};
 use crate::environment::Environment;
 use crate::feed::feed_rate;
 use crate::frame_state::settle;

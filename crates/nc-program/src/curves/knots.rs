@@ -6,8 +6,8 @@ use nc_syntax::{Letters, Span};
 use toolpath::{MOST_DEGREE, Nurbs, NurbsFault, Position};
 
 use super::faults::{every_knot, of_fault, order_refused, weight_refused};
+use super::parts::{POINT_LETTERS, cut, not_skipped, plane_axes};
 use super::points::both_axes;
-use super::{POINT_LETTERS, cut, not_skipped, plane_axes};
 use crate::codes;
 use crate::environment::Environment;
 use crate::frame_state::settle;

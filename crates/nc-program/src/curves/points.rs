@@ -6,7 +6,7 @@ use nc_syntax::{Letters, Span};
 use toolpath::{MOST_DEGREE, Nurbs};
 
 use super::faults::{order_refused, weight_refused};
-use super::{POINT_LETTERS, cut, not_skipped, plane_axes};
+use super::parts::{POINT_LETTERS, cut, not_skipped, plane_axes};
 use crate::environment::Environment;
 use crate::frame_state::settle;
 use crate::modal::{Modal, MotionMode};
