@@ -166,7 +166,8 @@ impl<'d> Writer<'d> {
                     return Err(words.fault(refusal::without_cycle(&call.name), call.span));
                 };
                 let places = if calls[0].0 == Called::HolesRow {
-                    self.row(&words, &call)?
+                    let ([u, v, _], stands) = (self.plane(), self.modal().places());
+                    pattern::row(&words, &call, [stands[u], stands[v]])?
                 } else {
                     pattern::circle(&words, &call)?
                 };
