@@ -7,11 +7,10 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use nc_dialect::{Row, Rows, Treatment, rows};
+use nc_dialect::{Dialect, Row, Rows, Treatment, rows};
 use nc_expand::Limits;
 use nc_program::{Interpreter, Setup, Step};
-use nc_syntax::dialect::{GCode, Paren};
-use nc_syntax::{Block, Dialect, ItemKind, Reader, Value};
+use nc_syntax::{Block, GCode, ItemKind, Paren, Reader, Value};
 use toolpath::Motion;
 
 use crate::common::{files, messages, root, run};
@@ -361,7 +360,7 @@ fn describe(dialect: &Dialect, setup: &Setup, missing: &mut Vec<String>) -> Stri
     ));
     if !commands.is_empty() {
         // Without brackets an unknown name is text that cannot be read.
-        let code = if dialect.paren == Paren::Command { 224 } else { 105 };
+        let code = if dialect.marks.paren == Paren::Command { 224 } else { 105 };
         let unknown = programs.iter().find(|program| {
             program
                 .run
@@ -409,7 +408,7 @@ fn what_a_table_refuses_is_refused() {
             }
             tried += 1;
             let begin = format!("{} G90\nG0 X10. Y10. Z60.\n", offset(dialect));
-            let bracketed = commands.contains(row) && dialect.paren == Paren::Command;
+            let bracketed = commands.contains(row) && dialect.marks.paren == Paren::Command;
             let code = if bracketed { format!("({})", row.code) } else { row.code.clone() };
             let run = interpret(format!("{begin}{code}\nG1 Z50. F200.\n").as_bytes(), dialect, &setup);
             let Some((number, message)) = &run.refused else {

@@ -12,8 +12,9 @@ use std::process::Command;
 use anyhow::Context;
 use clap::Args;
 use machine_profile::Profile;
+use nc_dialect::Dialect;
 use nc_program::Setup;
-use nc_syntax::{Block, Dialect, Reader};
+use nc_syntax::{Block, Reader};
 
 use crate::markdown::table;
 use measure::{Run, in_turn, own_cpu_s, run_anew};

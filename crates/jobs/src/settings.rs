@@ -6,12 +6,12 @@ use correction::{Options, Orientation, Outside};
 use diagnostic::{Code, Diagnostic, Text, both};
 use machine_model::{Command, Engine, EngineId, Models, PathModel, TipControl};
 use machine_profile::{BareLengths, Profile, TurningRules};
-use nc_program::{Questions, Setup};
-use nc_syntax::Dialect;
-use nc_syntax::dialect::{
-    Action, CodeEntry, ControlCall, DrillPecks, DrillR, FlankFrom, GCode, MCode, Macros, PointFree,
-    TipSwitch, TurningParameters,
+use nc_dialect::{
+    Action, CodeEntry, ControlCall, Dialect, DrillPecks, DrillR, FlankFrom, MCode, PointFree, TipSwitch,
+    TurningParameters,
 };
+use nc_program::{Questions, Setup};
+use nc_syntax::{GCode, Macros};
 use rewrite::{Datums, Guards, Job};
 
 use crate::flow::Flow;

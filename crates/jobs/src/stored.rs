@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use control_files::{Ini, Length};
 use machine_profile::Profile;
-use nc_syntax::Dialect;
-use nc_syntax::dialect::Macros;
+use nc_dialect::Dialect;
+use nc_syntax::Macros;
 
 use crate::lines;
 use crate::message::{Failure, OPTION, notice};

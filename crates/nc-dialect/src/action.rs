@@ -1,9 +1,9 @@
 //! What the words of a grammar's `does` mean.
 
-use nc_syntax::dialect::{
-    Action, Called, CornerForm, CurveCode, FramePart, GCode, PlaneCode, Pockets, Side, TipSwitch,
-    TurningCycle,
+use crate::control::{
+    Action, Called, CornerForm, CurveCode, FramePart, PlaneCode, Pockets, Side, TipSwitch, TurningCycle,
 };
+use nc_syntax::GCode;
 use toolpath::CycleKind;
 
 /// Every word that `does` takes, in the order of the manual.

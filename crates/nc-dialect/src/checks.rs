@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
+use crate::control::{Action, CodeEntry};
 use diagnostic::{Code, Diagnostic, Text, both};
-use nc_syntax::Letters;
-use nc_syntax::dialect::{Action, CodeEntry, GCode};
+use nc_syntax::{GCode, Letters};
 use toml::Spanned;
 
 use crate::table::Grammar;

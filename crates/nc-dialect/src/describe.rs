@@ -1,7 +1,7 @@
 //! The code-by-code list of a dialect, for people.
 
-use nc_syntax::Dialect;
-use nc_syntax::dialect::{Action, CurveCode, CycleBack, FramePart, GCode, LengthAfter, MCode, Macros};
+use crate::control::{Action, CurveCode, CycleBack, Dialect, FramePart, LengthAfter, MCode};
+use nc_syntax::{GCode, Macros};
 
 use crate::action_name;
 use toolpath::CycleKind;

@@ -1,4 +1,4 @@
-//! Grammar tables as values.
+//! What a control's words mean: grammar tables as values.
 //!
 //! A dialect is a file in `grammars/`: how numbers and comments are written, what each code does, what the
 //! control takes back. [`load`] reads such a text and checks it; [`builtin`] gives those that are shipped.
@@ -8,6 +8,7 @@
 mod action;
 mod assumptions;
 mod checks;
+mod control;
 mod describe;
 mod inherited;
 mod load;
@@ -18,6 +19,13 @@ mod texts;
 
 pub use action::{ACTION_NAMES, action_name, action_named};
 pub use assumptions::assumption;
+pub use control::{
+    Action, Called, CodeEntry, Codes, Command, ControlCall, CornerForm, CurveCode, CycleBack, CycleLevels,
+    Dialect, DrillPecks, DrillR, FlankFrom, Flow, FramePart, FrameRules, Keeps, LatheSign, LengthAfter,
+    LengthAtChange, MCode, MOTION_GROUP, Numbers, OffsetL20, Output, PathCode, PathKey, PlaneCode, Pockets,
+    PointFree, RefusedWord, RotaryFeed, Side, System, TWord, TipSwitch, Turning, TurningCycle,
+    TurningParameters, WrittenCycles,
+};
 pub use describe::{Row, Rows, Treatment, rows, treatment};
 pub use load::load;
 pub use shipped::{builtin, builtin_names};

@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic, Text, both};
-use nc_syntax::dialect::{
-    Action, CodeEntry, Command, Flow, FrameRules, GCode, LatheSign, LengthAfter, MCode, Numbers, Output,
-    Paren, RefusedWord, System, Turning, TurningParameters, WrittenCycles,
+use crate::control::{
+    Action, CodeEntry, Command, Dialect, Flow, FrameRules, Keeps, LatheSign, LengthAfter, MCode, Numbers,
+    Output, PathCode, PathKey, RefusedWord, System, Turning, TurningParameters, WrittenCycles,
 };
-use nc_syntax::path_control::{Keeps, PathCode, PathKey};
-use nc_syntax::{Dialect, Letters};
+use diagnostic::{Code, Diagnostic, Text, both};
+use nc_syntax::{GCode, Letters, Marks, Paren};
 use toml::Spanned;
 
 use crate::action::{ACTION_NAMES, action_named, nearest};
@@ -209,28 +208,30 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
         title,
         extends,
         assumptions,
-        paren: match text.round_brackets {
-            RoundBrackets::None => Paren::None,
-            RoundBrackets::Comment => Paren::Comment { nested: false },
-            RoundBrackets::NestedComment => Paren::Comment { nested: true },
-            RoundBrackets::Command => Paren::Command,
+        marks: Marks {
+            paren: match text.round_brackets {
+                RoundBrackets::None => Paren::None,
+                RoundBrackets::Comment => Paren::Comment { nested: false },
+                RoundBrackets::NestedComment => Paren::Comment { nested: true },
+                RoundBrackets::Command => Paren::Command,
+            },
+            semicolon: text.semicolon,
+            end_of_block: text.end_of_block.and_then(byte),
+            percent_words: text.percent == PercentRule::NameAndWords,
+            skip: text.block_delete.and_then(byte),
+            colon: text.colon,
+            long_words,
+            labels: text.labels,
+            equals_words: text.equals_words,
+            letters,
+            spaces_inside: numbers.spaces_inside,
         },
-        semicolon: text.semicolon,
-        end_of_block: text.end_of_block.and_then(byte),
-        percent_words: text.percent == PercentRule::NameAndWords,
-        skip: text.block_delete.and_then(byte),
-        colon: text.colon,
-        long_words,
-        labels: text.labels,
-        equals_words: text.equals_words,
-        letters,
         refused_words: words,
         dwell_time,
         numbers: Numbers {
             point_free: numbers.without_point,
             least_increment_decimals_mm: numbers.least_increment_decimals_mm.into_inner(),
             least_increment_decimals_inch: numbers.least_increment_decimals_inch.into_inner(),
-            spaces_inside: numbers.spaces_inside,
         },
         initial,
         path_control,

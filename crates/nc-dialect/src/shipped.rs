@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use nc_syntax::Dialect;
+use crate::control::Dialect;
 
 use crate::load;
 use crate::texts::TEXTS;

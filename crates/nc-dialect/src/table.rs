@@ -2,9 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use nc_syntax::dialect::{
-    Colon, CycleBack, CycleLevels, LengthAtChange, Macros, OffsetL20, PointFree, RotaryFeed, Semicolon, TWord,
-};
+use crate::control::{CycleBack, CycleLevels, LengthAtChange, OffsetL20, PointFree, RotaryFeed, TWord};
+use nc_syntax::{Colon, Macros, Semicolon};
 use serde::Deserialize;
 use toml::Spanned;
 

@@ -6,11 +6,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use nc_dialect::{builtin, builtin_names};
+use nc_dialect::{Action, Dialect, builtin, builtin_names};
 use nc_expand::{Environment, Limits, expand};
 use nc_program::{Interpreter, Setup};
-use nc_syntax::dialect::Action;
-use nc_syntax::{Block, Dialect, ItemKind, Reader, Value, looks_like_program};
+use nc_syntax::{Block, ItemKind, Reader, Value, looks_like_program};
 
 /// Messages that reading and the tables alone decide: unreadable, not static, unknown, refused, command.
 const DECIDED_HERE: [u16; 10] = [101, 102, 103, 104, 105, 106, 202, 207, 208, 224];

@@ -162,7 +162,7 @@ fn no_toml() {
 }
 
 /// A table of a few lines on top of Fanuc's.
-fn extended(text: &str) -> Result<nc_syntax::Dialect, String> {
+fn extended(text: &str) -> Result<nc_dialect::Dialect, String> {
     load("own", text).map_err(|wrong| {
         let shown = wrong.iter().map(|diagnostic| {
             let span = diagnostic.span.clone().expect("every message about a grammar has a place");

@@ -1,4 +1,4 @@
-use nc_syntax::dialect::GCode;
+use nc_syntax::GCode;
 use smallvec::SmallVec;
 
 /// What becomes of a word.

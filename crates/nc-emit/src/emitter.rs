@@ -1,8 +1,8 @@
 //! Blocks out: passed as they are, or rewritten.
 
 use diagnostic::{Code, Diagnostic, both};
-use nc_syntax::dialect::GCode;
-use nc_syntax::{Block, Dialect, Item, ItemKind, PlainLine, Value};
+use nc_dialect::Dialect;
+use nc_syntax::{Block, GCode, Item, ItemKind, PlainLine, Value};
 
 use crate::edit::{Piece, WordEdit};
 use crate::habits::{Habits, Increments, Modes, line_end};
@@ -140,7 +140,7 @@ impl<'d> Emitter<'d> {
         let in_force = self.modes.motion_for(self.dialect, block);
         self.modes.read(self.dialect, block);
         let style = Style {
-            long_words: &self.dialect.long_words,
+            long_words: &self.dialect.marks.long_words,
             habits: &self.habits,
             separator: separator.unwrap_or(self.habits.separator),
             increments: Increments::new(&self.dialect.numbers, self.modes.inch),
@@ -210,7 +210,7 @@ impl<'d> Emitter<'d> {
     ) -> Result<(), Diagnostic> {
         let separator = self.habits.learn_line(line);
         let style = Style {
-            long_words: &self.dialect.long_words,
+            long_words: &self.dialect.marks.long_words,
             habits: &self.habits,
             separator: separator.unwrap_or(self.habits.separator),
             increments: Increments::new(&self.dialect.numbers, self.modes.inch),
@@ -330,7 +330,7 @@ impl<'d> Emitter<'d> {
     /// The block without what ends it, and what ends it.
     fn split_end<'a>(&self, block: &Block<'a>) -> (&'a [u8], &'a [u8]) {
         let mut at = block.bytes.len() - line_end(block.bytes).len();
-        if let Some(mark) = self.dialect.end_of_block
+        if let Some(mark) = self.dialect.marks.end_of_block
             && let Some(before) = block.bytes[..at].trim_ascii_end().strip_suffix(&[mark])
             && block.items.last().is_none_or(|item| item.span.end as usize <= before.len())
         {

@@ -1,7 +1,7 @@
 //! Blocks that stop a program where the control holds other values than those it was corrected for.
 
-use nc_syntax::Dialect;
-use nc_syntax::dialect::{GCode, Macros};
+use nc_dialect::Dialect;
+use nc_syntax::{GCode, Macros};
 use units::decimal::Spelling;
 
 /// Behind this stands what is guarded, in the alarm and in the program.

@@ -1,7 +1,7 @@
 //! What the file's own text looks like.
 
-use nc_syntax::dialect::{Action, CodeEntry, GCode, MOTION_GROUP, Numbers, PointFree};
-use nc_syntax::{Block, Dialect, ItemKind, Number, PlainLine, PlainWord, Sign, Span, Value};
+use nc_dialect::{Action, CodeEntry, Dialect, MOTION_GROUP, Numbers, PointFree};
+use nc_syntax::{Block, GCode, ItemKind, Number, PlainLine, PlainWord, Sign, Span, Value};
 use units::decimal::Spelling;
 
 use crate::words::{g_code, is_motion};

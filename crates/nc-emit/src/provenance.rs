@@ -3,8 +3,8 @@
 use std::borrow::Borrow;
 use std::ops::Range;
 
-use nc_syntax::dialect::{Paren, Semicolon};
-use nc_syntax::{Block, Dialect, ItemKind, line_ending};
+use nc_dialect::Dialect;
+use nc_syntax::{Block, ItemKind, Paren, Semicolon, line_ending};
 
 use crate::ascii;
 
@@ -18,9 +18,9 @@ const MARKER: &[u8] = b"CORRECTED BY VPOST";
 /// the dialect has no comments. No line end.
 #[must_use]
 pub fn provenance_comment(dialect: &Dialect, text: &str) -> Vec<u8> {
-    let (open, close): (&[u8], &[u8]) = if matches!(dialect.paren, Paren::Comment { .. }) {
+    let (open, close): (&[u8], &[u8]) = if matches!(dialect.marks.paren, Paren::Comment { .. }) {
         (b"(", b")")
-    } else if dialect.semicolon == Semicolon::Comment {
+    } else if dialect.marks.semicolon == Semicolon::Comment {
         (b"; ", b"")
     } else {
         return Vec::new();

@@ -1,8 +1,8 @@
 //! Changes to the text of one block.
 
 use diagnostic::Diagnostic;
-use nc_syntax::dialect::{Action, GCode};
-use nc_syntax::{Block, Dialect, ItemKind, Number, PlainWord, Span, Value};
+use nc_dialect::{Action, Dialect};
+use nc_syntax::{Block, GCode, ItemKind, Number, PlainWord, Span, Value};
 use smallvec::SmallVec;
 
 use crate::edit::{Piece, WordEdit};

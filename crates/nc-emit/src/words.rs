@@ -1,8 +1,8 @@
 //! Words of a block: which there are, and what they are for.
 
 use diagnostic::{Code, Diagnostic, both};
-use nc_syntax::dialect::{Action, CodeEntry, GCode, MOTION_GROUP};
-use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
+use nc_dialect::{Action, CodeEntry, Dialect, MOTION_GROUP};
+use nc_syntax::{Block, GCode, ItemKind, Span, Value};
 
 /// A word that cannot be edited: missing, doubled, or not a plain number.
 pub(crate) const WORD_NOT_EDITABLE: Code = Code(603);

@@ -9,7 +9,7 @@ use nc_emit::Emitter;
 type Case = (&'static str, &'static str, &'static str);
 
 #[track_caller]
-fn check(dialect: &nc_syntax::Dialect, cases: &[Case]) {
+fn check(dialect: &nc_dialect::Dialect, cases: &[Case]) {
     for (text, edit, expected) in cases {
         assert_eq!(&rewritten(dialect, text, &[edit]), expected, "`{text}` with `{edit}`");
     }

@@ -3,9 +3,9 @@
 use crate::common;
 
 use common::{dialect, least_increment, read};
+use nc_dialect::{Dialect, PointFree};
 use nc_emit::{Emitter, Piece, WordEdit};
-use nc_syntax::dialect::{GCode, PointFree};
-use nc_syntax::{Block, Dialect, ItemKind, Value};
+use nc_syntax::{Block, GCode, ItemKind, Value};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{select, subsequence};

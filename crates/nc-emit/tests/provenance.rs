@@ -4,7 +4,7 @@ use crate::common;
 
 use common::{dialect, read};
 use nc_emit::{find_provenance, insert_provenance, provenance_comment, provenance_position};
-use nc_syntax::dialect::{Paren, Semicolon};
+use nc_syntax::{Paren, Semicolon};
 
 #[test]
 fn the_comment_is_safe_in_every_control() {
@@ -18,9 +18,9 @@ fn the_comment_is_safe_in_every_control() {
     assert_eq!(provenance_comment(&dialect, text), b"(CORRECTED BY VPOST 0.1.0, PR)");
     dialect.output.max_block_bytes = 5;
     assert_eq!(provenance_comment(&dialect, text), b"(CORRECTED BY VPOST)");
-    dialect.paren = Paren::Command;
+    dialect.marks.paren = Paren::Command;
     assert_eq!(provenance_comment(&dialect, ""), b"; CORRECTED BY VPOST");
-    dialect.semicolon = Semicolon::None;
+    dialect.marks.semicolon = Semicolon::None;
     assert_eq!(provenance_comment(&dialect, text), b"");
 }
 
@@ -38,7 +38,7 @@ fn an_earlier_correction_is_found() {
     for semicolon_only in [false, true] {
         let mut dialect = dialect();
         if semicolon_only {
-            dialect.paren = Paren::None;
+            dialect.marks.paren = Paren::None;
         }
         assert!(find_provenance(&provenance_comment(&dialect, "x")).is_some());
     }

@@ -3,8 +3,9 @@
 use crate::common;
 
 use common::{piece, rewritten};
+use nc_dialect::Dialect;
 use nc_emit::{Emitter, Piece, WordEdit, insert_provenance, provenance_position};
-use nc_syntax::{Block, Dialect, Reader};
+use nc_syntax::{Block, Reader};
 
 const SAMPLES: &[(&str, &[u8])] = &[
     ("linuxcnc", include_bytes!("../../../samples/plate_linuxcnc.nc")),

@@ -64,7 +64,7 @@ fn the_mark_that_ends_a_block_ends_every_piece() {
         [(b';', "G1 X10.;\n", "G1 X5.;\nX10.;\n"), (b'*', "G1 X10. *\n", "G1 X5. *\nX10.*\n")]
     {
         let mut dialect = dialect();
-        dialect.end_of_block = Some(mark);
+        dialect.marks.end_of_block = Some(mark);
         let blocks = read(&dialect, block);
         let mut out = Vec::new();
         Emitter::new(&dialect).rewrite(&blocks[0], &[piece("G1 X5.0"), piece("G1 X10.0")], &mut out).unwrap();

@@ -5,7 +5,8 @@ use std::io::ErrorKind;
 use std::rc::Rc;
 
 use diagnostic::{Refusal, Text, both, of_system};
-use nc_syntax::dialect::{Macros, PointFree};
+use nc_dialect::PointFree;
+use nc_syntax::Macros;
 
 use crate::call_stack::{CallKind, Place};
 use crate::codes;

@@ -3,7 +3,8 @@
 use std::ops::Range;
 
 use diagnostic::Diagnostic;
-use nc_syntax::{Block, Dialect, EnvelopeFinder, Item, Place, Reader};
+use nc_dialect::Dialect;
+use nc_syntax::{Block, EnvelopeFinder, Item, Place, Reader};
 
 /// A place in a source file.
 #[derive(Clone, Debug, PartialEq, Eq)]

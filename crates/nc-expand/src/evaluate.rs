@@ -6,7 +6,8 @@
 //! would decide, the work is refused ([`Fault::TooClose`]).
 
 use diagnostic::{Text, both};
-use nc_syntax::dialect::{Flow, Macros};
+use nc_dialect::Flow;
+use nc_syntax::Macros;
 use units::math;
 
 use crate::expression::{Expression, Function, Operator};

@@ -1,7 +1,7 @@
 //! Expressions: text to tree.
 
 use diagnostic::{Text, both};
-use nc_syntax::dialect::Macros;
+use nc_syntax::Macros;
 
 use crate::value::{NameId, Names, Variable};
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use diagnostic::{Diagnostic, Refusal, Text, both};
-use nc_syntax::dialect::Macros;
+use nc_syntax::Macros;
 
 use crate::call_stack::CallKind;
 use crate::codes;

@@ -1,8 +1,8 @@
 //! Statements of flow and calls: text to what they do.
 
 use diagnostic::{Text, both};
-use nc_syntax::dialect::{Dialect, Flow, Macros};
-use nc_syntax::{Block, ItemKind};
+use nc_dialect::{Dialect, Flow};
+use nc_syntax::{Block, ItemKind, Macros};
 
 use crate::control::Control;
 use crate::expression::{Expression, Parser};

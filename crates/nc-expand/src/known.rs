@@ -4,9 +4,9 @@
 //! own for that: what it writes is read by [`Interpreter`], as it will be read once more when it is corrected, and what
 //! that does not know for certain nobody here knows.
 
+use nc_dialect::Dialect;
 use nc_program::modal::{Modal, MotionMode};
 use nc_program::{Interpreter, Owner, Setup};
-use nc_syntax::dialect::Dialect;
 use nc_syntax::{Block, Item};
 
 use crate::came::{Came, Fault, From, Refused};

@@ -64,7 +64,7 @@ mod words;
 
 use std::borrow::Cow;
 
-use nc_syntax::dialect::Dialect;
+use nc_dialect::Dialect;
 use nc_syntax::{Block, ItemKind, Reader};
 
 pub use came::Origin;

@@ -4,9 +4,9 @@
 //! names of Siemens), which writes it as it is or what it stands for, and whatever is written is read by the one reader
 //! of programs ([`Rewriting`]). What has to look ahead holds the blocks that it waits for.
 
+use nc_dialect::{Action, Dialect};
 use nc_program::Setup;
-use nc_syntax::dialect::Action;
-use nc_syntax::{Block, Dialect, Item, ItemKind, Value};
+use nc_syntax::{Block, Item, ItemKind, Value};
 
 use crate::came::{Came, Fault, From};
 use crate::known::{Lower, Rewriting, Shorthand};

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use nc_syntax::dialect::{Paren, Semicolon};
-use nc_syntax::{Block, Dialect, Reader, line_ending, line_ends};
+use nc_dialect::Dialect;
+use nc_syntax::{Block, Paren, Reader, Semicolon, line_ending, line_ends};
 use units::decimal::{self, Spelling};
 
 use crate::came::{Came, From, Origin, within_line};
@@ -29,9 +29,9 @@ pub(crate) struct Marks {
 
 impl Marks {
     pub(crate) fn of(dialect: &Dialect, source: &[u8]) -> Self {
-        let (open, close): (&[u8], &[u8]) = if matches!(dialect.paren, Paren::Comment { .. }) {
+        let (open, close): (&[u8], &[u8]) = if matches!(dialect.marks.paren, Paren::Comment { .. }) {
             (b"(", b")")
-        } else if dialect.semicolon == Semicolon::Comment {
+        } else if dialect.marks.semicolon == Semicolon::Comment {
             (b"; ", b"")
         } else {
             (b"", b"")

@@ -1,7 +1,8 @@
 //! Shorthand written out part by part, for a program of any size.
 
+use nc_dialect::Dialect;
 use nc_program::Setup;
-use nc_syntax::{Block, Dialect, Envelope, Place, Reader};
+use nc_syntax::{Block, Envelope, Place, Reader};
 
 use crate::came::{Came, From};
 use crate::known::Rewriting;

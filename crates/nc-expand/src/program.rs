@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use diagnostic::{Diagnostic, Text, both};
-use nc_syntax::dialect::{Action, Dialect, Macros};
-use nc_syntax::{Block, ItemKind, Reader};
+use nc_dialect::{Action, Dialect};
+use nc_syntax::{Block, ItemKind, Macros, Reader};
 
 use crate::codes;
 use crate::control::{Control, Direction};
@@ -361,7 +361,7 @@ impl<'a> Source<'a> {
 fn label(block: &Block<'_>, dialect: &Dialect, names: &mut Names) -> Option<NameId> {
     block.items.iter().filter(|item| item.kind == ItemKind::Name).find_map(|item| {
         let name = match block.text(item.span) {
-            name if dialect.labels => Some(name).filter(|name| name[0].eq_ignore_ascii_case(&b'N')),
+            name if dialect.marks.labels => Some(name).filter(|name| name[0].eq_ignore_ascii_case(&b'N')),
             name => name.strip_suffix(b":"),
         }?;
         Some(names.id(name))

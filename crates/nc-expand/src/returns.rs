@@ -12,9 +12,9 @@
 //! G81. The numbers written have 6 decimals.
 
 use diagnostic::Refusal;
+use nc_dialect::{Action, CycleBack, Dialect, WrittenCycles};
 use nc_program::modal::ReturnLevel;
-use nc_syntax::dialect::{Action, CycleBack, WrittenCycles};
-use nc_syntax::{Block, Dialect, ItemKind, Letters, Span, Value};
+use nc_syntax::{Block, ItemKind, Letters, Span, Value};
 use toolpath::{CycleKind, MOST_PECKS, Plane, Retreat, Stroke, peck_depths, strokes, whole_pecks};
 
 use crate::came::{Came, Fault};

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use diagnostic::{Text, both};
-use nc_syntax::Span;
-use nc_syntax::dialect::{Action, Dialect, Macros};
+use nc_dialect::{Action, Dialect};
+use nc_syntax::{Macros, Span};
 
 use crate::call_stack::{CallKind, Frame, Place};
 use crate::came::From;

@@ -14,10 +14,10 @@
 //! The numbers written have 6 decimals; what that neglects is half a nanometre.
 
 use diagnostic::{Refusal, Text, both};
+use nc_dialect::{Action, Called, CornerForm, Dialect};
 use nc_program::Owner;
 use nc_program::modal::{Modal, Units};
-use nc_syntax::dialect::{Action, Called, CornerForm, GCode};
-use nc_syntax::{Block, Dialect, Item, ItemKind, Number, Span, Value};
+use nc_syntax::{Block, GCode, Item, ItemKind, Number, Span, Value};
 use units::math;
 
 use crate::came::{Came, Fault, From, Held, Refused};

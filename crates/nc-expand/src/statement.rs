@@ -1,8 +1,8 @@
 //! Blocks as statements: what is copied, what is computed, where it goes on.
 
 use diagnostic::{Diagnostic, Refusal, Text, both};
-use nc_syntax::dialect::{Action, GCode, Macros, TurningCycle};
-use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value as WordValue};
+use nc_dialect::{Action, Dialect, TurningCycle};
+use nc_syntax::{Block, GCode, Item, ItemKind, Macros, Reader, Span, Value as WordValue};
 
 use crate::codes;
 use crate::control::{Call, Control, Said};
@@ -185,7 +185,8 @@ impl Compiler<'_, '_> {
                 ItemKind::Skip => flags.skip = true,
                 // `NEND` is a number too where it repeats; `OSUB` and `$PART.MIN%` are names.
                 ItemKind::Name
-                    if self.dialect.labels && !matches!(bytes[item.span.start as usize], b'O' | b'$') =>
+                    if self.dialect.marks.labels
+                        && !matches!(bytes[item.span.start as usize], b'O' | b'$') =>
                 {
                     flags.number = Some(item.span);
                 }
@@ -199,7 +200,7 @@ impl Compiler<'_, '_> {
                     flags.ends |= row.is_some_and(|row| row.ends_program);
                 }
                 ItemKind::Word { letter: b'G', value: WordValue::Number(number) } => {
-                    let row = number.tenths().and_then(|t| self.dialect.code(nc_syntax::dialect::GCode(t)));
+                    let row = number.tenths().and_then(|t| self.dialect.code(nc_syntax::GCode(t)));
                     match row.map(|row| &row.action) {
                         Some(Action::Inch) => flags.inch = Some(true),
                         Some(Action::Millimetre) => flags.inch = Some(false),

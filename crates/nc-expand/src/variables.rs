@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use nc_syntax::dialect::Macros;
+use nc_syntax::Macros;
 
 use crate::evaluate::{Fault, Variables};
 use crate::value::{NameId, Names, Value, Variable};

@@ -1,6 +1,7 @@
 //! Computed words as text.
 
-use nc_syntax::dialect::{Action, GCode, Macros};
+use nc_dialect::Action;
+use nc_syntax::{GCode, Macros};
 
 use crate::evaluate::Rules;
 use crate::faults::{self, Stop};
@@ -92,7 +93,7 @@ impl Run<'_, '_> {
             b'Q' if fanuc && self.dialect.turning.is_some() && near => Style::Whole,
             b'Q' if fanuc && self.dialect.turning.is_some() => return Err(faults::no_code(letter, value)),
             b'P' | b'S' if fanuc => return Err(faults::no_code(letter, value)),
-            _ => Style::Decimals(if fanuc || self.dialect.labels { 6 } else { 9 }),
+            _ => Style::Decimals(if fanuc || self.dialect.marks.labels { 6 } else { 9 }),
         };
         let length = text.len();
         let styles: &[Style] = if let Style::Decimals(2..) = style {

@@ -3,8 +3,8 @@
 use crate::common;
 
 use common::blocks;
+use nc_dialect::Dialect;
 use nc_expand::{Environment, Limits, expand};
-use nc_syntax::Dialect;
 
 fn dialect(diameters: Option<bool>, plain: bool) -> Dialect {
     let mut dialect =

@@ -8,8 +8,8 @@ use crate::common;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use nc_syntax::dialect::Action;
-use nc_syntax::{Block, Dialect, Reader};
+use nc_dialect::{Action, Dialect};
+use nc_syntax::{Block, Reader};
 
 use nc_expand::{Environment, Limits, Preset, expand};
 

@@ -4,8 +4,8 @@
 use crate::common;
 
 use common::blocks;
+use nc_dialect::Dialect;
 use nc_expand::{Environment, Limits, expand};
-use nc_syntax::Dialect;
 
 fn dialect() -> Dialect {
     let mut dialect =

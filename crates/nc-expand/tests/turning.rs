@@ -3,9 +3,8 @@
 use crate::common;
 
 use common::blocks;
+use nc_dialect::{Dialect, DrillPecks, DrillR, FlankFrom, TurningParameters};
 use nc_expand::{Environment, Expanded, Limits, Refusal, expand};
-use nc_syntax::Dialect;
-use nc_syntax::dialect::{DrillPecks, DrillR, FlankFrom, TurningParameters};
 
 const START: &str = "G0 X60. Z2.\n";
 

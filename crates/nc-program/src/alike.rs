@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use diagnostic::{Diagnostic, both};
-use nc_syntax::Dialect;
+use nc_dialect::Dialect;
 
 use crate::codes;
 

@@ -1,8 +1,8 @@
 //! What only the control has: programs and functions that are left alone, and what is unknown behind them.
 
 use diagnostic::{Diagnostic, Refusal, both};
+use nc_dialect::Action;
 use nc_syntax::Span;
-use nc_syntax::dialect::Action;
 use smallvec::smallvec;
 use toolpath::{Motion, Mover};
 

@@ -1,6 +1,7 @@
 //! What correction and emission must know of a block.
 
-use nc_syntax::dialect::{GCode, Side};
+use nc_dialect::Side;
+use nc_syntax::GCode;
 use toolpath::{Frame, Kinematics, Plane};
 
 use crate::direction::DirectionWords;

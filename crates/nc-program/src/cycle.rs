@@ -1,7 +1,8 @@
 //! Drilling cycles: which blocks make a hole, and where.
 
 use diagnostic::{Refusal, Text, both};
-use nc_syntax::dialect::{CycleLevels, GCode};
+use nc_dialect::CycleLevels;
+use nc_syntax::{GCode, Letters};
 use smallvec::SmallVec;
 use toolpath::{Cycle, CycleKind, Frame, Hole, Motion, Position};
 use units::decimal::Decimal;
@@ -15,7 +16,6 @@ use crate::moved::Motions;
 use crate::position::{end, increment_base, require_frame, require_known};
 use crate::refusals::cycle as refusal;
 use crate::words::{AXIS_LETTERS, CENTRE_LETTERS, LINEAR, Outcome, ROTARY_LETTERS, Words};
-use nc_syntax::Letters;
 
 /// Levels that differ by less are the same.
 const SAME_LEVEL_MM: f64 = 1e-6;

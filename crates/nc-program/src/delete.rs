@@ -8,7 +8,7 @@
 //! equal again), and refused where it is not.
 
 use diagnostic::{Text, both};
-use nc_syntax::dialect::Side;
+use nc_dialect::Side;
 use toolpath::Kinematics;
 
 use crate::modal::{

@@ -1,7 +1,7 @@
 //! What a program is read against, and what one of its blocks asks for.
 
-use nc_syntax::dialect::Action;
-use nc_syntax::{Dialect, Span};
+use nc_dialect::{Action, Dialect};
+use nc_syntax::Span;
 
 use crate::setup::Setup;
 use crate::words::Words;

@@ -9,15 +9,14 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use diagnostic::{Diagnostic, Text, both};
-use nc_syntax::dialect::{Action, GCode, LatheSign, PointFree};
-use nc_syntax::{Block, Dialect, ItemKind, Number, PlainLine, Reader, Value, Word};
+use nc_dialect::{Action, Dialect, LatheSign, PointFree};
+use nc_syntax::{Block, GCode, ItemKind, Letters, Number, PlainLine, Reader, Value, Word};
 use smallvec::SmallVec;
 
 use crate::alike::{self, Sure};
 use crate::codes;
 use crate::setup::Setup;
 use crate::words::is_motion;
-use nc_syntax::Letters;
 
 /// G15
 const POLAR_OFF: GCode = GCode(150);

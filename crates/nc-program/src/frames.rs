@@ -3,7 +3,7 @@
 //! All of them end in [`toolpath::Frame`]: axis = T(word) + zero + shifts + tool length, T being the
 //! rotation, scaling or mirror in force. What a manual leaves open is refused.
 
-use nc_syntax::dialect::{Action, FramePart, OffsetL20};
+use nc_dialect::{Action, FramePart, OffsetL20};
 use nc_syntax::{Letters, Span};
 
 use crate::environment::{Demand, Environment};

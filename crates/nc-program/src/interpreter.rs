@@ -1,8 +1,8 @@
 //! Block by block: check the whole block, then commit it.
 
 use diagnostic::{Diagnostic, both};
-use nc_syntax::dialect::{Action, MCode};
-use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
+use nc_dialect::{Action, Dialect, MCode};
+use nc_syntax::{Block, ItemKind, Span, Value};
 use smallvec::{SmallVec, smallvec};
 use toolpath::{Kinematics, Motion, Mover, Plane};
 use units::decimal::Decimal;

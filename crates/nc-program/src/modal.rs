@@ -1,8 +1,8 @@
 //! The state of a program between two blocks: one enum per modal group.
 
 use crate::under_way::{CurveBegun, Offset, PlaneBegun};
-use nc_syntax::Number;
-use nc_syntax::dialect::{CurveCode, GCode, Side};
+use nc_dialect::{CurveCode, Side};
+use nc_syntax::{GCode, Number};
 use toolpath::{CycleKind, Frame, Kinematics, Partial, Plane};
 use units::decimal::Decimal;
 

@@ -9,14 +9,14 @@
 //! Where controls also differ in whether the axis moves (a tool length that changes without a motion of the axis in the
 //! same block), its position is unknown.
 
-use nc_syntax::dialect::{Action, FramePart, GCode};
+use nc_dialect::{Action, FramePart};
+use nc_syntax::{GCode, Letters};
 use toolpath::Kinematics;
 
 use crate::environment::{Demand, Environment, Owner};
 use crate::modal::{Axis, Compensation, Distance, Lost, Modal, Naming, ReturnLevel, Shifts, Why};
 use crate::moved::Moved;
 use crate::words::{AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Words};
-use nc_syntax::Letters;
 
 /// Axes by index.
 type Set = [bool; 3];

@@ -7,8 +7,8 @@
 
 use toolpath::{Division, Motion, Partial};
 
+use nc_dialect::{Action, Side};
 use nc_syntax::Letters;
-use nc_syntax::dialect::{Action, Side};
 
 use crate::environment::Environment;
 use crate::modal::{Compensation, Modal};

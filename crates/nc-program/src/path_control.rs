@@ -1,7 +1,6 @@
 //! How near the control keeps to the programmed path: exact stop, blending, and what says it.
 
-use nc_syntax::Dialect;
-use nc_syntax::path_control::{Keeps, PathCode, PathKey};
+use nc_dialect::{Dialect, Keeps, PathCode, PathKey};
 
 use crate::brackets::arguments;
 use crate::modal::{PathControl, Units};

@@ -4,8 +4,8 @@
 //! up: the words are the end of the motion. Whatever else a block holds, or is in force, is left to
 //! [`crate::Interpreter::step`], which does the same by the long way.
 
-use nc_syntax::dialect::{GCode, Numbers};
-use nc_syntax::{PlainLine, PlainWord};
+use nc_dialect::Numbers;
+use nc_syntax::{GCode, PlainLine, PlainWord};
 use toolpath::{Division, Feed, FeedRate, Frame, Position, Shape};
 use units::decimal::Decimal;
 

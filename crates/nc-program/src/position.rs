@@ -1,8 +1,8 @@
 //! Where a block's axis words lead, and what is said where that cannot be known.
 
 use diagnostic::{Diagnostic, Entry, Refusal, Text, both};
-use nc_syntax::Span;
-use nc_syntax::dialect::Action;
+use nc_dialect::Action;
+use nc_syntax::{Letters, Span};
 use toolpath::{AXIS_NAMES, Frame, Position};
 
 use crate::codes;
@@ -11,7 +11,6 @@ use crate::modal::{Axes, Axis, Distance, Lost, Modal, MotionMode, Naming, Units,
 use crate::refusals::position as refusal;
 use crate::words::{AXIS_LETTERS, LINEAR, Outcome, ROTARY, ROTARY_LETTERS, Words};
 use crate::work_offset::{missing_offset, name_of};
-use nc_syntax::Letters;
 
 /// From program coordinates to axis commands, mm: refused where the work offset in force is not given.
 #[inline]

@@ -9,8 +9,8 @@
 use std::fmt;
 
 use diagnostic::{Text, both};
-use nc_syntax::dialect::{Action, CodeEntry, Dialect, GCode, MOTION_GROUP};
-use nc_syntax::{Block, ItemKind, Word};
+use nc_dialect::{Action, CodeEntry, Dialect, MOTION_GROUP};
+use nc_syntax::{Block, GCode, ItemKind, Word};
 use smallvec::SmallVec;
 use toolpath::{CycleKind, Kinematics, Motion};
 use units::decimal::Decimal;

@@ -1,8 +1,8 @@
 //! What the codes of a block set before anything moves, whatever their order in the block.
 
 use diagnostic::{Refusal, both};
-use nc_syntax::Span;
-use nc_syntax::dialect::{Action, GCode, PlaneCode};
+use nc_dialect::{Action, PlaneCode};
+use nc_syntax::{GCode, Letters, Span};
 use toolpath::{CycleKind, Kinematics, Plane};
 
 use crate::codes;
@@ -15,7 +15,6 @@ use crate::refusals::{frames as of_frames, settings as refusal};
 use crate::tool_length::{self, Length};
 use crate::words::{LINEAR_LETTERS, Outcome, Words};
 use crate::{brackets, frame_state, path_control, tilted, tip, transform::Transform, work_offset};
-use nc_syntax::Letters;
 
 /// Collected while the codes are read, applied afterwards in a fixed order.
 #[derive(Default)]

@@ -6,8 +6,8 @@
 //! does not stand upright.
 
 use diagnostic::{Diagnostic, Refusal, both};
-use nc_syntax::Span;
-use nc_syntax::dialect::Action;
+use nc_dialect::Action;
+use nc_syntax::{Letters, Span};
 use smallvec::SmallVec;
 use toolpath::{AXIS_NAMES, Kinematics, Motion, NoAngles, TiltedPlane, unit};
 
@@ -21,7 +21,6 @@ use crate::position::{require_frame, require_rotary};
 use crate::refusals::tilted as refusal;
 use crate::under_way::PlaneBegun;
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, Words};
-use nc_syntax::Letters;
 
 /// The tool stands upright on a plane where its direction is within this of the plane's normal, rad: whichever of the
 /// two a control adds a length of 200 mm along, its end is within a micrometre.

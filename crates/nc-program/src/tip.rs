@@ -1,8 +1,8 @@
 //! Tool centre point control: G43.4, TRAORI, M codes of the machine. X, Y and Z then say where the tip is.
 
 use diagnostic::{Refusal, both};
-use nc_syntax::Span;
-use nc_syntax::dialect::{Action, TipSwitch};
+use nc_dialect::{Action, TipSwitch};
+use nc_syntax::{Letters, Span};
 use toolpath::Kinematics;
 
 use crate::codes;
@@ -10,7 +10,6 @@ use crate::environment::{Demand, Environment};
 use crate::modal::{Axis, Compensation, Lost, Modal, Why};
 use crate::refusals::tip as refusal;
 use crate::words::{Outcome, Words};
-use nc_syntax::Letters;
 
 /// What the codes of a block, whose tool length is in `state` already, say of the kinematics in force from here on.
 fn wanted(env: &Environment<'_>, words: &Words<'_, '_, '_>, before: &Modal) -> Option<(Kinematics, Span)> {
@@ -23,7 +22,7 @@ fn wanted(env: &Environment<'_>, words: &Words<'_, '_, '_>, before: &Modal) -> O
         Action::Tip(switch) => Some((of(switch), code.span)),
         // A code of its group ends G43.4.
         _ if before.kinematics == Kinematics::Tip && code.entry.group != 0 => {
-            let replaces = |row: &nc_syntax::dialect::CodeEntry| {
+            let replaces = |row: &nc_dialect::CodeEntry| {
                 row.action == Action::TipLengthOn && row.group == code.entry.group
             };
             env.dialect.codes.iter().any(replaces).then_some((Kinematics::Axes, code.span))

@@ -1,7 +1,7 @@
 //! T, H, G43, G44, G49 and G43.1: which tool length is in force.
 
 use diagnostic::{Entry, Refusal, Text, both};
-use nc_syntax::dialect::{LengthAfter, LengthAtChange, TWord, Turning};
+use nc_dialect::{LengthAfter, LengthAtChange, TWord, Turning};
 use nc_syntax::{Letters, Span};
 
 use crate::codes;

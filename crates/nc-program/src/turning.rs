@@ -1,7 +1,8 @@
 //! What is different in a lathe's program: X words are diameters, there is no Y, arcs lie in X and Z.
 
 use diagnostic::{Refusal, Text, both};
-use nc_syntax::dialect::{Action, GCode};
+use nc_dialect::Action;
+use nc_syntax::{GCode, Letters};
 use toolpath::{Motion, Plane, Shape};
 
 use crate::codes;
@@ -9,7 +10,6 @@ use crate::environment::{Demand, Environment, Owner};
 use crate::modal::{Distance, Modal, MotionMode, XWords};
 use crate::refusals::turning as refusal;
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, LINEAR, Outcome, ROTARY_LETTERS, Words};
-use nc_syntax::Letters;
 
 /// The code that keeps the cutting speed constant, on every control.
 const CONSTANT_SPEED: GCode = GCode(960);

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
+use nc_dialect::CurveCode;
 use nc_syntax::Letters;
-use nc_syntax::dialect::CurveCode;
 use toolpath::Position;
 
 /// How far cutter compensation is.

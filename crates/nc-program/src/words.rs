@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use diagnostic::{Diagnostic, Refusal, Text, both};
-use nc_syntax::dialect::{Action, CodeEntry, GCode, MCode, TWord};
-use nc_syntax::{Block, Dialect, Invalid, ItemKind, Letters, Number, Span, Value};
+use nc_dialect::{Action, CodeEntry, Dialect, MCode, TWord};
+use nc_syntax::{Block, GCode, Invalid, ItemKind, Letters, Number, Span, Value};
 use smallvec::SmallVec;
 
 use crate::codes;

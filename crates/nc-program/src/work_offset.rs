@@ -1,8 +1,8 @@
 //! Work offsets that codes choose: by name, by P, by H.
 
 use diagnostic::{Entry, Refusal, both};
-use nc_syntax::dialect::{Action, GCode};
-use nc_syntax::{Dialect, Letters, Span};
+use nc_dialect::{Action, Dialect};
+use nc_syntax::{GCode, Letters, Span};
 
 use crate::codes;
 use crate::environment::{BASE_FRAME, Environment};

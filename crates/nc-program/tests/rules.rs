@@ -7,7 +7,7 @@ mod controls;
 use common::{dialect, end, feed, motions, refusal, run, run_with, setup, uncorrected};
 use nc_program::modal::{MotionMode, Progress};
 use nc_program::{AfterChange, Setup};
-use nc_syntax::dialect::GCode;
+use nc_syntax::GCode;
 use toolpath::{Division, FeedRate, Motion};
 
 const START: &str = "G90 G0 X0 Y0 Z10\n";

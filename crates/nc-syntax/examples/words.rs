@@ -11,13 +11,13 @@
 //! 54 bytes came out as they went in
 //! ```
 
-use nc_syntax::{Block, ItemKind, Reader};
+use nc_syntax::{Block, ItemKind, Marks, Reader};
 
 const PROGRAM: &[u8] = b"%\nO7 (BRACKET)\nN10 G1 X-12.5 F300\n/ Y[#1+2.]\nX1.2.3\n%\n";
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let dialect = nc_dialect::builtin("fanuc").ok_or("a shipped dialect")?;
-    let (mut reader, mut block) = (Reader::new(PROGRAM, dialect), Block::default());
+    let marks = Marks::default();
+    let (mut reader, mut block) = (Reader::new(PROGRAM, &marks), Block::default());
     let mut again = Vec::new();
     let mut text = String::new();
     while reader.next(&mut block) {

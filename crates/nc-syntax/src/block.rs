@@ -6,13 +6,13 @@ use crate::code::GCode;
 ///
 /// ```
 /// # use nc_syntax::{Block, Reader};
-/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
-/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
-/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// # fn read(text: &'static str) -> Block<'static> {
+/// #     let marks: &nc_syntax::Marks = Box::leak(Box::default());
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), marks), Block::default());
 /// #     assert!(reader.next(&mut block));
 /// #     block
 /// # }
-/// let block = read("G1 X-10.5 (in)\r\n", "fanuc");
+/// let block = read("G1 X-10.5 (in)\r\n");
 /// let span = block.word(b'X').unwrap().span;
 /// assert_eq!((span.start, span.end), (3, 9));
 /// assert_eq!(block.text(span), b"X-10.5");
@@ -30,14 +30,14 @@ pub struct Span {
 /// ```
 /// use nc_syntax::Sign;
 /// # use nc_syntax::{Block, Reader};
-/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
-/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
-/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// # fn read(text: &'static str) -> Block<'static> {
+/// #     let marks: &nc_syntax::Marks = Box::leak(Box::default());
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), marks), Block::default());
 /// #     assert!(reader.next(&mut block));
 /// #     block
 /// # }
 /// // Both are ten, and each is written again as it was.
-/// let block = read("X+10. Y10.\n", "fanuc");
+/// let block = read("X+10. Y10.\n");
 /// let sign = |letter| block.word(letter).unwrap().number().unwrap().sign;
 /// assert_eq!((sign(b'X'), sign(b'Y')), (Sign::Plus, Sign::None));
 /// ```
@@ -56,13 +56,13 @@ pub enum Sign {
 /// ```
 /// use nc_syntax::Number;
 /// # use nc_syntax::{Block, Reader};
-/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
-/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
-/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// # fn read(text: &'static str) -> Block<'static> {
+/// #     let marks: &nc_syntax::Marks = Box::leak(Box::default());
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), marks), Block::default());
 /// #     assert!(reader.next(&mut block));
 /// #     block
 /// # }
-/// let block = read("G54.1 X-.250 M06\n", "fanuc");
+/// let block = read("G54.1 X-.250 M06\n");
 /// let number = |letter| block.word(letter).unwrap().number().unwrap();
 /// let x = number(b'X');
 /// assert_eq!((x.decimal.mantissa, x.decimal.decimals, x.leading_digit), (-250, 3, false));
@@ -87,13 +87,13 @@ pub struct Number {
 /// ```
 /// use nc_syntax::Value;
 /// # use nc_syntax::{Block, Reader};
-/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
-/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
-/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// # fn read(text: &'static str) -> Block<'static> {
+/// #     let marks: &nc_syntax::Marks = Box::leak(Box::default());
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), marks), Block::default());
 /// #     assert!(reader.next(&mut block));
 /// #     block
 /// # }
-/// let block = read("X#1 Y[#2+1] Z5.\n", "fanuc");
+/// let block = read("X#1 Y[#2+1] Z5.\n");
 /// let value = |letter| block.word(letter).unwrap().value;
 /// assert_eq!((value(b'X'), value(b'Y')), (Value::Expression, Value::Expression));
 /// assert!(matches!(value(b'Z'), Value::Number(five) if five.to_f64() == 5.0));
@@ -113,14 +113,14 @@ pub enum Value {
 /// ```
 /// use nc_syntax::Invalid;
 /// # use nc_syntax::{Block, Reader};
-/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
-/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
-/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// # fn read(text: &'static str) -> Block<'static> {
+/// #     let marks: &nc_syntax::Marks = Box::leak(Box::default());
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), marks), Block::default());
 /// #     assert!(reader.next(&mut block));
 /// #     block
 /// # }
 /// // Nothing is lost over it: the bytes stand in their item, and the block's other words are there.
-/// let block = read("G1 X1.2.3 Y5.\n", "fanuc");
+/// let block = read("G1 X1.2.3 Y5.\n");
 /// let (why, span) = block.first_invalid().unwrap();
 /// assert_eq!((why, block.text(span)), (Invalid::Number, &b"X1.2.3"[..]));
 /// assert_eq!(block.word(b'Y').unwrap().number().unwrap().to_f64(), 5.0);
@@ -146,13 +146,13 @@ pub enum Invalid {
 /// ```
 /// use nc_syntax::ItemKind;
 /// # use nc_syntax::{Block, Reader};
-/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
-/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
-/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// # fn read(text: &'static str) -> Block<'static> {
+/// #     let marks: &nc_syntax::Marks = Box::leak(Box::default());
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), marks), Block::default());
 /// #     assert!(reader.next(&mut block));
 /// #     block
 /// # }
-/// let block = read("/ N5 G1 X10. ,C2. (CHAMFER)\n", "fanuc");
+/// let block = read("/ N5 G1 X10. ,C2. (CHAMFER)\n");
 /// let kinds: Vec<&str> = block
 ///     .items
 ///     .iter()
@@ -190,9 +190,9 @@ pub enum ItemKind {
     Percent,
     /// Program name in a form that is not an `O` or `:` word, or a text line in the leader.
     Name,
-    /// A command by name: in round brackets where the dialect has such ([`crate::dialect::Paren::Command`]),
+    /// A command by name: in round brackets where the dialect has such ([`crate::Paren::Command`]),
     /// or a word of the dialect's command table; a refused one reaches to the end of the block. See
-    /// [`crate::Dialect::command`].
+    /// [`crate::Spells::named`].
     BracketCommand,
     /// Flow and variables: `#1=…`, `IF`, `WHILE`, `GOTO`, `O100 sub`; to the next comment or the end of the block.
     Flow,
@@ -204,14 +204,14 @@ pub enum ItemKind {
 ///
 /// ```
 /// # use nc_syntax::{Block, Reader};
-/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
-/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
-/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// # fn read(text: &'static str) -> Block<'static> {
+/// #     let marks: &nc_syntax::Marks = Box::leak(Box::default());
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), marks), Block::default());
 /// #     assert!(reader.next(&mut block));
 /// #     block
 /// # }
 /// // What lies between the items is white space.
-/// let block = read("G1  X10.\t(in)\n", "fanuc");
+/// let block = read("G1  X10.\t(in)\n");
 /// let texts: Vec<&[u8]> = block.items.iter().map(|item| block.text(item.span)).collect();
 /// assert_eq!(texts, [&b"G1"[..], b"X10.", b"(in)"]);
 /// ```
@@ -227,18 +227,18 @@ pub struct Item {
 ///
 /// ```
 /// # use nc_syntax::{Block, Reader};
-/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
-/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
-/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// # fn read(text: &'static str) -> Block<'static> {
+/// #     let marks: &nc_syntax::Marks = Box::leak(Box::default());
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), marks), Block::default());
 /// #     assert!(reader.next(&mut block));
 /// #     block
 /// # }
-/// let block = read("N10 G1 X10. X20. (twice)\r\n", "fanuc");
+/// let block = read("N10 G1 X10. X20. (twice)\r\n");
 /// assert_eq!(block.bytes, b"N10 G1 X10. X20. (twice)\r\n");
 /// // Where a letter stands twice, `word` is the last and `words` has both.
 /// assert_eq!(block.word(b'X').and_then(|x| x.number()).map(|x| x.to_f64()), Some(20.0));
 /// assert_eq!(block.words().filter(|word| word.letter == b'X').count(), 2);
-/// assert!(block.acts() && !read("N10 (only a comment)\n", "fanuc").acts());
+/// assert!(block.acts() && !read("N10 (only a comment)\n").acts());
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Block<'a> {
@@ -261,15 +261,15 @@ pub const MAX_BLOCK_BYTES: usize = 1 << 16;
 /// A letter with its value, as [`Block::words`] yields them.
 ///
 /// ```
-/// use nc_syntax::dialect::GCode;
+/// use nc_syntax::GCode;
 /// # use nc_syntax::{Block, Reader};
-/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
-/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
-/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// # fn read(text: &'static str) -> Block<'static> {
+/// #     let marks: &nc_syntax::Marks = Box::leak(Box::default());
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), marks), Block::default());
 /// #     assert!(reader.next(&mut block));
 /// #     block
 /// # }
-/// let block = read("G54.1 P3\n", "fanuc");
+/// let block = read("G54.1 P3\n");
 /// let codes: Vec<_> = block.words().map(|word| word.g_code()).collect();
 /// assert_eq!(codes, [Some(GCode(541)), None]);
 /// ```

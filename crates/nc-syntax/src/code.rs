@@ -3,19 +3,17 @@
 /// A preparatory code in tenths: `G81` is 810, `G54.1` is 541.
 ///
 /// ```
-/// use nc_syntax::dialect::GCode;
+/// use nc_syntax::GCode;
 ///
 /// assert_eq!(format!("{} {}", GCode(810), GCode(541)), "G81 G54.1");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct GCode(pub u16);
 
-/// Modal group of G0 to G3, and in some dialects of the cycles (numbers of the LinuxCNC and Fanuc manuals).
-pub const MOTION_GROUP: u8 = 1;
-
 impl GCode {
     /// 81 of G81, 54 of G54.1.
-    pub(crate) const fn whole(self) -> usize {
+    #[must_use]
+    pub const fn whole(self) -> usize {
         self.0 as usize / 10
     }
 }

@@ -3,7 +3,7 @@
 use memchr::{memchr_iter, memchr2};
 
 use crate::lexer::{Lexer, is_blank, skip_blanks};
-use crate::{Dialect, Item, ItemKind};
+use crate::{Item, ItemKind, Spells};
 
 /// UTF-8's mark at the start of a file; not text.
 pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
@@ -13,7 +13,8 @@ pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 /// ```
 /// use nc_syntax::EnvelopeFinder;
 ///
-/// let mut finder = EnvelopeFinder::new(nc_dialect::builtin("fanuc").unwrap());
+/// let marks = nc_syntax::Marks::default();
+/// let mut finder = EnvelopeFinder::new(&marks);
 /// finder.see(b"PART 7\n%\nG0 X1.\n%\nnotes\n");
 /// let envelope = finder.finish();
 /// // The leader is not executed, the program is, what stands behind it is not.
@@ -44,7 +45,8 @@ impl Envelope {
 /// ```
 /// use nc_syntax::EnvelopeFinder;
 ///
-/// let mut finder = EnvelopeFinder::new(nc_dialect::builtin("fanuc").unwrap());
+/// let marks = nc_syntax::Marks::default();
+/// let mut finder = EnvelopeFinder::new(&marks);
 /// finder.see(b"%\nG0 X1.\n%\n");
 /// // While parts are to come the second mark may be one between blocks.
 /// assert!(finder.open().holds(12));
@@ -64,9 +66,9 @@ pub struct EnvelopeFinder<'d> {
 impl<'d> EnvelopeFinder<'d> {
     /// Nothing read yet.
     #[must_use]
-    pub fn new(dialect: &'d Dialect) -> Self {
+    pub fn new(language: &'d dyn Spells) -> Self {
         Self {
-            lexer: Lexer::new(dialect),
+            lexer: Lexer::new(language),
             length: 0,
             first: None,
             last: None,

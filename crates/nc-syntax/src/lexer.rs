@@ -1,12 +1,12 @@
 //! Items inside one block.
 
-use crate::dialect::{Colon, Command, MCode, Macros, Paren, Semicolon};
 use crate::number::{common_number, end_of_garbage, number, skip_spaces};
+use crate::spelling::{Colon, Macros, Named, Paren, Semicolon, Spells};
 use crate::value::{
     angle_name, assigned, brackets, expression, flat_comment, is_flow_word, is_function, is_short_flow_word,
     is_siemens_word, nested_comment, o_statement,
 };
-use crate::{Dialect, Invalid, Item, ItemKind, Number, Span, Value};
+use crate::{Invalid, Item, ItemKind, Number, Span, Value};
 
 /// The facts of a dialect that reading a block needs, ready to be asked a million times a second.
 pub(crate) struct Lexer<'d> {
@@ -22,8 +22,7 @@ pub(crate) struct Lexer<'d> {
     /// Bit n is set where the n-th letter of the alphabet is a word's letter.
     pub(crate) letters: u32,
     long_words: &'d [(String, u8)],
-    commands: &'d [Command],
-    m_codes: &'d [MCode],
+    language: &'d dyn Spells,
     /// No block is written out as others, which have no comments.
     copies_blocks: bool,
     /// Statements and labels are Siemens'.
@@ -59,34 +58,32 @@ pub(crate) fn trim_end(bytes: &[u8]) -> usize {
 }
 
 impl<'d> Lexer<'d> {
-    pub(crate) fn new(dialect: &'d Dialect) -> Self {
+    pub(crate) fn new(language: &'d dyn Spells) -> Self {
+        let (marks, macros) = (language.marks(), language.macros());
         let mut letters = 0;
-        for letter in &dialect.letters {
+        for letter in &marks.letters {
             let letter = letter.to_ascii_uppercase();
             if letter.is_ascii_uppercase() {
                 letters |= 1 << (letter - b'A');
             }
         }
         Self {
-            paren: dialect.paren,
-            semicolon: dialect.semicolon,
-            end_of_block: dialect.end_of_block,
-            percent_words: dialect.percent_words,
-            skip: dialect.skip,
-            colon: dialect.colon,
-            equals_words: dialect.equals_words,
-            labels: dialect.labels,
-            spaces_inside: dialect.numbers.spaces_inside,
+            paren: marks.paren,
+            semicolon: marks.semicolon,
+            end_of_block: marks.end_of_block,
+            percent_words: marks.percent_words,
+            skip: marks.skip,
+            colon: marks.colon,
+            equals_words: marks.equals_words,
+            labels: marks.labels,
+            spaces_inside: marks.spaces_inside,
             letters,
-            long_words: &dialect.long_words,
-            commands: &dialect.commands,
-            m_codes: &dialect.m_codes,
-            copies_blocks: dialect.turning.is_none()
-                && !dialect.flow.called
-                && dialect.flow.written_cycles.is_none(),
-            siemens: dialect.flow.macros == Macros::Siemens,
-            okuma: dialect.flow.macros == Macros::Okuma,
-            fanuc: dialect.flow.macros == Macros::Fanuc,
+            long_words: &marks.long_words,
+            language,
+            copies_blocks: language.copies_blocks(),
+            siemens: macros == Macros::Siemens,
+            okuma: macros == Macros::Okuma,
+            fanuc: macros == Macros::Fanuc,
         }
     }
 
@@ -163,7 +160,7 @@ impl<'d> Lexer<'d> {
             1 => false,
             _ => {
                 let function = text.get(run) == Some(&b'[') && is_function(&text[1..run]);
-                let command = self.commands.iter().any(|command| names(command, text));
+                let command = self.language.named(text).is_some();
                 let statement = self.siemens && self.statement(text, 0).is_some();
                 !(function || command || is_flow_word(&text[..run]) || statement)
             }
@@ -208,7 +205,7 @@ impl<'d> Lexer<'d> {
                 return self.flow(line, at, end);
             }
             // `OMAIN` and `NEND`, where nothing else begins so.
-            let known = || self.commands.iter().any(|command| names(command, &line[at..]));
+            let known = || self.language.named(&line[at..]).is_some();
             if self.labels && matches!(letter, b'O' | b'N') && !known() {
                 return (ItemKind::Name, at + identifier(&line[at..]));
             }
@@ -292,7 +289,7 @@ impl<'d> Lexer<'d> {
         if !matches!(line.get(behind), Some(b':' | b'=')) {
             return None;
         }
-        let known = self.commands.iter().any(|command| command.name.as_bytes().eq_ignore_ascii_case(name))
+        let known = self.language.named(name).is_some()
             || self.long_words.iter().any(|(word, _)| word.as_bytes().eq_ignore_ascii_case(name));
         if known {
             return None;
@@ -313,7 +310,7 @@ impl<'d> Lexer<'d> {
         }
         let behind = skip_spaces(line, at + length);
         let assigns = line.get(behind) == Some(&b'=') && line.get(behind + 1) != Some(&b'=');
-        let known = self.commands.iter().any(|command| names(command, &line[at..]));
+        let known = self.language.named(&line[at..]).is_some();
         (assigns && !known).then_some(at + length)
     }
 
@@ -336,7 +333,7 @@ impl<'d> Lexer<'d> {
                 (Err(why), end) => (ItemKind::Invalid(why), end),
             });
         }
-        if let Some(command) = self.commands.iter().find(|command| names(command, &line[at..])) {
+        if let Some(command) = self.language.named(&line[at..]) {
             return Some((ItemKind::BracketCommand, end_of_command(command, line, at)));
         }
         if is_function(&name[1..]) && line.get(skip_spaces(line, at + run)) == Some(&b'[') {
@@ -438,7 +435,7 @@ impl<'d> Lexer<'d> {
                 .statement(line, at)
                 .unwrap_or_else(|| (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at))),
             b'#' => self.macro_statement(line, at, at + 1),
-            b'$' => match self.commands.iter().find(|command| names(command, &line[at..])) {
+            b'$' => match self.language.named(&line[at..]) {
                 Some(command) => (ItemKind::BracketCommand, end_of_command(command, line, at)),
                 None => (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at)),
             },
@@ -466,9 +463,8 @@ impl<'d> Lexer<'d> {
         let digits = line[..at].iter().rev().take_while(|byte| is_digit(byte)).count();
         let (before, number) = line[..at].split_at(at - digits);
         let number = std::str::from_utf8(number).ok()?.parse().ok()?;
-        let row = self.m_codes.binary_search_by_key(&number, |row| row.number).ok()?;
         if !before.last().is_some_and(|byte| byte.eq_ignore_ascii_case(&b'M'))
-            || !self.m_codes[row].slash_arguments
+            || !self.language.has_slash_arguments(number)
         {
             return None;
         }
@@ -502,16 +498,7 @@ impl<'d> Lexer<'d> {
             }
             let digits = line[next + 1..].iter().take_while(|byte| byte.is_ascii_digit()).count();
             let number = std::str::from_utf8(&line[next + 1..next + 1 + digits]).ok()?.parse().ok()?;
-            let row = self.m_codes.binary_search_by_key(&number, |row| row.number).ok()?;
-            let row = &self.m_codes[row];
-            let moves = row.after_motion
-                || row.ends_program
-                || row.changes_tool
-                || row.switches.is_some()
-                || row.tip.is_some()
-                || row.refuse.is_some()
-                || row.loses_position != [false; 3];
-            if moves || line.get(next + 1 + digits) == Some(&b'=') {
+            if !self.language.only_switches(number) || line.get(next + 1 + digits) == Some(&b'=') {
                 return None;
             }
             (end, any) = (next + 1 + digits, true);
@@ -555,7 +542,7 @@ impl<'d> Lexer<'d> {
     /// A statement, or a command where the dialect's table has it by its first word: `#3006=1`, `DPRNT[X#1[3]]`.
     fn macro_statement(&self, line: &[u8], at: usize, least: usize) -> (ItemKind, usize) {
         match self.flow(line, at, least) {
-            (ItemKind::Flow, end) if self.commands.iter().any(|command| names(command, &line[at..])) => {
+            (ItemKind::Flow, end) if self.language.named(&line[at..]).is_some() => {
                 (ItemKind::BracketCommand, end)
             }
             found => found,
@@ -609,24 +596,15 @@ fn letters(text: &[u8]) -> usize {
     text.iter().take_while(|byte| byte.is_ascii_alphabetic()).count()
 }
 
-/// True where `text` starts with the command's name as a whole word.
-fn names(command: &Command, text: &[u8]) -> bool {
-    let name = command.name.as_bytes();
-    let whole = |next: &u8| !next.is_ascii_alphanumeric() && *next != b'_';
-    text.len() >= name.len()
-        && text[..name.len()].eq_ignore_ascii_case(name)
-        && text.get(name.len()).is_none_or(whole)
-}
-
 /// A refused command takes the rest of the block with it, to a `;`: whose words they are is not known.
 ///
 /// One that passes takes its value (`LIMS=2000`) or its round brackets only, so that a motion beside it is not overlooked.
-fn end_of_command(command: &Command, line: &[u8], at: usize) -> usize {
-    if command.refuse.is_some() && command.passes_with.is_none() {
+fn end_of_command(command: Named, line: &[u8], at: usize) -> usize {
+    if command.takes_block {
         let stop = line[at..].iter().position(|byte| *byte == b';').map_or(line.len(), |length| at + length);
         return at + trim_end(&line[at..stop]);
     }
-    let end = at + command.name.len();
+    let end = at + command.length;
     if line.get(end) == Some(&b'=') {
         return end + line[end..].iter().take_while(|byte| !is_blank(**byte) && **byte != b';').count();
     }

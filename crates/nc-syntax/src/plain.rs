@@ -5,9 +5,9 @@
 use memchr::{memchr, memchr2};
 use units::decimal::Decimal;
 
-use crate::dialect::{Paren, Semicolon};
 use crate::lexer::Lexer;
 use crate::number::common_number;
+use crate::spelling::{Paren, Semicolon};
 use crate::{Number, Sign, Span};
 
 /// Longest plain line without its end, bytes: positions in it fit into one byte.
@@ -22,7 +22,7 @@ const LETTERS: &[u8] = b"FGNXYZ";
 /// ```
 /// use nc_syntax::{PlainLine, PlainWord, Reader};
 ///
-/// let dialect = nc_dialect::builtin("fanuc").unwrap();
+/// let dialect = &nc_syntax::Marks::default();
 /// let mut line = PlainLine::default();
 /// assert!(Reader::new(b"X10.250 Y.5\n", dialect).plain_line(&mut line));
 /// let [x, y] = line.words() else { panic!("two words") };
@@ -128,7 +128,7 @@ impl PlainWord {
 /// ```
 /// use nc_syntax::{Block, PlainLine, Reader};
 ///
-/// let dialect = nc_dialect::builtin("fanuc").unwrap();
+/// let dialect = &nc_syntax::Marks::default();
 /// let mut reader = Reader::new(b"G1 X10. Y5. (first)\r\nX11. M5\n", dialect);
 /// let (mut line, mut block) = (PlainLine::default(), Block::default());
 /// assert!(reader.plain_line(&mut line));

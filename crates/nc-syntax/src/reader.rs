@@ -4,7 +4,7 @@ use memchr::{memchr_iter, memchr2, memchr3, memrchr2};
 
 use crate::envelope::{BYTE_ORDER_MARK, Envelope, EnvelopeFinder};
 use crate::lexer::{Lexer, skip_blanks, trim_end};
-use crate::{Block, Dialect, Invalid, Item, ItemKind, MAX_BLOCK_BYTES, PlainLine, Span};
+use crate::{Block, Invalid, Item, ItemKind, MAX_BLOCK_BYTES, PlainLine, Span, Spells};
 
 /// Reads a program block by block.
 ///
@@ -21,7 +21,7 @@ use crate::{Block, Dialect, Invalid, Item, ItemKind, MAX_BLOCK_BYTES, PlainLine,
 /// use nc_syntax::{Block, Reader};
 ///
 /// let text = b"%\nO1 (PART)\r\nN10 G1 X10. \xc7 F300\n\n%\n(left over)";
-/// let dialect = nc_dialect::builtin("fanuc").unwrap();
+/// let dialect = &nc_syntax::Marks::default();
 /// let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
 /// let (mut again, mut lines) = (Vec::new(), Vec::new());
 /// while reader.next(&mut block) {
@@ -53,8 +53,8 @@ pub struct Reader<'a> {
 ///
 /// // The second half of a program, read alone, has the places of the whole.
 /// let (first, second) = (b"G21\nG0 X1.\n", b"G1 X2. F100\n");
-/// let dialect = nc_dialect::builtin("fanuc").unwrap();
-/// let mut finder = EnvelopeFinder::new(dialect);
+/// let dialect = &nc_syntax::Marks::default();
+/// let mut finder = EnvelopeFinder::new(language);
 /// finder.see(first);
 /// finder.see(second);
 /// let place = Place { offset: first.len() as u64, line: 3, ..Place::START };
@@ -80,20 +80,20 @@ impl Place {
 impl<'a> Reader<'a> {
     /// A reader at the start of `text`.
     #[must_use]
-    pub fn new(text: &'a [u8], dialect: &'a Dialect) -> Self {
-        let mut finder = EnvelopeFinder::new(dialect);
+    pub fn new(text: &'a [u8], language: &'a dyn Spells) -> Self {
+        let mut finder = EnvelopeFinder::new(language);
         finder.see(text);
-        Self::part(text, dialect, finder.finish(), Place::START)
+        Self::part(text, language, finder.finish(), Place::START)
     }
 
     /// A reader of a part of a program: `text` starts at the start of a line and ends at the end of one.
     ///
     /// Parts read one after the other give the blocks of the whole, `envelope` being that of the whole.
     #[must_use]
-    pub fn part(text: &'a [u8], dialect: &'a Dialect, envelope: Envelope, place: Place) -> Self {
+    pub fn part(text: &'a [u8], language: &'a dyn Spells, envelope: Envelope, place: Place) -> Self {
         Self {
             text,
-            lexer: Lexer::new(dialect),
+            lexer: Lexer::new(language),
             envelope,
             at: 0,
             before: place.offset,

@@ -6,8 +6,8 @@ use crate::common;
 
 /// Number of blocks, the kinds of items seen (invalid ones only), and the most items kept at once.
 fn read(text: &[u8]) -> (usize, Vec<Invalid>, usize) {
-    let dialect = common::conventional();
-    let (mut reader, mut block) = (Reader::new(text, &dialect), Block::default());
+    let marks = common::conventional();
+    let (mut reader, mut block) = (Reader::new(text, &marks), Block::default());
     let (mut blocks, mut wrong) = (0, Vec::new());
     while reader.next(&mut block) {
         blocks += 1;

@@ -4,13 +4,13 @@ use crate::common;
 
 use proptest::prelude::*;
 
-use common::{conventional, dialect};
-use nc_syntax::{Block, Dialect, ItemKind, PlainLine, PlainWord, Reader, Sign, Value};
+use common::conventional;
+use nc_syntax::{Block, ItemKind, Marks, PlainLine, PlainWord, Reader, Sign, Value};
 
 /// What is read as a plain line is what the reader shows as a block.
-fn agrees(text: &str, dialect: &Dialect) -> usize {
-    let mut quick = Reader::new(text.as_bytes(), dialect);
-    let mut slow = Reader::new(text.as_bytes(), dialect);
+fn agrees(text: &str, marks: &Marks) -> usize {
+    let mut quick = Reader::new(text.as_bytes(), marks);
+    let mut slow = Reader::new(text.as_bytes(), marks);
     let (mut line, mut block, mut again, mut plain) =
         (PlainLine::default(), Block::default(), Block::default(), 0);
     while slow.next(&mut block) {
@@ -56,8 +56,8 @@ fn agrees(text: &str, dialect: &Dialect) -> usize {
 }
 
 /// The blocks with an N word, `skip`ping what has none.
-fn numbered<'t>(text: &'t str, dialect: &'t Dialect, skip: bool) -> Vec<Block<'t>> {
-    let mut reader = Reader::new(text.as_bytes(), dialect);
+fn numbered<'t>(text: &'t str, marks: &'t Marks, skip: bool) -> Vec<Block<'t>> {
+    let mut reader = Reader::new(text.as_bytes(), marks);
     let (mut block, mut found) = (Block::default(), Vec::new());
     loop {
         if skip {
@@ -74,10 +74,10 @@ fn numbered<'t>(text: &'t str, dialect: &'t Dialect, skip: bool) -> Vec<Block<'t
 
 #[test]
 fn lines_without_a_letter_are_skipped_and_counted() {
-    let (text, dialect) = ("%\nNAME\nX1\r\nX2\rX3\r\r\nn5 X4\nX5\n(ON)\nX6;N7\n%\nEND N8\n", conventional());
-    let found = numbered(text, &dialect, true);
+    let (text, marks) = ("%\nNAME\nX1\r\nX2\rX3\r\r\nn5 X4\nX5\n(ON)\nX6;N7\n%\nEND N8\n", conventional());
+    let found = numbered(text, &marks, true);
     assert_eq!(found.iter().map(|block| block.line).collect::<Vec<_>>(), [6, 9]);
-    let mut reader = Reader::new(b"X1\nX2\nX3 (N)\n", &dialect);
+    let mut reader = Reader::new(b"X1\nX2\nX3 (N)\n", &marks);
     let mut block = Block::default();
     reader.skip_lines_without(b'N');
     assert!(reader.next(&mut block));
@@ -104,8 +104,8 @@ proptest! {
         text in "((%|X-?[0-9]{0,3}[.]?[0-9]{0,3}|[YZxNFGM][+-]?[0-9.]{1,4}|[ \t(;/,E=]|[(][ab;(]{0,2}[)]|O1|NAME){0,5}[ ]?(\n|\r\n|\r)){0,6}",
         spaces: bool,
     ) {
-        let dialect = if spaces { dialect() } else { conventional() };
-        agrees(&text, &dialect);
-        prop_assert_eq!(numbered(&text, &dialect, true), numbered(&text, &dialect, false));
+        let marks = if spaces { Marks::default() } else { conventional() };
+        agrees(&text, &marks);
+        prop_assert_eq!(numbered(&text, &marks, true), numbered(&text, &marks, false));
     }
 }

@@ -1,16 +1,16 @@
 //! Every trap of "Text" in the list of what breaks programs, by name.
 
-use common::{conventional, dialect};
-use diagnostic::Text;
-use nc_syntax::dialect::{Paren, PointFree, Semicolon};
-use nc_syntax::{Block, Dialect, EnvelopeFinder, Invalid, ItemKind, Place, Reader, Value};
+use common::{Language, conventional};
+use nc_syntax::{
+    Block, EnvelopeFinder, Invalid, ItemKind, Macros, Marks, Paren, Place, Reader, Semicolon, Spells, Value,
+};
 use proptest::prelude::*;
 
 use crate::common;
 
 /// One line per block: what stands in it, in the order it stands.
-fn shown(text: &[u8], dialect: &Dialect) -> Vec<String> {
-    let (mut reader, mut block, mut lines) = (Reader::new(text, dialect), Block::default(), Vec::new());
+fn shown(text: &[u8], language: &dyn Spells) -> Vec<String> {
+    let (mut reader, mut block, mut lines) = (Reader::new(text, language), Block::default(), Vec::new());
     while reader.next(&mut block) {
         let items = block.items.iter().map(|item| {
             let text = String::from_utf8_lossy(block.text(item.span));
@@ -34,11 +34,11 @@ fn shown(text: &[u8], dialect: &Dialect) -> Vec<String> {
 }
 
 fn one(text: &str) -> String {
-    shown(text.as_bytes(), &dialect()).join(" | ")
+    shown(text.as_bytes(), &Marks::default()).join(" | ")
 }
 
-fn bytes_of(text: &[u8], dialect: &Dialect) -> Vec<Vec<u8>> {
-    let (mut reader, mut block, mut all) = (Reader::new(text, dialect), Block::default(), Vec::new());
+fn bytes_of(text: &[u8], marks: &Marks) -> Vec<Vec<u8>> {
+    let (mut reader, mut block, mut all) = (Reader::new(text, marks), Block::default(), Vec::new());
     while reader.next(&mut block) {
         all.push(block.bytes.to_vec());
     }
@@ -55,17 +55,18 @@ fn words_need_no_spaces_between_them() {
 
 #[test]
 fn a_mark_ends_a_block_and_a_name_ends_at_a_blank() {
-    let dialect = Dialect { paren: Paren::None, end_of_block: Some(b'*'), percent_words: true, ..dialect() };
+    let marks =
+        Marks { paren: Paren::None, end_of_block: Some(b'*'), percent_words: true, ..Marks::default() };
     assert_eq!(
-        shown(b"%41-A G71*\nN10 G1 X+5 * ;far *\nN99 %41-A G71 *\n", &dialect),
+        shown(b"%41-A G71*\nN10 G1 X+5 * ;far *\nN99 %41-A G71 *\n", &marks),
         ["Percent<%> Name<41-A> G71", "N10 G1 X5", "comment", "N99 Percent<%> Name<41-A> G71"]
     );
 }
 
 #[test]
 fn a_number_keeps_how_it_was_written() {
-    let (dialect, mut block) = (dialect(), Block::default());
-    assert!(Reader::new(b"X+.50", &dialect).next(&mut block));
+    let (marks, mut block) = (Marks::default(), Block::default());
+    assert!(Reader::new(b"X+.50", &marks).next(&mut block));
     let number = block.word(b'X').and_then(|word| word.number()).unwrap();
     assert_eq!((number.decimal.mantissa, number.decimal.decimals), (50, 2));
     assert!(number.has_point && !number.leading_digit && number.sign == nc_syntax::Sign::Plus);
@@ -76,20 +77,6 @@ fn spaces_inside_numbers_where_the_dialect_says_so() {
     assert_eq!(one("G 0 1 X 1 0 . 5 Y - 2"), "G1 X10.5 Y-2");
     assert_eq!(shown(b"X 10.5 Y2", &conventional()), ["X10.5 Y2"]);
     assert_eq!(shown(b"X1 0 Y2", &conventional()), ["X1 Text<0> Y2"]);
-}
-
-#[test]
-fn point_free_lengths_follow_the_dialect() {
-    let (dialect, mut conventional, mut block) = (dialect(), conventional(), Block::default());
-    conventional.numbers.point_free = PointFree::LeastIncrement;
-    for (text, inch, unit, increment) in
-        [("X100", false, 100.0, 0.1), ("X100.", false, 100.0, 100.0), ("X-12", true, -12.0, -0.0012)]
-    {
-        assert!(Reader::new(text.as_bytes(), &dialect).next(&mut block));
-        let number = block.word(b'X').and_then(|word| word.number()).unwrap();
-        assert_eq!(dialect.numbers.length(number, inch).to_f64(), unit);
-        assert_eq!(conventional.numbers.length(number, inch).to_f64(), increment);
-    }
 }
 
 #[test]
@@ -110,13 +97,12 @@ fn comments_nested_unclosed_and_in_any_encoding() {
     assert_eq!(one("G1 (a) X1 ;b (c)"), "G1 comment X1 comment");
     assert_eq!(one("(a (b) X1)"), "comment X1 UnclosedBracket<)>");
     assert_eq!(one("G1 X1 (never closed"), "G1 X1 UnclosedComment<(never closed>");
-    let mut nested = dialect();
-    nested.paren = Paren::Comment { nested: true };
+    let nested = Marks { paren: Paren::Comment { nested: true }, ..Marks::default() };
     assert_eq!(shown(b"(a (b) X1) Y2", &nested), ["comment Y2"]);
     for text in
         ["(деталь)X1".as_bytes(), b"(\xE4\xE5\xF2\xE0\xEB\xFC)X1", b"(\xA4\xA5\xE2\xA0\xAB\xEC \x80)X1"]
     {
-        assert_eq!(shown(text, &dialect()), ["comment X1"]);
+        assert_eq!(shown(text, &Marks::default()), ["comment X1"]);
     }
     assert_eq!(one("деталь X1"), "Text<деталь> X1");
 }
@@ -132,7 +118,7 @@ fn semicolon_ends_a_block_where_the_dialect_says_so() {
 #[test]
 fn every_line_end() {
     let split: [&[u8]; 7] = [b"G0\n", b"X1\r\n", b"X2\r", b"X3\r\r\n", b"\n", b"\r", b"X4"];
-    assert_eq!(bytes_of(b"G0\nX1\r\nX2\rX3\r\r\n\n\rX4", &dialect()), split);
+    assert_eq!(bytes_of(b"G0\nX1\r\nX2\rX3\r\r\n\n\rX4", &Marks::default()), split);
 }
 
 #[test]
@@ -192,7 +178,7 @@ fn program_names() {
 
 #[test]
 fn the_file_name_of_an_okuma_stands_in_front() {
-    let okuma = nc_dialect::builtin("okuma").unwrap();
+    let okuma = &Language { macros: Macros::Okuma, ..Language::default() };
     let text = b"$PART.MIN%\nO100\nG0 X1.\n%";
     assert_eq!(shown(text, okuma), ["Name<$PART.MIN%>", "O100", "G0 X1", "Percent<%>"]);
     assert_eq!(shown(b"%\n$PART.MIN%\nG0\n%", okuma), ["Percent<%>", "Name<$PART.MIN%>", "G0", "Percent<%>"]);
@@ -206,8 +192,7 @@ fn block_delete() {
     assert_eq!(one("/G1 X1"), "Skip</> G1 X1");
     assert_eq!(one("/3 N10 G1"), "Skip</3> N10 G1");
     assert_eq!(one("N10 /2 G1"), "N10 Skip</2> G1");
-    let mut without = dialect();
-    without.skip = None;
+    let without = Marks { skip: None, ..Marks::default() };
     assert_eq!(shown(b"/G1 X1", &without), ["Text</G1> X1"]);
 }
 
@@ -235,24 +220,18 @@ fn comma_words_are_not_the_words_of_their_letter() {
 
 #[test]
 fn bracket_commands_are_kept_as_commands() {
-    let mut commands = dialect();
-    commands.paren = Paren::Command;
+    let commands = Marks { paren: Paren::Command, ..Marks::default() };
     assert_eq!(shown(b"(UAO,1) ;frame", &commands), ["BracketCommand<(UAO,1)> comment"]);
     assert_eq!(shown(b"(RPT,5", &commands), ["UnclosedBracket<(RPT,5>"]);
 }
 
 #[test]
 fn words_with_an_equals_sign() {
-    let mut sinumerik = dialect();
-    sinumerik.equals_words = true;
-    let command = |name: &str, refuse| nc_syntax::dialect::Command {
-        name: name.to_owned(),
-        action: None,
-        refuse,
-        passes_with: None,
+    let sinumerik = Language {
+        marks: Marks { equals_words: true, ..Marks::default() },
+        commands: &[("MSG", false), ("SOFT", false), ("TRANS", true)],
+        ..Language::default()
     };
-    let refused = Some((Text::same("moves the frame"), Text::same("do without")));
-    sinumerik.commands = vec![command("MSG", None), command("SOFT", None), command("TRANS", refused)];
     assert_eq!(
         shown(b"G1 X=10.5 Y=IC(5 ) Z = R1+2 F=200;c", &sinumerik),
         ["G1 X10.5 Y<Y=IC(5 )> Z<Z = R1+2> F200 comment"]
@@ -272,8 +251,7 @@ fn words_with_an_equals_sign() {
 
 #[test]
 fn letters_the_dialect_lacks() {
-    let mut few = dialect();
-    few.letters = b"NGXYZ".to_vec();
+    let few = Marks { letters: b"NGXYZ".to_vec(), ..Marks::default() };
     assert_eq!(shown(b"G1 W10. X1", &few), ["G1 Text<W10.> X1"]);
 }
 
@@ -282,8 +260,8 @@ fn a_line_longer_than_any_block_is_not_read() {
     let mut text = b"G0\n".to_vec();
     text.extend(std::iter::repeat_n(b"X1 ", 50_000).flatten());
     text.extend_from_slice(b"\nM30");
-    let (dialect, mut block) = (dialect(), Block::default());
-    let mut reader = Reader::new(&text, &dialect);
+    let (marks, mut block) = (Marks::default(), Block::default());
+    let mut reader = Reader::new(&text, &marks);
     let mut kinds = Vec::new();
     while reader.next(&mut block) {
         kinds.push(block.items[0].kind);
@@ -294,8 +272,8 @@ fn a_line_longer_than_any_block_is_not_read() {
 
 #[test]
 fn places_are_the_files() {
-    let (dialect, mut block) = (dialect(), Block::default());
-    let mut reader = Reader::new(b"%\nG1 X1\nY--2\n", &dialect);
+    let (marks, mut block) = (Marks::default(), Block::default());
+    let mut reader = Reader::new(b"%\nG1 X1\nY--2\n", &marks);
     while reader.next(&mut block) && block.line < 3 {}
     let diagnostic = block.unreadable().unwrap();
     assert_eq!((diagnostic.code.0, diagnostic.span), (101, Some(8..12)));
@@ -304,17 +282,17 @@ fn places_are_the_files() {
 
 #[test]
 fn a_cyrillic_letter_is_named() {
-    let (dialect, mut block) = (dialect(), Block::default());
-    assert!(Reader::new("G1 Х10.5 Y2".as_bytes(), &dialect).next(&mut block));
+    let (marks, mut block) = (Marks::default(), Block::default());
+    assert!(Reader::new("G1 Х10.5 Y2".as_bytes(), &marks).next(&mut block));
     let diagnostic = block.unreadable().unwrap();
     assert_eq!(diagnostic.message.english(), "`Х10.5` starts with a Cyrillic `Х`");
     assert_eq!(diagnostic.help.as_ref().map(|help| help.english()), Some("type the Latin `X`"));
-    assert!(Reader::new("деталь".as_bytes(), &dialect).next(&mut block));
+    assert!(Reader::new("деталь".as_bytes(), &marks).next(&mut block));
     assert!(block.unreadable().unwrap().message.english().contains("is not a word"));
 }
 
-fn lossless(text: &[u8], dialect: &Dialect) -> Result<(), TestCaseError> {
-    let (mut reader, mut block, mut copy) = (Reader::new(text, dialect), Block::default(), Vec::new());
+fn lossless(text: &[u8], marks: &Marks) -> Result<(), TestCaseError> {
+    let (mut reader, mut block, mut copy) = (Reader::new(text, marks), Block::default(), Vec::new());
     while reader.next(&mut block) {
         prop_assert_eq!(block.offset, copy.len() as u64);
         prop_assert!(!block.bytes.is_empty());
@@ -331,7 +309,7 @@ fn lossless(text: &[u8], dialect: &Dialect) -> Result<(), TestCaseError> {
 }
 
 /// Cut into parts at line ends and read one after the other, a program gives the same blocks.
-fn in_parts(text: &[u8], dialect: &Dialect, every: usize) -> Result<(), TestCaseError> {
+fn in_parts(text: &[u8], marks: &Marks, every: usize) -> Result<(), TestCaseError> {
     let ends = |at: usize| match (text[at - 1], text.get(at)) {
         (b'\n', _) => true,
         (b'\r', next) => !matches!(next, Some(b'\r' | b'\n')),
@@ -340,14 +318,14 @@ fn in_parts(text: &[u8], dialect: &Dialect, every: usize) -> Result<(), TestCase
     let mut cuts: Vec<usize> = (1..text.len()).filter(|at| ends(*at)).step_by(every).collect();
     cuts.push(text.len());
     let parts = || cuts.iter().scan(0, |from, to| Some((std::mem::replace(from, *to), *to)));
-    let mut finder = EnvelopeFinder::new(dialect);
+    let mut finder = EnvelopeFinder::new(marks);
     parts().for_each(|(from, to)| finder.see(&text[from..to]));
     let envelope = finder.finish();
-    let mut whole = Reader::new(text, dialect);
+    let mut whole = Reader::new(text, marks);
     let (mut expected, mut found) = (Block::default(), Block::default());
     let mut place = Place::START;
     for (from, to) in parts() {
-        let mut reader = Reader::part(&text[from..to], dialect, envelope, place);
+        let mut reader = Reader::part(&text[from..to], marks, envelope, place);
         let mut line = place.line;
         while reader.next(&mut found) {
             prop_assert!(whole.next(&mut expected));
@@ -360,7 +338,7 @@ fn in_parts(text: &[u8], dialect: &Dialect, every: usize) -> Result<(), TestCase
     Ok(())
 }
 
-fn every_dialect() -> impl Strategy<Value = Dialect> {
+fn every_language() -> impl Strategy<Value = Marks> {
     let paren = prop_oneof![
         Just(Paren::None),
         any::<bool>().prop_map(|nested| Paren::Comment { nested }),
@@ -370,10 +348,10 @@ fn every_dialect() -> impl Strategy<Value = Dialect> {
     let end_of_block = prop_oneof![Just(None), Just(Some(b';')), Just(Some(b'*'))];
     (paren, semicolon, end_of_block, any::<[bool; 3]>()).prop_map(
         |(paren, semicolon, end_of_block, [equals_words, spaces_inside, percent_words])| {
-            let mut dialect =
-                Dialect { paren, semicolon, end_of_block, percent_words, equals_words, ..dialect() };
-            dialect.numbers.spaces_inside = spaces_inside;
-            dialect
+            let mut marks =
+                Marks { paren, semicolon, end_of_block, percent_words, equals_words, ..Marks::default() };
+            marks.spaces_inside = spaces_inside;
+            marks
         },
     )
 }
@@ -382,18 +360,18 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_bytes_come_out_as_they_went_in(text in proptest::collection::vec(any::<u8>(), 0..300), dialect in every_dialect()) {
-        lossless(&text, &dialect)?;
+    fn any_bytes_come_out_as_they_went_in(text in proptest::collection::vec(any::<u8>(), 0..300), marks in every_language()) {
+        lossless(&text, &marks)?;
     }
 
     #[test]
     fn anything_like_a_program_comes_out_as_it_went_in(
         text in "([GXYZNMOFIJKRgx%/(){};,:#=<>\\[\\]\"0-9.+\\- \t\r\n\\x00]|IF|GOTO|nan|E5|SIN|sub|%\n){0,120}",
-        dialect in every_dialect(),
+        marks in every_language(),
         every in 1usize..4,
     ) {
-        lossless(text.as_bytes(), &dialect)?;
-        in_parts(text.as_bytes(), &dialect, every)?;
+        lossless(text.as_bytes(), &marks)?;
+        in_parts(text.as_bytes(), &marks, every)?;
     }
 
     /// What is written as words is read as these words, with or without spaces.
@@ -407,8 +385,8 @@ proptest! {
             text.push_str(&format!("{letter}{sign}{whole}{}{part}{space}", if decimals > 0 { "." } else { "" }));
             expected.push((letter.as_bytes()[0], mantissa, decimals as u8));
         }
-        let (dialect, mut block) = (dialect(), Block::default());
-        Reader::new(text.as_bytes(), &dialect).next(&mut block);
+        let (marks, mut block) = (Marks::default(), Block::default());
+        Reader::new(text.as_bytes(), &marks).next(&mut block);
         let found: Vec<_> = block.words().filter_map(|word| {
             word.number().map(|n| (word.letter, n.decimal.mantissa, n.decimal.decimals))
         }).collect();
@@ -419,7 +397,7 @@ proptest! {
 /// `X10. /M8`: the motion is the same skipped or not, where M codes alone stand behind the mark that move nothing.
 #[test]
 fn m_codes_behind_a_mark_in_mid_block_are_text() {
-    let fanuc = nc_dialect::builtin("fanuc").expect("shipped");
+    let fanuc = &Language { marks: common::conventional(), switches: &[3, 8], ..Language::default() };
     let kinds = |text: &str| -> Vec<ItemKind> {
         let (mut reader, mut block) = (Reader::new(text.as_bytes(), fanuc), Block::default());
         assert!(reader.next(&mut block));

@@ -2,8 +2,9 @@
 
 use std::io::{self, Read};
 
+use nc_dialect::Dialect;
 use nc_emit::BlockNumbers;
-use nc_syntax::{Block, Dialect, Envelope, EnvelopeFinder, Place, PlainLine, Reader};
+use nc_syntax::{Block, Envelope, EnvelopeFinder, Place, PlainLine, Reader};
 
 /// About so long is a chunk: some ten thousand blocks, small enough that all of those in work fit into memory.
 pub(crate) const CHUNK_BYTES: usize = 1 << 20;

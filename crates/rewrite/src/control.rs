@@ -3,10 +3,9 @@
 use std::ops::Range;
 
 use diagnostic::{Diagnostic, Text, both};
+use nc_dialect::{Dialect, Keeps, PathCode, PathKey};
 use nc_program::{Modal, PathControl};
-use nc_syntax::Dialect;
-use nc_syntax::dialect::GCode;
-use nc_syntax::path_control::{Keeps, PathCode, PathKey};
+use nc_syntax::GCode;
 
 use crate::job::{CONTROL_LEAVES, Job, Warning};
 

@@ -2,9 +2,9 @@
 
 use correction::Correction;
 use diagnostic::Diagnostic;
+use nc_dialect::Action;
 use nc_emit::{WordEdit, WordEdits};
 use nc_program::Context;
-use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Item, ItemKind, Letters, Word};
 use smallvec::SmallVec;
 use toolpath::Motion;

@@ -1,8 +1,8 @@
 //! Where a program's zeros were touched, and what the machine's error there makes of its places. Equation (121).
 
 use machine_model::{Command, Models, PathModel, Placement, Vector, Way};
+use nc_dialect::Dialect;
 use nc_program::{Context, WorkOffset, work_offset_name};
-use nc_syntax::Dialect;
 use toolpath::Motion;
 
 /// Where one coordinate of a zero was touched, with correction off.

@@ -6,9 +6,9 @@
 
 use correction::{Corrected, Turned};
 use diagnostic::{Diagnostic, both};
+use nc_dialect::{Action, Dialect, RotaryFeed};
 use nc_program::{Compensation, Context, LastFeed, Modal};
-use nc_syntax::Block;
-use nc_syntax::dialect::{Action, Dialect, GCode, RotaryFeed};
+use nc_syntax::{Block, GCode};
 use toolpath::{Feed, FeedRate, Kinematics, Motion, Shape};
 use units::decimal::{Decimal, Spelling};
 

@@ -3,8 +3,8 @@
 use correction::Options;
 use diagnostic::{Code, Diagnostic};
 use machine_model::{Models, PathModel};
+use nc_dialect::Dialect;
 use nc_program::Setup;
-use nc_syntax::Dialect;
 
 use crate::datum::Datums;
 

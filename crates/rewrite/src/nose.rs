@@ -2,9 +2,9 @@
 
 use diagnostic::{Diagnostic, Text, both};
 use machine_model::{Command, PathModel, Vector};
+use nc_dialect::Side;
 use nc_program::{Context, Modal, ToolLength};
 use nc_syntax::Block;
-use nc_syntax::dialect::Side;
 use toolpath::{Feed, Motion, Shape};
 
 use crate::job::{Job, NOSE};

@@ -1,8 +1,9 @@
 //! A program in one piece.
 
 use diagnostic::{Diagnostic, both};
+use nc_dialect::Dialect;
 use nc_emit::BlockNumbers;
-use nc_syntax::{Block, Dialect, Reader};
+use nc_syntax::{Block, Reader};
 
 use crate::chunks;
 use crate::figures::Corrected;

@@ -1,10 +1,10 @@
 //! Between the wings: corrected pieces become edits of words.
 
 use correction::{Centre, Goal, PieceKind, Stated};
+use nc_dialect::{Action, Dialect};
 use nc_emit::{Piece, WordEdit, WordEdits};
 use nc_program::{Context, DirectionWords};
-use nc_syntax::dialect::{Action, Dialect, GCode};
-use nc_syntax::{Block, Letters};
+use nc_syntax::{Block, GCode, Letters};
 use smallvec::SmallVec;
 use toolpath::{Feed, Hole, Motion, PeckRetreats, RotaryChain, Shape};
 use units::decimal::Decimal;

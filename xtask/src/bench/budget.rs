@@ -4,8 +4,9 @@ use std::hint::black_box;
 
 use correction::{Corrector, Options};
 use machine_model::{Command, LANES, Move, PathModel, Range, Vector};
+use nc_dialect::Dialect;
 use nc_program::Interpreter;
-use nc_syntax::{Block, Dialect, PlainLine, Reader};
+use nc_syntax::{Block, PlainLine, Reader};
 use rewrite::{Job, correct};
 
 use super::measure::own_cpu_s;

@@ -1,14 +1,14 @@
 //! A dialect, a way to write edits as text, and a program run through the emitter.
 
+use nc_dialect::{Dialect, PointFree};
 use nc_emit::{Emitter, Piece, WordEdit};
-use nc_syntax::dialect::{GCode, PointFree};
-use nc_syntax::{Block, Dialect, Reader};
+use nc_syntax::{Block, GCode, Reader};
 
 /// LinuxCNC's table (calculator-type numbers) with what these tests are about switched on.
 pub(crate) fn dialect() -> Dialect {
     let mut dialect = nc_dialect::builtin("linuxcnc").expect("shipped").clone();
-    dialect.colon = nc_syntax::dialect::Colon::Number;
-    dialect.equals_words = true;
+    dialect.marks.colon = nc_syntax::Colon::Number;
+    dialect.marks.equals_words = true;
     dialect.initial = vec![GCode(0), GCode(210)];
     dialect.output.max_block_bytes = 0;
     dialect.output.number_inserted_blocks = true;

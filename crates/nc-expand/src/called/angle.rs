@@ -9,8 +9,8 @@
 //! The numbers written have 6 decimals.
 
 use diagnostic::{Text, both};
+use nc_dialect::Action;
 use nc_program::modal::Modal;
-use nc_syntax::dialect::Action;
 use units::math;
 
 use crate::known::{Motion, motion};

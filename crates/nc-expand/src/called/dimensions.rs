@@ -1,9 +1,9 @@
 //! `X=AC()`, `X=IC()`, `TURN=` and `AR=` in a block, written out.
 
 use diagnostic::{Refusal, Text, both};
+use nc_dialect::{Action, Called};
 use nc_program::Owner;
 use nc_program::modal::Modal;
-use nc_syntax::dialect::{Action, Called};
 use nc_syntax::{Block, ItemKind, Reader, Span, Value};
 use units::math;
 

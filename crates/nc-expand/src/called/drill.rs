@@ -1,8 +1,8 @@
 //! The moves of a hole where the axes stand, and what a cycle leaves in force.
 
 use diagnostic::{Refusal, both};
+use nc_dialect::Action;
 use nc_program::Owner;
-use nc_syntax::dialect::Action;
 
 use super::hole::{Hole, Move};
 use super::{Writer, names_axes};

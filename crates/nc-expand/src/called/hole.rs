@@ -5,7 +5,7 @@
 //! on the plane.
 
 use diagnostic::{Text, both};
-use nc_syntax::dialect::Called;
+use nc_dialect::Called;
 use toolpath::{MOST_PECKS, Retreat, Stroke, strokes};
 
 use super::arguments::Arguments;

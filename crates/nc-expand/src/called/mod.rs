@@ -21,10 +21,10 @@ mod drill;
 mod hole;
 mod pattern;
 
+use nc_dialect::{Action, Called, Dialect};
 use nc_program::Owner;
 use nc_program::modal::Modal;
-use nc_syntax::dialect::{Action, Called};
-use nc_syntax::{Block, Dialect, Item, ItemKind, Span, Value};
+use nc_syntax::{Block, Item, ItemKind, Span, Value};
 
 use crate::came::{Came, Fault};
 use crate::known::{Lower, Rewriting, motion};

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use diagnostic::{Text, both};
-use nc_syntax::dialect::{Action, TurningCycle};
+use nc_dialect::{Action, TurningCycle};
 use nc_syntax::{ItemKind, Span, Value};
 use units::math;
 

@@ -8,8 +8,8 @@
 //! A contour's lines are drawn when its cycle reads them.
 
 use diagnostic::{Text, both};
+use nc_dialect::{Action, CornerForm, Turning};
 use nc_program::modal::{Modal, MotionMode};
-use nc_syntax::dialect::{Action, CornerForm, Turning};
 use nc_syntax::{Block, Item, ItemKind, Span, Value};
 use units::math;
 

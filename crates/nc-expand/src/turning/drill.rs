@@ -10,8 +10,8 @@
 //! block from where the tool stands: with W alone nobody knows.
 
 use diagnostic::{Refusal, both};
+use nc_dialect::{DrillPecks, DrillR};
 use nc_program::modal::ReturnLevel;
-use nc_syntax::dialect::{DrillPecks, DrillR};
 use nc_syntax::{Item, ItemKind, Number, Span, Value};
 use toolpath::{MOST_PECKS, Retreat, Stroke, peck_depths, strokes, whole_pecks};
 

@@ -1,7 +1,7 @@
 //! Blocks out: what a cycle's block sets, then its moves.
 
+use nc_dialect::Action;
 use nc_program::modal::Modal;
-use nc_syntax::dialect::Action;
 use nc_syntax::{Item, ItemKind, Span, Value};
 
 use super::place::{AXES, CODES, Code, MILLION, Spot, may_stand_beside, millionths};

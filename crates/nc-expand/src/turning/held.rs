@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use nc_syntax::Dialect;
-use nc_syntax::dialect::TurningCycle;
+use nc_dialect::{Dialect, TurningCycle};
 
 use super::place::Spot;
 use crate::came::Came;

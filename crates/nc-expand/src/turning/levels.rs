@@ -5,7 +5,7 @@
 //! itself is cut, up to where it dives again: there a pocket begins, which is cut likewise. Without pockets only what
 //! rises is cut; pockets alone begin at the bottom of the first dive.
 
-use nc_syntax::dialect::Pockets;
+use nc_dialect::Pockets;
 
 use super::pieces::{MOST, Misfit, NO_ARC, Round, SAME, SLACK, Segment, Stroke, length, sub};
 use super::place::Point;

@@ -10,7 +10,7 @@
 //! not what it makes of one during moves.
 
 use diagnostic::both;
-use nc_syntax::dialect::{Action, TurningCycle};
+use nc_dialect::{Action, TurningCycle};
 use nc_syntax::{ItemKind, Span};
 use units::math;
 
@@ -196,7 +196,7 @@ impl Writer<'_, '_, '_> {
         leads: f64,
     ) -> Result<(), Fault> {
         let exact = |lead: nc_syntax::Number| {
-            lead.has_point || self.dialect.numbers.point_free == nc_syntax::dialect::PointFree::Unit
+            lead.has_point || self.dialect.numbers.point_free == nc_dialect::PointFree::Unit
         };
         let lead = self.feed(words).filter(|lead| exact(*lead));
         let start = moves.at();

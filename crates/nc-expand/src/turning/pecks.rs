@@ -8,8 +8,8 @@
 //! there the manual leaves open.
 
 use diagnostic::{Refusal, both};
+use nc_dialect::TurningCycle;
 use nc_syntax::Span;
-use nc_syntax::dialect::TurningCycle;
 use toolpath::{Retreat, peck_depths, whole_pecks};
 
 use super::place::{Code, Spot};

@@ -1,7 +1,7 @@
 //! Places of a lathe's words, in millionths of the program's unit, and what its codes say of them.
 
+use nc_dialect::Action;
 use nc_program::modal::{Modal, Units, XWords};
-use nc_syntax::dialect::Action;
 use units::decimal::{self, Decimal};
 
 use crate::shorthand::Words;

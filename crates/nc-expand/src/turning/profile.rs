@@ -13,7 +13,7 @@
 //!
 //! Passes down to it are a room of their own: [`super::levels`].
 
-use nc_syntax::dialect::Pockets;
+use nc_dialect::Pockets;
 
 use super::levels::{cut, passes_are_certain};
 use super::pieces::{MOST, Misfit, Round, SAME, Segment, Stroke, along, cross, dot, length, middle, sub};

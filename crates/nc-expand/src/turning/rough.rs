@@ -12,8 +12,8 @@
 //! with F and S of their own, and goes back in a rapid to where it began.
 
 use diagnostic::both;
+use nc_dialect::TurningCycle;
 use nc_program::Compensation;
-use nc_syntax::dialect::TurningCycle;
 use nc_syntax::{ItemKind, Span};
 
 use super::contour::{Axis, Contour, Way};

@@ -12,8 +12,8 @@
 use std::ops::Range;
 
 use diagnostic::{Refusal, both};
+use nc_dialect::{Action, TurningCycle};
 use nc_program::modal::{ArcCentres, FeedMode};
-use nc_syntax::dialect::{Action, TurningCycle};
 use nc_syntax::{ItemKind, Span, Value};
 
 use toolpath::Plane;

@@ -1,9 +1,9 @@
 //! What the writer of a lathe's cycles knows at a block.
 
 use diagnostic::Text;
+use nc_dialect::{Action, Dialect, Turning, TurningCycle};
 use nc_program::modal::Modal;
-use nc_syntax::dialect::{Action, Turning, TurningCycle};
-use nc_syntax::{Dialect, Number, Span};
+use nc_syntax::{Number, Span};
 
 use super::held::{FirstBlocks, Numbers, Pass, numbers};
 use super::place::{Spot, diameters, ends_pass, plane, spot, standing};

@@ -2,9 +2,9 @@
 
 use std::io;
 
+use nc_dialect::Dialect;
 use nc_expand::{Environment, Expanded, Limits, Preset, Refusal, expand};
 use nc_program::Setup;
-use nc_syntax::Dialect;
 
 /// No file is there.
 pub(crate) fn nothing(_: &str) -> io::Result<Vec<u8>> {

@@ -1,8 +1,8 @@
 //! G5 and G5.1: curves of one block.
 
 use diagnostic::Text;
+use nc_dialect::CurveCode;
 use nc_syntax::Letters;
-use nc_syntax::dialect::CurveCode;
 use toolpath::{Bezier, Division, Feed, MOST_DEGREE, Motion, Position, Shape};
 
 use super::parts::{is_curve, plane_axes};

@@ -1,7 +1,7 @@
 //! G6.2: a NURBS with its knots.
 
 use diagnostic::{Diagnostic, Refusal, Text, both};
-use nc_syntax::dialect::CurveCode;
+use nc_dialect::CurveCode;
 use nc_syntax::{Letters, Span};
 use toolpath::{MOST_DEGREE, Nurbs, NurbsFault, Position};
 

@@ -12,7 +12,7 @@ mod parts;
 mod points;
 
 use diagnostic::{Diagnostic, Refusal, Text, both};
-use nc_syntax::dialect::CurveCode;
+use nc_dialect::CurveCode;
 use nc_syntax::{Letters, Span};
 
 use crate::codes;
@@ -148,7 +148,7 @@ impl CurveBegun {
 }
 
 fn belongs(code: &Preparatory<'_>, form: CurveCode) -> bool {
-    use nc_syntax::dialect::Action;
+    use nc_dialect::Action;
     match form {
         CurveCode::Points => matches!(code.entry.action, Action::Curve(CurveCode::Points | CurveCode::End)),
         _ => code.entry.action == Action::Curve(form),

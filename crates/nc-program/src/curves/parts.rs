@@ -1,6 +1,6 @@
 //! Points, axes and motions of a curve, whatever its form.
 
-use nc_syntax::dialect::{Action, CurveCode};
+use nc_dialect::{Action, CurveCode};
 use nc_syntax::{Letters, Span};
 use toolpath::{Division, Feed, Motion, Nurbs, Plane, Position, Shape};
 

@@ -1,7 +1,7 @@
 //! G5.2 and G5.3: a NURBS whose knots the control chooses.
 
 use diagnostic::Text;
-use nc_syntax::dialect::CurveCode;
+use nc_dialect::CurveCode;
 use nc_syntax::{Letters, Span};
 use toolpath::{MOST_DEGREE, Nurbs};
 

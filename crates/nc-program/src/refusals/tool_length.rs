@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use diagnostic::{Refusal, Text, both};
-use nc_syntax::dialect::Turning;
+use nc_dialect::Turning;
 
 use crate::codes;
 

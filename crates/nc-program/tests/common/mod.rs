@@ -1,8 +1,9 @@
 //! Programs as text, run through the reader and a shipped dialect.
 
 use diagnostic::Diagnostic;
+use nc_dialect::Dialect;
 use nc_program::{Interpreter, Modal, Setup, Step};
-use nc_syntax::{Block, Dialect, Reader};
+use nc_syntax::{Block, Reader};
 use toolpath::{Feed, Hole, Motion, Partial, Shape};
 
 pub(crate) fn dialect(name: &str) -> &'static Dialect {

@@ -1,9 +1,9 @@
 //! Codes that a program moves under without saying them: on a control that starts otherwise it moves otherwise.
 
 use diagnostic::{Text, both};
+use nc_dialect::{CodeEntry, Dialect, MOTION_GROUP};
 use nc_program::process::is_mode;
-use nc_syntax::Block;
-use nc_syntax::dialect::{CodeEntry, Dialect, GCode, MOTION_GROUP};
+use nc_syntax::{Block, GCode};
 use toolpath::{Motion, Shape};
 
 /// What a program leaves to the state in which its control starts.

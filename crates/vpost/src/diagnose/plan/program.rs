@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use diagnostic::both;
 use machine_model::Vector;
-use nc_syntax::dialect::{Paren, Semicolon};
+use nc_syntax::{Paren, Semicolon};
 
 use super::lines::{DWELL_S, Line};
 use super::rotary::Spot;
@@ -133,9 +133,9 @@ impl Blocks<'_> {
             if c.is_ascii_alphanumeric() || " -.".contains(c) { c.to_ascii_uppercase() } else { ' ' }
         };
         let plain: String = nc_emit::ascii(text).chars().map(plain).collect();
-        if matches!(dialect.paren, Paren::Comment { .. }) {
+        if matches!(dialect.marks.paren, Paren::Comment { .. }) {
             self.block(&format!("({plain})"));
-        } else if dialect.semicolon == Semicolon::Comment {
+        } else if dialect.marks.semicolon == Semicolon::Comment {
             self.block(&format!("; {plain}"));
         }
     }

@@ -1,6 +1,6 @@
 //! How near a control keeps to the programmed path.
 
-use crate::code::GCode;
+use nc_syntax::GCode;
 
 /// A code or a command of a control's table that says how near the control keeps to the path.
 #[derive(Clone, Debug, PartialEq, Eq)]
