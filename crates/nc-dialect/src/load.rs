@@ -53,7 +53,7 @@ pub fn load(name: &str, text: &str) -> Result<Dialect, Vec<Diagnostic>> {
     let codes = g_codes(&grammar.codes, &mut wrong);
     let m_codes = unique(m_codes, |entry| entry.number, &mut wrong);
     let commands = unique(commands, |entry| entry.name.clone(), &mut wrong);
-    let path_control = path_control(&grammar.path_control, &mut wrong);
+    let path_control = path_control(&grammar.path_control, &codes, &commands, &mut wrong);
     let lathe = grammar.lathe.iter().filter_map(|row| lathe(row, &mut wrong)).collect();
     let words = refused_words(&grammar.words, &mut wrong);
     let time = grammar.numbers.dwell_time.as_ref();
@@ -90,14 +90,28 @@ fn g_codes(table: &BTreeMap<Spanned<String>, CodeRow>, wrong: &mut Vec<Diagnosti
 /// How near the control keeps to the path.
 fn path_control(
     table: &BTreeMap<Spanned<String>, Spanned<String>>,
+    codes: &[CodeEntry],
+    commands: &[Command],
     wrong: &mut Vec<Diagnostic>,
 ) -> Vec<PathCode> {
     let mut rows = Vec::new();
-    for (key, value) in table {
-        let key = match number_behind(key.get_ref(), 'G').and_then(tenths) {
-            Some(code) => PathKey::Code(GCode(code)),
-            None => PathKey::Command(key.get_ref().clone()),
+    for (written, value) in table {
+        let name = written.get_ref();
+        let (key, known) = match number_behind(name, 'G').and_then(tenths).map(GCode) {
+            Some(code) => (PathKey::Code(code), codes.iter().any(|row| row.code == code)),
+            None => (PathKey::Command(name.clone()), commands.iter().any(|row| row.name == *name)),
         };
+        if !known {
+            let message = both!("`{name}` has no row of its own", "у `{name}` нет своей строки");
+            let expected = both!(
+                "expected a code or command of this table",
+                "ожидалась функция или команда этой таблицы"
+            );
+            wrong.push(Diagnostic::error(Code(802), message).at(wide(written.span()), expected).help(both!(
+                "say under [codes] or [commands] what it does, or delete this line",
+                "скажите в [codes] или [commands], что она делает, или удалите эту строку"
+            )));
+        }
         let keeps = match (value.get_ref().as_str(), value.get_ref().as_bytes()) {
             ("exact", _) => Keeps::Exact,
             ("unstated", _) => Keeps::Unstated,

@@ -63,6 +63,15 @@ fn no_code() {
 }
 
 #[test]
+fn a_mode_of_the_path_that_no_row_has() {
+    insta::assert_snapshot!(changed("G61     = \"exact\"", "G60     = \"exact\""), @r#"
+    error[VP0802]: `G60` has no row of its own
+      at `G60`: expected a code or command of this table
+      help: say under [codes] or [commands] what it does, or delete this line
+    "#);
+}
+
+#[test]
 fn neither_done_nor_refused() {
     insta::assert_snapshot!(changed(r#"{ group = 0, does = "dwell-p" }"#, "{ group = 0 }"), @r#"
     error[VP0805]: G4 says neither what it does nor why it is refused
