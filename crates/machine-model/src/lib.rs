@@ -36,7 +36,7 @@ mod turning_bound;
 mod with_effects;
 
 pub use aside::Aside;
-pub use axis_tables::{AxisTables, Six, SixBounds};
+pub use axis_tables::{AxisTables, Component, Six, SixBounds};
 pub use chain::{Axis, Chain, ChainError};
 pub use command::{Command, Matrix, Move, Placement, Range, RotaryPlay, Turn, Vector, Volume, Way};
 pub use description::{Description, LinearAxis, RotaryAxis, Squareness, Tilt};

@@ -4,6 +4,7 @@ use calibration::circular_test::{Cause, CirclePoint, CircularTest, Pattern, Sens
 use calibration::linear_ballbar::{CircleCalibration, Term};
 use calibration::rotary_ballbar::RotaryCalibration;
 use diagnostic::{Text, both};
+use machine_model::Component;
 use report::body::{Body, Table};
 use report::chart::{Magnification, Polar, Round, polar};
 use report::numbers::{count, digits, number, percent};
@@ -197,7 +198,7 @@ fn worst_circle(out: &mut Body, test: &CircularTest) {
 
 fn rotary_head(out: &mut Body, found: &RotaryCalibration) {
     out.verdict_alone(&both!("LOCATION ERRORS", "ПОЛОЖЕНИЕ ОСЕЙ"));
-    let lengths = found.locations.iter().filter(|f| f.location.is_length);
+    let lengths = found.locations.iter().filter(|f| f.location.component == Component::Linear);
     if let Some(f) = lengths.max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())) {
         let (axis, name) = (f.location.axis, f.location.name());
         let (value, half) = (um(f.value), um(f.half_width_95));
@@ -488,9 +489,9 @@ fn together(out: &mut Body, found: &CircleCalibration) {
 
 fn locations(out: &mut Body, found: &RotaryCalibration) {
     let row = |f: &calibration::rotary_ballbar::Found| {
-        let (scale, unit) = match f.location.is_length {
-            true => (1e3, MICROMETRES.clone()),
-            false => (1e6, both!("\u{b5}rad", "мкрад")),
+        let (scale, unit) = match f.location.component {
+            Component::Linear => (1e3, MICROMETRES.clone()),
+            Component::Angular => (1e6, both!("\u{b5}rad", "мкрад")),
         };
         let numbers = [f.value, f.half_width_95, f.base].map(|v| digits(v * scale, 3));
         (Text::same(f.location.name()), numbers, unit)
