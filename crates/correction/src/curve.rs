@@ -51,10 +51,11 @@ pub enum Curve {
     },
 }
 
-/// The turn from `from` to `to` in the sense of `clockwise`, in (0, 2π], as an angle with sign.
+/// The turn from `from` to `to` in the sense of another one, in (0, 2π], as an angle with sign.
 ///
 /// Ends that coincide to the last bit make a full circle; that is how controls read it.
-fn turn(from: f64, to: f64, clockwise: bool) -> f64 {
+fn turn(from: f64, to: f64, sense_of: f64) -> f64 {
+    let clockwise = sense_of < 0.0;
     let mut sweep = if clockwise { from - to } else { to - from } % TAU;
     if sweep <= 0.0 {
         sweep += TAU;
@@ -95,22 +96,22 @@ impl Curve {
         }
     }
 
-    /// The arc a control makes of two ends and a centre.
+    /// The arc a control makes of two ends and a centre, in the sense of a sweep.
     pub fn from_centre(
         start: Vector,
         end: Vector,
         axes: [usize; 3],
         centre: [f64; 2],
-        clockwise: bool,
+        sense_of: f64,
     ) -> Self {
         let [u, v, _] = axes;
         let (su, sv) = (start[u] - centre[0], start[v] - centre[1]);
         let (eu, ev) = (end[u] - centre[0], end[v] - centre[1]);
         let angle = atan2(sv, su);
         let sweep = if start[u] == end[u] && start[v] == end[v] {
-            turn(0.0, 0.0, clockwise)
+            turn(0.0, 0.0, sense_of)
         } else {
-            turn(angle, atan2(ev, eu), clockwise)
+            turn(angle, atan2(ev, eu), sense_of)
         };
         Self::Arc {
             axes,
@@ -604,12 +605,12 @@ mod tests {
     #[test]
     fn coinciding_ends_are_a_full_circle() {
         let p = Vector::new(5.0, 0.0, 0.0);
-        for clockwise in [true, false] {
-            let Curve::Arc { sweep, .. } = Curve::from_centre(p, p, Plane::Xy.axes(), [0.0, 0.0], clockwise)
+        for sense in [-1.0, 1.0] {
+            let Curve::Arc { sweep, .. } = Curve::from_centre(p, p, Plane::Xy.axes(), [0.0, 0.0], sense)
             else {
                 panic!()
             };
-            assert_eq!(sweep, if clockwise { -TAU } else { TAU });
+            assert_eq!(sweep, sense * TAU);
         }
     }
 

@@ -642,7 +642,7 @@ mod tests {
             let to = end + Vector::new(rounded[3], rounded[4], rounded[5]);
             let shift = 0.5 * (start - at(0.0) + end - at(1.0));
             let centre = [middle[u] + shift[u] + centred[0], middle[v] + shift[v] + centred[1]];
-            let commanded = Curve::from_centre(from, to, axes, centre, sweep < 0.0);
+            let commanded = Curve::from_centre(from, to, axes, centre, sweep);
             let Curve::Arc { sweep: turned, .. } = commanded else { panic!() };
             prop_assume!((turned - sweep).abs() < 0.1);
             let pair = Pair { wanted: &wanted, commanded: &commanded, in_step: false, begun: Begun::No };

@@ -83,7 +83,7 @@ impl Kept {
     }
 
     fn with(self, correction: Correction) -> Corrected {
-        Corrected::block(self.piece, self.untouched, correction)
+        Corrected::block((!self.untouched).then_some(self.piece), correction)
     }
 }
 

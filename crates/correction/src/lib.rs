@@ -19,6 +19,7 @@ mod corrector;
 mod curve;
 mod deviation;
 mod direction;
+mod directions;
 mod error;
 mod follow;
 mod grid;

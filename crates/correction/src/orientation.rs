@@ -15,6 +15,7 @@ use units::decimal::round;
 use crate::corrected::{Corrected, Directed};
 use crate::corrector::Corrector;
 use crate::curve::Curve;
+use crate::directions::Stand;
 use crate::error::CorrectionError;
 use crate::follow::{Follow, Standing};
 use crate::grid::{Block, Goal};
@@ -22,56 +23,6 @@ use crate::options::{Orientation, Outside};
 use crate::pointing::{GUARD_RAD, Leans};
 use crate::turning::RotaryWords;
 use crate::{Piece, PieceKind};
-
-/// How the output's rotary axes stand against the program's.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Directions {
-    /// Output less program, degrees.
-    aside_deg: [f64; 3],
-    /// Where the program has brought them, degrees.
-    program_deg: [f64; 3],
-    /// Axes that the program has named.
-    named: [bool; 3],
-    stand: Stand,
-}
-
-/// Where the tool points while the rotary axes stand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stand {
-    /// Where it shall, at the place that was reached last.
-    Reached,
-    /// Not where it shall, near a singularity or on the way from there.
-    Held,
-    /// As the axes were positioned, one after the other or from an unknown place.
-    AsPositioned,
-}
-
-impl Default for Directions {
-    fn default() -> Self {
-        Self { aside_deg: [0.0; 3], program_deg: [0.0; 3], named: [false; 3], stand: Stand::AsPositioned }
-    }
-}
-
-impl Directions {
-    pub(crate) fn aside_rad(&self) -> Vector {
-        self.aside_deg.map(f64::to_radians).into()
-    }
-
-    fn output_deg(&self) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.program_deg[axis] + self.aside_deg[axis])
-    }
-
-    fn is_aside(&self) -> bool {
-        self.aside_deg != [0.0; 3]
-    }
-
-    /// The linear axes go where the tool may point elsewhere.
-    fn go_elsewhere(&mut self) {
-        if self.stand == Stand::Reached {
-            self.stand = Stand::AsPositioned;
-        }
-    }
-}
 
 /// Words that turn rotary axes, and where they then stand, degrees.
 struct Turned {
@@ -351,7 +302,7 @@ impl<'m> Corrector<'m> {
         &mut self,
         whole: &Curve,
         start: &Position,
-        may_lead: bool,
+        division: Division,
         block: &Block,
         limits: &Singularity,
     ) -> Result<Directed, CorrectionError> {
@@ -376,7 +327,7 @@ impl<'m> Corrector<'m> {
             self.directions.stand = Stand::Held;
             return Ok(held(as_it_stands));
         };
-        if may_lead {
+        if division == Division::Any {
             self.lead_to(&to_rad, start, block, whole.length_mm())?;
         }
         match self.leans_standing(whole, &state, allowed_rad) {
@@ -399,8 +350,7 @@ impl<'m> Corrector<'m> {
         limits: &Singularity,
     ) -> Result<Corrected, CorrectionError> {
         let whole = curve_of(feed);
-        let may_lead = feed.division == Division::Any;
-        let directed = self.point_for(&whole, &feed.start, may_lead, block, limits)?;
+        let directed = self.point_for(&whole, &feed.start, feed.division, block, limits)?;
         let words = self.standing_words(block, feed.end.rotary_deg);
         let led = self.lead.is_some();
         let mut corrected = self.correct_aside(motion, block)?;
@@ -423,7 +373,7 @@ impl<'m> Corrector<'m> {
         let at_r = hole.at_r.linear_mm;
         let mut words = self.turn_alone(at_r.map(Some), rotary_deg, Mover::RotaryWords, block, limits)?;
         let whole = Curve::Line(at_r.into(), hole.at(hole.bottom_mm).linear_mm.into());
-        let directed = self.point_for(&whole, &hole.at_r, false, block, limits)?;
+        let directed = self.point_for(&whole, &hole.at_r, Division::One, block, limits)?;
         if words.is_none() {
             words = self.standing_words(block, rotary_deg);
         }
