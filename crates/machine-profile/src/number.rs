@@ -1,5 +1,7 @@
 //! Numbers as profiles write them.
 
+use std::ops::Range;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 
@@ -28,4 +30,21 @@ pub(crate) type Triple = [Finite; 3];
 pub(crate) enum Length {
     Number(Finite),
     Vector(Triple),
+}
+
+/// A value with the bytes of the profile that say it; to the schema the value alone.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(transparent, bound(deserialize = "T: Deserialize<'de>"))]
+pub(crate) struct Spanned<T>(#[schemars(with = "T")] toml::Spanned<T>);
+
+impl<T> Spanned<T> {
+    /// Where it stands.
+    pub(crate) fn span(&self) -> Range<usize> {
+        self.0.span()
+    }
+
+    /// What it is.
+    pub(crate) fn get_ref(&self) -> &T {
+        self.0.get_ref()
+    }
 }
