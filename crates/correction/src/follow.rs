@@ -3,10 +3,11 @@
 use machine_model::{Command, Singularity, Vector};
 use toolpath::{Division, Feed};
 
+use crate::by_commands::{Enclosed, Solved};
 use crate::corrected::{Corrected, Directed};
 use crate::corrector::{Corrector, Freedom};
 use crate::curve::Curve;
-use crate::deviation::{Enclosed, Machine, Solved};
+use crate::deviation::Machine;
 use crate::error::CorrectionError;
 use crate::grid::Block;
 

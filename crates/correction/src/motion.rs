@@ -290,10 +290,7 @@ impl Corrector<'_> {
         }
         let turning = matches!(feed.shape, Shape::Line) && turns && self.model.follows_turns();
         let whole = if turning {
-            Curve::Turn {
-                ends: [feed.start, feed.end].map(|place| place.linear_mm.into()),
-                rotary_rad: [feed.start, feed.end].map(|place| place.rotary_deg.map(f64::to_radians).into()),
-            }
+            Curve::of(feed)
         } else {
             Curve::new(feed.start.linear_mm.into(), feed.end.linear_mm.into(), &feed.shape)
         };
