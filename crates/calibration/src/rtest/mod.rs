@@ -30,7 +30,7 @@ pub use terms::Term;
 use crate::adjustment::{Estimate, Jacobian, Noise, Problem, adjust};
 use crate::ballbar::from_one_another;
 use crate::error::CalibrationError;
-use crate::machine_change::Base;
+use crate::points::Base;
 use crate::rotary_ballbar::{Location, out_of_place};
 use columns::Columns;
 use measured::Measured;

@@ -9,7 +9,7 @@ use super::found::{BallReading, FoundTerm, TurnedAxis};
 use super::terms::{Term, change_at, tables};
 use crate::error::CalibrationError;
 use crate::field;
-use crate::machine_change::Base;
+use crate::points::Base;
 use crate::student::quantile_95;
 
 /// Between the nodes a written function keeps to what was found within: 0.01 µm, and as much at an arm of half a metre.

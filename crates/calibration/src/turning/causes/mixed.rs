@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use super::super::readings::{orthonormal, without};
+use super::super::bases::{orthonormal, without};
 use super::super::strata::{Between, MeanSquare, Spread, Whitening};
 
 /// Degrees of freedom of noise that is stated.
