@@ -6,6 +6,7 @@ use calibration::rotary_ballbar::RotaryCalibration;
 use diagnostic::{Text, both};
 use machine_model::Axis;
 use measurement_files::micro;
+use report::numbers::digits;
 use serde_json::{Value, json};
 
 use crate::figures::{round, rounded_um};
@@ -145,4 +146,9 @@ fn locations(found: &RotaryCalibration) -> Value {
         "tool_ball_um": found.cup_mm.map(rounded_um),
         "tool_ball_u95_um": found.cup_half_width_95_mm.map(rounded_um),
     })
+}
+
+/// Micrometres with two decimals.
+pub(super) fn um(mm: f64) -> Text {
+    digits(mm * 1e3, 2)
 }
