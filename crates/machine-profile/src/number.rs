@@ -1,9 +1,10 @@
 //! Numbers as profiles write them.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// A number that is neither infinite nor NaN: TOML knows both, machines neither.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
@@ -33,9 +34,27 @@ pub(crate) enum Length {
 }
 
 /// A value with the bytes of the profile that say it; to the schema the value alone.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(transparent, bound(deserialize = "T: Deserialize<'de>"))]
-pub(crate) struct Spanned<T>(#[schemars(with = "T")] toml::Spanned<T>);
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(transparent)]
+pub(crate) struct Spanned<T>(toml::Spanned<T>);
+
+impl<T: JsonSchema> JsonSchema for Spanned<T> {
+    fn inline_schema() -> bool {
+        T::inline_schema()
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        T::schema_name()
+    }
+
+    fn schema_id() -> Cow<'static, str> {
+        T::schema_id()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        T::json_schema(generator)
+    }
+}
 
 impl<T> Spanned<T> {
     /// Where it stands.
