@@ -134,7 +134,7 @@ pub(crate) fn out_of_place(component: Component, value: f64) -> Option<(f64, Tex
         Component::Linear => (LARGEST_MM, 1.0, Text::pair("mm", "мм")),
         Component::Angular => (LARGEST_RAD, 1e3, Text::pair("mrad", "мрад")),
     };
-    (value.abs() > largest).then(|| (value * scale, unit))
+    (value.abs() > largest).then_some((value * scale, unit))
 }
 
 /// Lengths of one test by the whole model, without the bar's own error: equation (47).

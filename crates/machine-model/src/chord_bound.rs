@@ -116,7 +116,7 @@ struct Beyond<S> {
 fn add_cross<S: Simd<f64s = f64x4>>(sum: &mut Growth<S>, e: &Growth<S>, beyond: &Beyond<S>) {
     // The next component of the one with the one after that of the other, and the other way round.
     add_product(sum, &next(e), &next_in(&next_in(beyond)));
-    add_product(sum, &next(&next(e)), &negative(next_in(beyond)));
+    add_product(sum, &next(&next(e)), &negative(&next_in(beyond)));
 }
 
 /// The components in the order Y, Z, X.
@@ -139,8 +139,8 @@ fn next_in<S: Simd<f64s = f64x4>>(of: &Beyond<S>) -> Beyond<S> {
 
 /// The other way round.
 #[inline(always)]
-fn negative<S: Simd<f64s = f64x4>>(of: Beyond<S>) -> Beyond<S> {
-    Beyond { low: of.high.negative(), high: of.low.negative(), ..of }
+fn negative<S: Simd<f64s = f64x4>>(of: &Beyond<S>) -> Beyond<S> {
+    Beyond { low: of.high.negative(), high: of.low.negative(), growth: of.growth }
 }
 
 /// Adds bounds of a product.

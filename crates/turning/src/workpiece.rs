@@ -1,4 +1,4 @@
-//! How far a turned bar bends away from the tool that presses on it.
+//! A bar in its clamping, and the force that bends it.
 
 use diagnostic::Speaks;
 

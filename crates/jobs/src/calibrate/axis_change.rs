@@ -43,6 +43,16 @@ pub(super) struct Session {
     has_base: bool,
 }
 
+/// A machine without errors, which as yet goes nowhere.
+fn perfect(chain: &Chain) -> Description {
+    Description {
+        chain: chain.clone(),
+        linear: std::array::from_fn(|_| LinearAxis::perfect(Range { low: f64::MAX, high: f64::MIN })),
+        rotary: std::array::from_fn(|_| RotaryAxis::perfect(Vector::zeros())),
+        squareness: Squareness::default(),
+    }
+}
+
 impl Session {
     /// The machine before, and the lines.
     ///
@@ -62,13 +72,7 @@ impl Session {
         }
         targets_mm.iter_mut().for_each(rising);
         let measured = targets_mm.each_ref().map(|targets| !targets.is_empty());
-        let perfect = || Description {
-            chain: chain.clone(),
-            linear: std::array::from_fn(|_| LinearAxis::perfect(Range { low: f64::MAX, high: f64::MIN })),
-            rotary: std::array::from_fn(|_| RotaryAxis::perfect(Vector::zeros())),
-            squareness: Squareness::default(),
-        };
-        let mut description = base.map_or_else(perfect, |base| base.description.clone());
+        let mut description = base.map_or_else(|| perfect(chain), |base| base.description.clone());
         let lines = lines(arguments, output, &description, &targets_mm)?;
         for axis in Axis::ALL.into_iter().take(3) {
             inside_travel(arguments, output, &description, axis, all)?;
