@@ -79,8 +79,8 @@ impl Profile {
         geometry
     }
 
-    /// The effects on this machine. Faults of the measuring instrument are effects too, but the machine does not go wrong by
-    /// them: they are left out.
+    /// The effects on this machine. Faults of the measuring instrument are effects too, but the machine does not go
+    /// wrong by them: they are left out.
     ///
     /// # Errors
     /// [`EngineError::Effect`] for an entry that is none (loading refuses it);

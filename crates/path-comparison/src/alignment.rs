@@ -143,8 +143,8 @@ impl<'m, I: Iterator<Item = Step>> Alignment<'m, I> {
         self.enter(at, first)
     }
 
-    /// The real path stands at a place: what is reached there, of the first feed where it may be entered, and how far beside
-    /// that feed it is, mm.
+    /// The real path stands at a place: what is reached there, of the first feed where it may be entered, and how far
+    /// beside that feed it is, mm.
     fn enter(&mut self, at: &Place, entry: Entry) -> Option<f64> {
         let first = self.wanted.feed(0)?;
         let mut reaches = (at - first.start()).norm() <= first.limit_mm;

@@ -90,8 +90,8 @@ impl<I: Iterator<Item = Step>> Items<'_, I> {
         if self.model.rotary_axes() == [false; 3] { 0.0 } else { real.iter().map(leans).fold(0.0, f64::max) }
     }
 
-    /// A way as so many stretches, or, of the real one, a stretch between each two places; and how far the real way is off the
-    /// programmed one, mm.
+    /// A way as so many stretches, or, of the real one, a stretch between each two places; and how far the real way is
+    /// off the programmed one, mm.
     fn stretches(
         &self,
         common: &Common,

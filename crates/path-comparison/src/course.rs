@@ -14,8 +14,8 @@ use crate::others::{Course, DatumOf, Others};
 /// others should be the first without some of its errors.
 ///
 /// * `step_mm` – distance between places on a line, at most; an arc turns by [`crate::TURN_RAD`] between them at most
-/// * `datum_of` – [`machine_model::Command::datum`] of a machine, by its number, where that of the first is given: each machine would
-///   have been touched by itself
+/// * `datum_of` – [`machine_model::Command::datum`] of a machine, by its number, where that of the first is given: each
+///   machine would have been touched by itself
 pub fn courses<'m>(
     models: &[Models<'m>],
     steps: impl Iterator<Item = Step>,

@@ -159,8 +159,8 @@ fn apart_mm(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 struct Made<'t>(&'t [[f64; 3]]);
 
 impl<'t> Made<'t> {
-    /// Where nothing is made of a motion, being shorter than the limit, the tool stays at the end of the one that it goes
-    /// on from.
+    /// Where nothing is made of a motion, being shorter than the limit, the tool stays at the end of the one that it
+    /// goes on from.
     fn of(trace: &'t Trace, before: Option<&'t Trace>) -> Self {
         let made = trace.made_mm.as_slice();
         let before = before.map_or(&[][..], |before| before.made_mm.as_slice());
