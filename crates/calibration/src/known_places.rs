@@ -4,7 +4,7 @@ use diagnostic::{Speaks, both};
 use machine_model::Engine;
 
 use crate::error::{CalibrationError, LETTERS};
-use crate::machine_change::{Base, Point};
+use crate::points::{Base, Point};
 
 /// Indices of the points that lie where the base knows the machine: the others have nothing to be compared with.
 ///

@@ -7,16 +7,20 @@
 pub mod adjustment;
 mod ballbar;
 pub mod change;
+mod changed;
 pub mod circular_test;
 mod error;
 mod field;
 pub mod functions;
+mod geometry;
 pub mod iso230_2;
 mod known_places;
+mod layout;
 pub mod linear_ballbar;
 mod machine_change;
 pub mod measured_line;
 mod mistakes;
+mod points;
 pub mod rigid_motion;
 pub mod rotary_ballbar;
 pub mod rotary_sequence;
@@ -28,6 +32,6 @@ pub mod turning;
 pub mod volumetric;
 
 pub use error::CalibrationError;
-pub use machine_change::{Base, ChangedAxis, Point, PointReading, SetUp};
+pub use points::{Base, ChangedAxis, Point, PointReading, SetUp};
 pub use student::{quantile, quantile_95};
 pub use traverse::{MeanTraverse, Node, Noise, Reading};

@@ -171,10 +171,25 @@ pub struct AxisOnNodes {
     pub given: [bool; 6],
 }
 
+/// How an axis' functions are held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FunctionSets {
+    /// One set for both directions, with the reversal value beside it; two where the base has two.
+    AsInBase,
+    /// One for each direction: the reversal value goes into them.
+    ByDirection,
+}
+
 impl AxisOnNodes {
-    /// A base's axis at these nodes; beyond its tables the end values hold. With `two` its reversal value goes into two sets.
+    /// A base's axis at these nodes; beyond its tables the end values hold.
     #[must_use]
-    pub fn new(base: &LinearAxis, axis: usize, given: [bool; 6], nodes_mm: Vec<f64>, two: bool) -> Self {
+    pub fn new(
+        base: &LinearAxis,
+        axis: usize,
+        given: [bool; 6],
+        nodes_mm: Vec<f64>,
+        sets: FunctionSets,
+    ) -> Self {
         let at = |tables: &Option<AxisTables>, shift: f64| -> Vec<Six> {
             let six = |q: &f64| {
                 let mut six = tables.as_ref().map_or([0.0; 6], |t| t.at(*q));
@@ -186,7 +201,7 @@ impl AxisOnNodes {
         let half = 0.5 * base.backlash_mm;
         let (positive, negative, backlash_mm) = if base.errors_negative.is_some() {
             (at(&base.errors, -half), Some(at(&base.errors_negative, half)), 0.0)
-        } else if two {
+        } else if sets == FunctionSets::ByDirection {
             (at(&base.errors, -half), Some(at(&base.errors, half)), 0.0)
         } else {
             (at(&base.errors, 0.0), None, base.backlash_mm)

@@ -8,9 +8,13 @@ use machine_model::{Chain, Vector};
 use units::math::exp;
 
 use crate::adjustment::Outlier;
+use crate::changed::Found;
 use crate::error::{CalibrationError, LETTERS};
+use crate::geometry::ideal_places;
 use crate::known_places::known_places;
-use crate::machine_change::{Base, Found, Plan, Point, PointReading, find, ideal_places, seen_mm};
+use crate::layout::Plan;
+use crate::machine_change::find;
+use crate::points::{Base, Point, PointReading, seen_mm};
 use crate::rigid_motion::{RigidMotion, mirrored_rms_mm};
 
 /// A good measurement loses a reading to this test once in so many.

@@ -6,7 +6,7 @@
 //! readings were taken.
 
 use diagnostic::{Speaks, Text, both};
-use machine_model::{Axis, Chain, Command, Engine, Range, Vector, WithEffects};
+use machine_model::{Axis, Chain, Command, Component, Description, Engine, Range, Vector, WithEffects};
 use nalgebra::{DMatrix, DVector};
 use units::math;
 
@@ -43,18 +43,18 @@ pub struct Location {
     /// The axis.
     pub axis: Axis,
     /// A shift (mm) or a tilt (rad).
-    pub is_length: bool,
+    pub component: Component,
     /// Direction along or around which: 0 X, 1 Y, 2 Z.
     pub direction: usize,
 }
 
 impl Location {
     /// The four of an axis: `EY0A EZ0A EB0A EC0A` …
-    pub(crate) fn of(axis: Axis) -> impl Iterator<Item = Self> {
-        [true, false].into_iter().flat_map(move |is_length| {
+    pub(crate) fn all(axis: Axis) -> impl Iterator<Item = Self> {
+        [Component::Linear, Component::Angular].into_iter().flat_map(move |component| {
             (0..3).filter(move |direction| *direction != axis.direction()).map(move |direction| Self {
                 axis,
-                is_length,
+                component,
                 direction,
             })
         })
@@ -63,8 +63,30 @@ impl Location {
     /// Its symbol: `EX0C`.
     #[must_use]
     pub fn name(&self) -> String {
-        let letter = Axis::ALL[self.direction + if self.is_length { 0 } else { 3 }];
+        let letter = match self.component {
+            Component::Linear => Axis::ALL[self.direction],
+            Component::Angular => Axis::ALL[3 + self.direction],
+        };
         format!("E{letter}0{}", self.axis)
+    }
+
+    /// What a machine has of it, mm or rad.
+    #[must_use]
+    pub fn of(&self, machine: &Description) -> f64 {
+        let axis = &machine.rotary[self.axis.direction()];
+        match self.component {
+            Component::Linear => axis.shift_mm[self.direction],
+            Component::Angular => axis.tilt_rad[self.direction],
+        }
+    }
+
+    /// Adds to what a machine has of it.
+    pub(crate) fn add(&self, machine: &mut Description, by: f64) {
+        let axis = &mut machine.rotary[self.axis.direction()];
+        match self.component {
+            Component::Linear => axis.shift_mm[self.direction] += by,
+            Component::Angular => axis.tilt_rad[self.direction] += by,
+        }
     }
 }
 
@@ -99,10 +121,21 @@ pub struct RotaryCalibration {
 }
 
 /// Half the widths of the central differences: mm and rad.
-const STEPS: [f64; 2] = [1e-2, 1e-5];
+const STEP_MM: f64 = 1e-2;
+const STEP_RAD: f64 = 1e-5;
 
-/// A location error beyond is no error of a machine: 5 mm, 50 mrad.
-const LARGEST: [f64; 2] = [5.0, 0.05];
+/// A location error beyond is no error of a machine.
+const LARGEST_MM: f64 = 5.0;
+const LARGEST_RAD: f64 = 0.05;
+
+/// A location error larger than any machine's, as messages say it: in mm or mrad.
+pub(crate) fn out_of_place(component: Component, value: f64) -> Option<(f64, Text)> {
+    let (largest, scale, unit) = match component {
+        Component::Linear => (LARGEST_MM, 1.0, Text::pair("mm", "мм")),
+        Component::Angular => (LARGEST_RAD, 1e3, Text::pair("mrad", "мрад")),
+    };
+    (value.abs() > largest).then_some((value * scale, unit))
+}
 
 /// Lengths of one test by the whole model, without the bar's own error: equation (47).
 fn lengths_mm(machine: &WithEffects, test: &Test, cup_mm: [f64; 2]) -> Vec<f64> {
@@ -159,9 +192,7 @@ fn only_of_the_table(tests: &[Test], chain: &Chain) -> Result<(), CalibrationErr
 fn machine(base: &WithEffects, locations: &[Location], x: &DVector<f64>) -> WithEffects {
     changed(base, |description| {
         for (k, location) in locations.iter().enumerate() {
-            let axis = &mut description.rotary[location.axis.direction()];
-            let vector = if location.is_length { &mut axis.shift_mm } else { &mut axis.tilt_rad };
-            vector[location.direction] += x[k];
+            location.add(description, x[k]);
         }
     })
 }
@@ -183,7 +214,7 @@ pub fn calibrate(tests: &[Test], machines: &[WithEffects]) -> Result<RotaryCalib
     only_of_the_table(tests, &machines[0].base().description().chain)?;
     let turned = |axis: &Axis| tests.iter().any(|t| t.turning == Turning::Axis(*axis));
     let locations: Vec<Location> =
-        Axis::ALL.into_iter().filter(|axis| turned(axis)).flat_map(Location::of).collect();
+        Axis::ALL.into_iter().filter(|axis| turned(axis)).flat_map(Location::all).collect();
     let cup = locations.len();
     let setup = cup + 2;
     let mut names: Vec<Text> = locations.iter().map(|l| Text::same(l.name())).collect();
@@ -201,7 +232,10 @@ pub fn calibrate(tests: &[Test], machines: &[WithEffects]) -> Result<RotaryCalib
     };
     let forward = |x: &DVector<f64>| DVector::from_vec(predicted(x).concat());
     let read = DVector::from_iterator(rows, tests.iter().flat_map(|t| t.readings.iter().map(|r| r.1)));
-    let step = |k: usize| STEPS[usize::from(locations.get(k).is_some_and(|l| !l.is_length))];
+    let step = |k: usize| match locations.get(k).map(|location| location.component) {
+        Some(Component::Angular) => STEP_RAD,
+        Some(Component::Linear) | None => STEP_MM,
+    };
     let steps: Vec<f64> = (0..names.len()).map(step).collect();
     let problem = Problem {
         readings: &read,
@@ -220,21 +254,16 @@ pub fn calibrate(tests: &[Test], machines: &[WithEffects]) -> Result<RotaryCalib
         .iter()
         .enumerate()
         .map(|(k, location)| {
-            let axis = &machines[0].base().description().rotary[location.axis.direction()];
-            let base = if location.is_length { axis.shift_mm } else { axis.tilt_rad }[location.direction];
+            let base = location.of(machines[0].base().description());
             Found { location: *location, value: base + x[k], base, half_width_95: estimate.half_width_95(k) }
         })
         .collect();
-    if let Some(wild) = found.iter().find(|f| f.value.abs() > LARGEST[usize::from(!f.location.is_length)]) {
-        let (size, unit) = if wild.location.is_length {
-            (wild.value, Text::pair("mm", "мм"))
-        } else {
-            (wild.value * 1e3, Text::pair("mrad", "мрад"))
-        };
+    let wild = |f: &Found| Some((f.location, out_of_place(f.location.component, f.value)?));
+    if let Some((location, (size, unit))) = found.iter().find_map(wild) {
         return Err(CalibrationError::Contradicted(both!(
             "{} would be {size:.1} {unit}: no table is so far from its place",
             "{} была бы {size:.1} {unit:#}: так далеко от своего места стол не бывает",
-            wild.location.name()
+            location.name()
         )));
     }
     Ok(RotaryCalibration {

@@ -9,8 +9,10 @@ use nalgebra::Matrix3;
 
 use crate::error::{CalibrationError, LETTERS};
 use crate::known_places::known_places;
-use crate::machine_change::{Base, ChangedAxis, Plan, Point, SetUp, find};
+use crate::layout::Plan;
+use crate::machine_change::find;
 use crate::mistakes;
+use crate::points::{Base, ChangedAxis, Point, SetUp};
 use crate::student::quantile_95;
 use crate::traverse::{MeanTraverse, Noise};
 use crate::volumetric::{field_commands, plays};

@@ -4,11 +4,14 @@ use diagnostic::{Text, both};
 use machine_model::{Command, Description, PathModel, Range, Vector};
 
 use crate::adjustment::Estimate;
+use crate::changed::Found;
 use crate::error::{CalibrationError, LETTERS};
 use crate::field;
 use crate::known_places::known_places;
-use crate::machine_change::{Base, ChangedAxis, Found, Group, Plan, Point, SetUp, find};
+use crate::layout::{Group, Plan};
+use crate::machine_change::find;
 use crate::mistakes;
+use crate::points::{Base, ChangedAxis, Point, SetUp};
 
 /// The change of one error function as found.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,8 +7,8 @@ use calibration::rotary_sequence::{approximation_mm, sequence};
 use gap_lab::calibration::{BarRow, TableTruth, Turns, ball_bar, circles};
 use machine_model::effects::Conditions;
 use machine_model::{
-    Axis, AxisTables, Chain, Command, Description, Interpolation, LinearAxis, PathModel, Range, RigidBody,
-    RotaryAxis, Squareness, Table, Vector, WithEffects,
+    Axis, AxisTables, Chain, Command, Component, Description, Interpolation, LinearAxis, PathModel, Range,
+    RigidBody, RotaryAxis, Squareness, Table, Vector, WithEffects,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -112,12 +112,11 @@ fn table(tests: &[Test], chain: &str) -> Result<RotaryCalibration, CalibrationEr
 
 /// Values in the units of the generator's truth: µm and µrad, with their half widths.
 fn values(found: &RotaryCalibration) -> Vec<(f64, f64)> {
-    let scale = |is_length: bool| if is_length { 1e3 } else { 1e6 };
-    found
-        .locations
-        .iter()
-        .map(|f| (f.value * scale(f.location.is_length), f.half_width_95 * scale(f.location.is_length)))
-        .collect()
+    let scale = |f: &rotary_ballbar::Found| match f.location.component {
+        Component::Linear => 1e3,
+        Component::Angular => 1e6,
+    };
+    found.locations.iter().map(|f| (f.value * scale(f), f.half_width_95 * scale(f))).collect()
 }
 
 const A_CARRIES_C: &str = "[w C A X Y b Z t]";
@@ -265,10 +264,11 @@ fn every_table_comes_back_and_with_its_own_base_exactly() {
             assert_eq!(found.locations.len(), 4 * base.chain.table().len());
             for f in &found.locations {
                 let axis = &machine.rotary[f.location.axis.direction()];
-                let wanted =
-                    if f.location.is_length { axis.shift_mm } else { axis.tilt_rad }[f.location.direction];
                 // A tenth of a nanometre at 100 mm.
-                let limit = if f.location.is_length { 1e-7 } else { 1e-9 };
+                let (wanted, limit) = match f.location.component {
+                    Component::Linear => (axis.shift_mm[f.location.direction], 1e-7),
+                    Component::Angular => (axis.tilt_rad[f.location.direction], 1e-9),
+                };
                 assert!((f.value - wanted).abs() < limit, "{chain} {}: {f:?} {wanted}", f.location.name());
             }
             assert!((found.cup_mm[0] - 0.05).abs() < 1e-7 && (found.cup_mm[1] + 0.03).abs() < 1e-7);

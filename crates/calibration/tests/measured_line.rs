@@ -2,7 +2,8 @@
 
 use calibration::functions::{Function, FunctionReading, function};
 use calibration::measured_line::{
-    AxisOnNodes, Gauge, MeasuredLine, Zero, angles_between, apply_gauge, settle_directions, squareness_for,
+    AxisOnNodes, FunctionSets, Gauge, MeasuredLine, Zero, angles_between, apply_gauge, settle_directions,
+    squareness_for,
 };
 use machine_model::effects::Conditions;
 use machine_model::{
@@ -97,7 +98,7 @@ fn a_change_goes_onto_the_line_of_the_base_and_the_lines_keep_their_angles() {
     // Y turns about X and Z more than before, and its angles are not zero where the lines cross.
     let more = |q: f64| -> Six { [1e-3, 2e-3, 0.0, 2e-7 * (q - 100.0), 1e-5, 1e-7 * q] };
     let nodes: Vec<f64> = base.linear[1].errors.as_ref().expect("a fair machine").nodes().to_vec();
-    let mut changed = AxisOnNodes::new(&base.linear[1], 1, [true; 6], nodes.clone(), false);
+    let mut changed = AxisOnNodes::new(&base.linear[1], 1, [true; 6], nodes.clone(), FunctionSets::AsInBase);
     for (q, six) in nodes.iter().zip(&mut changed.positive) {
         *six = std::array::from_fn(|k| six[k] + more(*q)[k]);
     }
@@ -107,7 +108,7 @@ fn a_change_goes_onto_the_line_of_the_base_and_the_lines_keep_their_angles() {
     let read = angles_between(&lines, &targets, &machine(&truth));
 
     let nodes: Vec<f64> = targets[1].clone();
-    let mut made = AxisOnNodes::new(&base.linear[1], 1, [true; 6], nodes, true);
+    let mut made = AxisOnNodes::new(&base.linear[1], 1, [true; 6], nodes, FunctionSets::ByDirection);
     made.add(&change(&truth, &base, 1), line(1).arm_mm(&base));
     let mut found = base.clone();
     found.linear[1] = made.axis(&base.linear[1], Interpolation::Linear).expect("a fair machine");

@@ -211,11 +211,7 @@ fn every_term_lies_in_its_interval_as_often_as_it_says_and_unseen_places_are_pre
                 (Some(exact), own) => {
                     exact.terms.iter().find(|t| t.term == own).map_or(0.0, |t| t.base + t.change)
                 }
-                (None, Term::Location(location)) => {
-                    let own = &machine.rotary[location.axis.direction()];
-                    let vector = if location.is_length { own.shift_mm } else { own.tilt_rad };
-                    vector[location.direction]
-                }
+                (None, Term::Location(location)) => location.of(&machine),
                 (None, other) => {
                     functions.iter().find(|(own, _)| *own == other).map_or(0.0, |(_, value)| *value)
                 }

@@ -68,6 +68,21 @@ enum Way {
     OnlyTurning,
 }
 
+/// How the axes lie in their play before an approach.
+#[derive(Clone, Copy)]
+struct Lie {
+    /// The state in which they are to come to the start.
+    state: Command,
+    /// That with the axes where they stand.
+    here: Command,
+    /// On which side of its play each stands; 0: not known.
+    side: [i8; 3],
+    /// Those that have to take up play.
+    turning: [bool; 3],
+    /// How far each has yet to go for that, mm.
+    lag_mm: [f64; 3],
+}
+
 impl<'m> Corrector<'m> {
     /// Brings the axes to the corrected start of a part.
     ///
@@ -206,88 +221,117 @@ impl<'m> Corrector<'m> {
         let lag_mm = self.play.lag_mm(self.model, &here, direction);
         let side = self.play.side();
         let turning = [0, 1, 2].map(|i| side[i] != 0 && (side[i] != direction[i] || lag_mm[i] > 0.0));
-        let standing = here.linear_mm;
+        let lie = Lie { state: machine.state, here, side, turning, lag_mm };
         Ok(match way {
-            Way::AtOnce | Way::FromBehind => {
-                let mut wanted = wanted;
-                let mut turned = self.approachable(&mut wanted, direction, block);
-                if let Way::FromBehind = way {
-                    // Those whose way to the start is no reversal of their play.
-                    let short = |i: usize| turning[i] && (wanted[i] - standing[i]).abs() < lag_mm[i];
-                    let found = turned.get_or_insert([0; 3]);
-                    (0..3).filter(|i| short(*i)).for_each(|i| found[i] = -direction[i]);
-                    if *found == [0; 3] {
-                        return Ok(None);
-                    }
-                }
-                let mut places = SmallVec::new();
-                if let Some(turned) = turned {
-                    let mut state = machine.state;
-                    for (direction, new) in state.direction.iter_mut().zip(turned) {
-                        *direction = if new == 0 { *direction } else { new };
-                    }
-                    let mut from_behind = self.solve(&state, start)?;
-                    // The axes that need not turn do not creep back meanwhile, nor behind that.
-                    let _ = self.approachable(&mut from_behind, state.direction, block);
-                    places.push(from_behind);
-                    for i in 0..3 {
-                        let way = wanted[i] - from_behind[i];
-                        if turned[i] == 0 && way * f64::from(direction[i]) < 0.0 {
-                            wanted[i] = from_behind[i];
-                        }
-                    }
-                }
-                places.push(wanted);
-                Some(places)
-            }
-            Way::Halfway if block.frame.is_axial() => {
-                let before = [0, 1, 2].map(|i| if side[i] == 0 { direction[i] } else { side[i] });
-                let stayed = self.solve(&Command { direction: before, ..machine.state }, start)?;
-                let (mut halfway, mut first, mut turned) = (standing, standing, standing);
-                for i in 0..3 {
-                    let width_mm = self.model.reversal_mm(i, &here).max(0.0);
-                    let play = if turning[i] { f64::from(direction[i]) * width_mm } else { 0.0 };
-                    // What the turn moves the tool by along this axis, its own play apart.
-                    let middle = stayed[i] + 0.5 * (wanted[i] - stayed[i] - play);
-                    let way = middle - standing[i];
-                    if width_mm <= SAME_PLACE_MM || way * f64::from(before[i]) >= 0.0 {
-                        halfway[i] = middle;
-                        first[i] = middle;
-                        turned[i] = middle + play;
-                    } else if turning[i] {
-                        // That lies behind its own turn, which comes before that of the others.
-                        first[i] = middle + play;
-                        turned[i] = middle + play;
-                    }
-                }
-                Some([halfway, first, turned].into_iter().collect())
-            }
-            Way::OneByOne if turning.iter().filter(|turns| **turns).count() > 1 => {
-                let mut state = machine.state;
-                state.direction = [0, 1, 2].map(|i| if side[i] == 0 { direction[i] } else { side[i] });
-                let mut places: SmallVec<[Vector; 3]> = SmallVec::new();
-                let mut at = standing;
-                for i in (0..3).filter(|i| turning[*i]) {
-                    state.direction[i] = direction[i];
-                    let wanted = self.solve(&state, start)?;
-                    for j in 0..3 {
-                        let back = (wanted[j] - at[j]) * f64::from(state.direction[j]) < 0.0;
-                        // One that would go back into its play waits for its turn, or for the block behind.
-                        if j == i || !back || self.model.reversal_mm(j, &here) <= SAME_PLACE_MM {
-                            at[j] = wanted[j];
-                        }
-                    }
-                    places.push(at);
-                }
-                Some(places)
+            Way::AtOnce | Way::FromBehind => self.at_once(way, &lie, start, wanted, block)?,
+            Way::Halfway if block.frame.is_axial() => Some(self.halfway(&lie, start, wanted)?),
+            Way::OneByOne if lie.turning.iter().filter(|turns| **turns).count() > 1 => {
+                Some(self.one_by_one(&lie, start)?)
             }
             Way::OnlyTurning if block.frame.is_axial() => {
-                let mut turned = standing;
-                (0..3).filter(|i| turning[*i]).for_each(|i| turned[i] = wanted[i]);
+                let mut turned = here.linear_mm;
+                (0..3).filter(|i| lie.turning[*i]).for_each(|i| turned[i] = wanted[i]);
                 Some([turned].into_iter().collect())
             }
             Way::Halfway | Way::OneByOne | Way::OnlyTurning => None,
         })
+    }
+
+    /// By a line, behind one from behind where axes stand too far on their way, or on [`Way::FromBehind`] have to turn.
+    fn at_once(
+        &self,
+        way: Way,
+        lie: &Lie,
+        start: Vector,
+        wanted: Vector,
+        block: &Block,
+    ) -> Result<Option<SmallVec<[Vector; 3]>>, CorrectionError> {
+        let Lie { turning, lag_mm, here: Command { linear_mm: standing, .. }, .. } = *lie;
+        let direction = lie.state.direction;
+        let mut wanted = wanted;
+        let mut turned = self.approachable(&mut wanted, direction, block);
+        if let Way::FromBehind = way {
+            // Those whose way to the start is no reversal of their play.
+            let short = |i: usize| turning[i] && (wanted[i] - standing[i]).abs() < lag_mm[i];
+            let found = turned.get_or_insert([0; 3]);
+            (0..3).filter(|i| short(*i)).for_each(|i| found[i] = -direction[i]);
+            if *found == [0; 3] {
+                return Ok(None);
+            }
+        }
+        let mut places = SmallVec::new();
+        if let Some(turned) = turned {
+            let mut state = lie.state;
+            for (direction, new) in state.direction.iter_mut().zip(turned) {
+                *direction = if new == 0 { *direction } else { new };
+            }
+            let mut from_behind = self.solve(&state, start)?;
+            // The axes that need not turn do not creep back meanwhile, nor behind that.
+            let _ = self.approachable(&mut from_behind, state.direction, block);
+            places.push(from_behind);
+            for i in 0..3 {
+                let way = wanted[i] - from_behind[i];
+                if turned[i] == 0 && way * f64::from(direction[i]) < 0.0 {
+                    wanted[i] = from_behind[i];
+                }
+            }
+        }
+        places.push(wanted);
+        Ok(Some(places))
+    }
+
+    /// Half of what the turn will move the tool sideways by is undone before it.
+    fn halfway(
+        &self,
+        lie: &Lie,
+        start: Vector,
+        wanted: Vector,
+    ) -> Result<SmallVec<[Vector; 3]>, CorrectionError> {
+        let Lie { side, turning, here, .. } = *lie;
+        let (direction, standing) = (lie.state.direction, here.linear_mm);
+        let before = [0, 1, 2].map(|i| if side[i] == 0 { direction[i] } else { side[i] });
+        let stayed = self.solve(&Command { direction: before, ..lie.state }, start)?;
+        let (mut halfway, mut first, mut turned) = (standing, standing, standing);
+        for i in 0..3 {
+            let width_mm = self.model.reversal_mm(i, &here).max(0.0);
+            let play = if turning[i] { f64::from(direction[i]) * width_mm } else { 0.0 };
+            // What the turn moves the tool by along this axis, its own play apart.
+            let middle = stayed[i] + 0.5 * (wanted[i] - stayed[i] - play);
+            let way = middle - standing[i];
+            if width_mm <= SAME_PLACE_MM || way * f64::from(before[i]) >= 0.0 {
+                halfway[i] = middle;
+                first[i] = middle;
+                turned[i] = middle + play;
+            } else if turning[i] {
+                // That lies behind its own turn, which comes before that of the others.
+                first[i] = middle + play;
+                turned[i] = middle + play;
+            }
+        }
+        Ok([halfway, first, turned].into_iter().collect())
+    }
+
+    /// One axis turns after the other.
+    fn one_by_one(&self, lie: &Lie, start: Vector) -> Result<SmallVec<[Vector; 3]>, CorrectionError> {
+        let Lie { side, turning, here, .. } = *lie;
+        let (direction, standing) = (lie.state.direction, here.linear_mm);
+        let mut state = lie.state;
+        state.direction = [0, 1, 2].map(|i| if side[i] == 0 { direction[i] } else { side[i] });
+        let mut places: SmallVec<[Vector; 3]> = SmallVec::new();
+        let mut at = standing;
+        for i in (0..3).filter(|i| turning[*i]) {
+            state.direction[i] = direction[i];
+            let wanted = self.solve(&state, start)?;
+            for j in 0..3 {
+                let back = (wanted[j] - at[j]) * f64::from(state.direction[j]) < 0.0;
+                // One that would go back into its play waits for its turn, or for the block behind.
+                if j == i || !back || self.model.reversal_mm(j, &here) <= SAME_PLACE_MM {
+                    at[j] = wanted[j];
+                }
+            }
+            places.push(at);
+        }
+        Ok(places)
     }
 
     /// All axes have taken up their play but for a rounding.

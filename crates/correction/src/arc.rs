@@ -5,10 +5,11 @@ use std::f64::consts::TAU;
 use machine_model::Vector;
 use toolpath::Division;
 
+use crate::by_commands::{Enclosed, Solved};
 use crate::centre::{PLACES, Search, in_plane};
 use crate::corrector::Corrector;
 use crate::curve::{Curve, SAME_PLACE_MM};
-use crate::deviation::{Enclosed, Machine, Pair, Solved, Verdict};
+use crate::deviation::{Machine, Pair, Verdict};
 use crate::error::CorrectionError;
 use crate::follow::Follow;
 use crate::play::{Creep, Tried};

@@ -31,7 +31,7 @@ impl Candidate {
     /// What the control makes of it; `None` where that is another arc altogether: the short way for the long one.
     pub(crate) fn arc(&self, search: &Search<'_>) -> Option<Curve> {
         let Curve::Arc { axes, sweep, .. } = *search.part else { return None };
-        let mut curve = Curve::from_centre(search.from, search.to, axes, self.centre, sweep < 0.0);
+        let mut curve = Curve::from_centre(search.from, search.to, axes, self.centre, sweep);
         let Curve::Arc { sweep: turned, .. } = &mut curve else { return None };
         if search.own_words && search.block.stated.turns {
             // The block's own P counts the whole turns before the last one; it never makes one of a

@@ -15,10 +15,9 @@ pub struct Corrected {
 }
 
 impl Corrected {
-    /// One block, which stays as it is where it is `untouched`.
-    pub(crate) fn block(piece: Piece, untouched: bool, correction: Correction) -> Self {
-        let pieces = if untouched { SmallVec::new() } else { SmallVec::from_slice(&[piece]) };
-        Self { pieces, correction }
+    /// One block; `None` where it stays as it is.
+    pub(crate) fn block(piece: Option<Piece>, correction: Correction) -> Self {
+        Self { pieces: piece.into_iter().collect(), correction }
     }
 }
 
@@ -73,6 +72,6 @@ pub struct Turned {
 
 /// One block, which stays as it is where its words do.
 pub(crate) fn one(piece: Piece, correction: Correction) -> Corrected {
-    let untouched = piece.axes.iter().all(|word| matches!(word, Goal::AsStated | Goal::Stays));
-    Corrected::block(piece, untouched, correction)
+    let is_new = piece.axes.iter().any(|word| matches!(word, Goal::Steps(_)));
+    Corrected::block(is_new.then_some(piece), correction)
 }

@@ -8,10 +8,10 @@ use toolpath::Kinematics;
 use crate::Piece;
 use crate::deviation::Machine;
 use crate::direction::heading;
+use crate::directions::Directions;
 use crate::error::CorrectionError;
 use crate::grid::{Block, Goal};
 use crate::options::{Options, Outside};
-use crate::orientation::Directions;
 use crate::remembered::Remembered;
 
 /// Corrects motions in the order of the program.
@@ -63,8 +63,8 @@ impl Freedom {
     }
 
     /// The block's own words may stay where they serve.
-    pub(crate) fn keeping(self, may_keep: bool) -> Self {
-        Self { may_keep, ..self }
+    pub(crate) fn keeping_words(self) -> Self {
+        Self { may_keep: true, ..self }
     }
 
     /// Axes that stay where they stand (frames that are shifts only).

@@ -3,10 +3,11 @@
 use machine_model::{Command, Singularity, Vector};
 use toolpath::{Division, Feed};
 
-use crate::corrected::Corrected;
+use crate::by_commands::{Enclosed, Solved};
+use crate::corrected::{Corrected, Directed};
 use crate::corrector::{Corrector, Freedom};
 use crate::curve::Curve;
-use crate::deviation::{Enclosed, Machine, Solved};
+use crate::deviation::Machine;
 use crate::error::CorrectionError;
 use crate::grid::Block;
 
@@ -60,10 +61,10 @@ pub(crate) struct Standing {
 }
 
 impl Turning {
-    /// Whether the tool points where it shall, where directions are corrected.
-    pub(crate) fn reached(&mut self, reached: bool) {
+    /// Notes whether the tool points where it shall, where directions are corrected.
+    pub(crate) fn note_direction(&mut self, found: &Directed) {
         if let Some(standing) = &mut self.directed {
-            standing.reached = reached;
+            standing.reached = !found.held;
         }
     }
 }
@@ -116,7 +117,8 @@ impl Follow<'_, '_> {
             _ => self.block.held(&part.at(0.0), &part.at(1.0)),
         };
         let hold = [0, 1, 2].map(|axis| hold[axis] || held[axis]);
-        Freedom::of(self.block.may_have_words()).keeping(self.alone).holding(hold)
+        let freedom = Freedom::of(self.block.may_have_words()).holding(hold);
+        if self.alone { freedom.keeping_words() } else { freedom }
     }
 
     /// The least share of a part that may be a piece of its own; above a half where it must stay one. A line in the place of an

@@ -2,15 +2,14 @@
 
 use machine_model::{Command, LANES, Vector};
 use smallvec::SmallVec;
-use toolpath::{CycleKind, Division, Hole, HoleMove, MOST_PECKS, whole_pecks};
+use toolpath::{CycleKind, Hole};
 
 use crate::corrected::{Corrected, Correction};
-use crate::corrector::{Corrector, Freedom, MOST_TURNS};
+use crate::corrector::{Corrector, MOST_TURNS};
 use crate::curve::Curve;
 use crate::deviation::{Begun, Machine, Pair, Verdict};
 use crate::direction::heading;
 use crate::error::CorrectionError;
-use crate::follow::{Follow, Whole};
 use crate::grid::{Block, Goal, Stated};
 use crate::remembered::Remembered;
 use crate::{Piece, PieceKind};
@@ -83,7 +82,7 @@ impl Kept {
     }
 
     fn with(self, correction: Correction) -> Corrected {
-        Corrected::block(self.piece, self.untouched, correction)
+        Corrected::block((!self.untouched).then_some(self.piece), correction)
     }
 }
 
@@ -259,7 +258,7 @@ impl<'m> Corrector<'m> {
     /// The axes have come to a hole. That the play along it is taken up on its first micrometres is no deviation from
     /// it: the tool is late there, in the air or where it has drilled before. Without a depth (`along`: none) nothing
     /// takes it up.
-    fn over_the_hole(&mut self, state: &Command, at_mm: Vector, along: Option<usize>) {
+    pub(crate) fn over_the_hole(&mut self, state: &Command, at_mm: Vector, along: Option<usize>) {
         if self.model.depends_on_direction() {
             let at = Command { linear_mm: at_mm, ..*state };
             self.play.go(self.model, &at);
@@ -270,7 +269,7 @@ impl<'m> Corrector<'m> {
     }
 
     /// The state in which the machine drills: in the plane the axes come from where they came from last.
-    fn drilling(&self, state: &Command, normal: usize) -> Command {
+    pub(crate) fn drilling(&self, state: &Command, normal: usize) -> Command {
         let mut direction = self.direction;
         direction[normal] = state.direction[normal];
         Command { direction, ..*state }
@@ -416,124 +415,5 @@ impl<'m> Corrector<'m> {
             (b, b_value) = absolute.write(normal, b_wanted - b_origin, None);
         }
         Levels { r, r_value, r_origin, bottom: b, bottom_value: b_value, bottom_origin: b_origin }
-    }
-
-    /// The cycle as the moves it is made of.
-    fn expand(
-        &mut self,
-        hole: &Hole,
-        block: &Block,
-        machine: &Machine<'m>,
-        corrected: &mut Corrected,
-    ) -> Result<(), CorrectionError> {
-        let normal = hole.plane.axes()[2];
-        let pecks = hole.pecks().unwrap_or(1.0);
-        if pecks > MOST_PECKS {
-            return Err(CorrectionError::TooManyPecks { pecks });
-        }
-        let may = block.may_have_words();
-        // On the way to the next feed, even back, an axis is where it will be on that feed; else where it goes.
-        let drills = machine.state;
-        let mut leaves = drills;
-        leaves.direction[normal] = -drills.direction[normal];
-        let words = (block, normal, may);
-        let mut at = Vector::from(hole.start.linear_mm);
-        for step in hole.moves(whole_pecks(pecks), block.retreats) {
-            let to = step.end().map_or(at, |to| to.linear_mm.into());
-            match step {
-                HoleMove::Rise { .. } if to == at => {}
-                // It leaves the axes of the plane where they are: their words say where the hole is.
-                HoleMove::Rise { .. } => {
-                    self.position((block, normal, block.named), &leaves, to, corrected)?
-                }
-                HoleMove::Position { .. } => self.position(words, &drills, to, corrected)?,
-                HoleMove::Leave { .. } => self.position(words, &leaves, to, corrected)?,
-                HoleMove::Dwell => {
-                    corrected.pieces.push(Piece::new(PieceKind::Dwell, [Goal::Stays; 3], 0.0));
-                }
-                HoleMove::FeedIn { .. } => {
-                    let state = self.drilling(&machine.state, normal);
-                    self.over_the_hole(&state, self.standing_or(&at), (at != to).then_some(normal));
-                    let machine = Machine { state, ..machine.clone() };
-                    let whole = along(at, (hole.bottom_mm - hole.at_r.linear_mm[normal]).abs());
-                    let mut follow = Follow { foreseen: true, ..follow(machine, block, whole, corrected) };
-                    self.follow_line(&mut follow, &Curve::Line(at, to))?;
-                }
-                HoleMove::FeedOut { .. } => {
-                    // Out again is a reversal like any other.
-                    self.turn_towards(&at, &to);
-                    let state = Command { direction: self.direction, ..machine.state };
-                    let mut machine = Machine { state, ..machine.clone() };
-                    let out = Curve::Line(at, to);
-                    let whole = along(at, out.length_mm());
-                    self.approach(&mut machine, &out, block, &whole, corrected)?;
-                    self.follow_line(&mut follow(machine, block, whole, corrected), &out)?;
-                }
-            }
-            at = to;
-        }
-        Ok(())
-    }
-
-    /// A positioning move of a cycle; along the drilling axis (`normal`) the axes go as `along` says.
-    fn position(
-        &mut self,
-        (block, normal, may): (&Block, usize, [bool; 3]),
-        along: &Command,
-        to: Vector,
-        corrected: &mut Corrected,
-    ) -> Result<(), CorrectionError> {
-        let before = self.standing;
-        let mut turns = 0;
-        let (state, wanted, axes) = loop {
-            let state = self.drilling(along, normal);
-            let wanted = self.solve(&state, to)?;
-            let axes = self.go(block, &to, &wanted, &Freedom::of(may));
-            let mut reached = self.standing;
-            reached[normal] = None;
-            turns += 1;
-            match self.against(&state, before, reached, block) {
-                Some(against) if turns < MOST_TURNS => {
-                    self.turn(against);
-                    self.standing = before;
-                }
-                _ => break (state, wanted, axes),
-            }
-        };
-        if axes.iter().any(|goal| *goal != Goal::Stays) {
-            corrected.pieces.push(Piece::new(PieceKind::Rapid, axes, 0.0));
-        }
-        self.gone(&state);
-        self.note_end(&state, to, wanted);
-        Ok(())
-    }
-}
-
-/// A motion of the drilling axis, of which the cycle may have other parts.
-fn along(start: Vector, length_mm: f64) -> Whole {
-    Whole { start, rotary_rad: None, length_mm, in_step: false, division: Division::Any }
-}
-
-/// A feed of a cycle, written with words of its own.
-fn follow<'a, 'm>(
-    machine: Machine<'m>,
-    block: &'a Block,
-    whole: Whole,
-    corrected: &'a mut Corrected,
-) -> Follow<'a, 'm> {
-    Follow {
-        machine,
-        block,
-        alone: false,
-        may_split: true,
-        whole,
-        nominal_step: Vector::zeros(),
-        solved: None,
-        enclosed: None,
-        foreseen: false,
-        leans_rad: None,
-        turning: None,
-        commanded_mm: 0.0,
-        corrected,
     }
 }

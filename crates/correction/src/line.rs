@@ -10,7 +10,7 @@ use crate::error::CorrectionError;
 use crate::follow::Follow;
 use crate::grid::{Block, Goal};
 use crate::play::{Creep, Tried};
-use crate::pointing::Pointing;
+use crate::pointing::{Demand, Pointing};
 use crate::{Centre, Piece, PieceKind};
 
 /// A piece shorter than this many output steps cannot be split further to any use.
@@ -138,11 +138,12 @@ impl<'m> Corrector<'m> {
         match verdict {
             Verdict::Within(bound) => {
                 if let (Some(standing), Some(rotary)) = (&directed, &mut rotary) {
-                    let may_lean = !(standing.reached && rotary.reached);
-                    match self.piece_leans(&pair, &machine, may_lean)? {
+                    let is_reached = standing.reached && rotary.reached;
+                    let demand = if is_reached { Demand::Proven } else { Demand::AsNearAsMayBe };
+                    match self.piece_leans(&pair, &machine, demand)? {
                         Pointing::Holds(found) => {
                             follow.note_direction(&found);
-                            rotary.turning.reached(!found.held);
+                            rotary.turning.note_direction(&found);
                         }
                         Pointing::Leans { s, rad } => {
                             self.standing = before;

@@ -245,7 +245,7 @@ impl Corrector<'_> {
             };
             // Positioning moves what the block names and nothing else: the other axes take their correction from the
             // next feed.
-            let freedom = Freedom::of(block.stated.axes).keeping(true).holding(block.held(&from, &end_mm));
+            let freedom = Freedom::of(block.stated.axes).keeping_words().holding(block.held(&from, &end_mm));
             let axes = self.go(block, &own_end, &wanted, &freedom);
             // An axis comes from where the output sends it, and where it does not from where it came before.
             let Some(against) = self.against(&state, before, self.standing, block) else {
@@ -290,10 +290,7 @@ impl Corrector<'_> {
         }
         let turning = matches!(feed.shape, Shape::Line) && turns && self.model.follows_turns();
         let whole = if turning {
-            Curve::Turn {
-                ends: [feed.start, feed.end].map(|place| place.linear_mm.into()),
-                rotary_rad: [feed.start, feed.end].map(|place| place.rotary_deg.map(f64::to_radians).into()),
-            }
+            Curve::of(feed)
         } else {
             Curve::new(feed.start.linear_mm.into(), feed.end.linear_mm.into(), &feed.shape)
         };

@@ -9,69 +9,18 @@
 //! there and back no axis is corrected by another amount faster than it may ([`Singularity::most_share`]).
 
 use machine_model::{Aim, Aside, Command, Held, Singularity, SolveError, Vector, aim};
-use toolpath::{Division, Feed, Hole, Kinematics, Motion, Mover, Position, Shape};
+use toolpath::{Division, Feed, Hole, Kinematics, Motion, Mover, Position};
 use units::decimal::round;
 
 use crate::corrected::{Corrected, Directed};
 use crate::corrector::Corrector;
 use crate::curve::Curve;
+use crate::directions::Stand;
 use crate::error::CorrectionError;
-use crate::follow::{Follow, Standing};
 use crate::grid::{Block, Goal};
-use crate::options::{Orientation, Outside};
+use crate::options::Outside;
 use crate::pointing::{GUARD_RAD, Leans};
-use crate::turning::RotaryWords;
 use crate::{Piece, PieceKind};
-
-/// How the output's rotary axes stand against the program's.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Directions {
-    /// Output less program, degrees.
-    aside_deg: [f64; 3],
-    /// Where the program has brought them, degrees.
-    program_deg: [f64; 3],
-    /// Axes that the program has named.
-    named: [bool; 3],
-    stand: Stand,
-}
-
-/// Where the tool points while the rotary axes stand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stand {
-    /// Where it shall, at the place that was reached last.
-    Reached,
-    /// Not where it shall, near a singularity or on the way from there.
-    Held,
-    /// As the axes were positioned, one after the other or from an unknown place.
-    AsPositioned,
-}
-
-impl Default for Directions {
-    fn default() -> Self {
-        Self { aside_deg: [0.0; 3], program_deg: [0.0; 3], named: [false; 3], stand: Stand::AsPositioned }
-    }
-}
-
-impl Directions {
-    pub(crate) fn aside_rad(&self) -> Vector {
-        self.aside_deg.map(f64::to_radians).into()
-    }
-
-    fn output_deg(&self) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.program_deg[axis] + self.aside_deg[axis])
-    }
-
-    fn is_aside(&self) -> bool {
-        self.aside_deg != [0.0; 3]
-    }
-
-    /// The linear axes go where the tool may point elsewhere.
-    fn go_elsewhere(&mut self) {
-        if self.stand == Stand::Reached {
-            self.stand = Stand::AsPositioned;
-        }
-    }
-}
 
 /// Words that turn rotary axes, and where they then stand, degrees.
 struct Turned {
@@ -83,7 +32,13 @@ impl Block {
     /// The word of a rotary axis nearest to where it shall stand, and where it then stands, degrees.
     ///
     /// * `own_deg` – where the block's own word would bring it; `None` without one that may stay
-    fn turn(&self, axis: usize, wanted_deg: f64, stands_deg: f64, own_deg: Option<f64>) -> (Goal, f64) {
+    pub(crate) fn turn(
+        &self,
+        axis: usize,
+        wanted_deg: f64,
+        stands_deg: f64,
+        own_deg: Option<f64>,
+    ) -> (Goal, f64) {
         let step = self.rotary_step[axis].max(1);
         let per_degree = self.per_degree(axis);
         let half_deg = 0.5 * step as f64 / per_degree * (1.0 + 1e-9);
@@ -99,7 +54,7 @@ impl Block {
     }
 
     /// Half of the output step of a rotary axis and what rounding adds, rad.
-    fn half_turn_step_rad(&self, axis: usize) -> f64 {
+    pub(crate) fn half_turn_step_rad(&self, axis: usize) -> f64 {
         (0.51 * self.rotary_step[axis].max(1) as f64 / self.per_degree(axis)).to_radians()
     }
 }
@@ -169,7 +124,7 @@ impl<'m> Corrector<'m> {
     /// Largest angle of the tool's real direction from the ideal one along a feed as it is programmed, at both ends and in
     /// the middle, rad.
     pub(crate) fn leans_rad(&self, feed: &Feed, block: &Block) -> f64 {
-        let whole = curve_of(feed);
+        let whole = Curve::of(feed);
         let state = Command {
             rotary_rad: feed.end.rotary_deg.map(f64::to_radians).into(),
             tool_mm: block.tool_mm.into(),
@@ -201,7 +156,7 @@ impl<'m> Corrector<'m> {
     /// Where the rotary axes have to stand at a programmed place.
     ///
     /// Beyond the volume, where the correction of its nearest point is taken, that point's direction is.
-    fn aim_at(&self, target: &Command, limits: &Singularity) -> Result<Aim, CorrectionError> {
+    pub(crate) fn aim_at(&self, target: &Command, limits: &Singularity) -> Result<Aim, CorrectionError> {
         match aim(self.model, target, limits) {
             Err(error) if error.is_outside() && self.options.outside == Outside::Clamp => {
                 let linear_mm = self.model.volume().nearest(&target.linear_mm);
@@ -279,7 +234,7 @@ impl<'m> Corrector<'m> {
     }
 
     /// Where a block's own rotary word would bring its axis, which the program brings to `end_deg`.
-    fn own_deg(&self, block: &Block, axis: usize, end_deg: f64) -> f64 {
+    pub(crate) fn own_deg(&self, block: &Block, axis: usize, end_deg: f64) -> f64 {
         if block.rotary_increments() { end_deg + self.directions.aside_deg[axis] } else { end_deg }
     }
 
@@ -306,7 +261,7 @@ impl<'m> Corrector<'m> {
 
     /// A turn at the start of a motion that points the tool where it shall, put before it: where rotary axes were
     /// positioned one after the other, or elsewhere.
-    fn lead_to(
+    pub(crate) fn lead_to(
         &mut self,
         to_rad: &Vector,
         start: &Position,
@@ -351,7 +306,7 @@ impl<'m> Corrector<'m> {
         &mut self,
         whole: &Curve,
         start: &Position,
-        may_lead: bool,
+        division: Division,
         block: &Block,
         limits: &Singularity,
     ) -> Result<Directed, CorrectionError> {
@@ -376,7 +331,7 @@ impl<'m> Corrector<'m> {
             self.directions.stand = Stand::Held;
             return Ok(held(as_it_stands));
         };
-        if may_lead {
+        if division == Division::Any {
             self.lead_to(&to_rad, start, block, whole.length_mm())?;
         }
         match self.leans_standing(whole, &state, allowed_rad) {
@@ -398,9 +353,8 @@ impl<'m> Corrector<'m> {
         block: &Block,
         limits: &Singularity,
     ) -> Result<Corrected, CorrectionError> {
-        let whole = curve_of(feed);
-        let may_lead = feed.division == Division::Any;
-        let directed = self.point_for(&whole, &feed.start, may_lead, block, limits)?;
+        let whole = Curve::of(feed);
+        let directed = self.point_for(&whole, &feed.start, feed.division, block, limits)?;
         let words = self.standing_words(block, feed.end.rotary_deg);
         let led = self.lead.is_some();
         let mut corrected = self.correct_aside(motion, block)?;
@@ -423,7 +377,7 @@ impl<'m> Corrector<'m> {
         let at_r = hole.at_r.linear_mm;
         let mut words = self.turn_alone(at_r.map(Some), rotary_deg, Mover::RotaryWords, block, limits)?;
         let whole = Curve::Line(at_r.into(), hole.at(hole.bottom_mm).linear_mm.into());
-        let directed = self.point_for(&whole, &hole.at_r, false, block, limits)?;
+        let directed = self.point_for(&whole, &hole.at_r, Division::One, block, limits)?;
         if words.is_none() {
             words = self.standing_words(block, rotary_deg);
         }
@@ -438,121 +392,11 @@ impl<'m> Corrector<'m> {
         self.directions.program_deg = rotary_deg;
         Ok(corrected)
     }
-
-    /// A feed on whose way rotary axes turn.
-    fn turn_directed(
-        &mut self,
-        motion: &Motion,
-        feed: &Feed,
-        block: &Block,
-        limits: &Singularity,
-    ) -> Result<Corrected, CorrectionError> {
-        if self.directions.stand == Stand::AsPositioned {
-            let start = Curve::Line(feed.start.linear_mm.into(), feed.start.linear_mm.into());
-            let state = self.state(block, feed.start.rotary_deg);
-            let allowed_rad = self.options.orientation_rad - GUARD_RAD;
-            self.directions.stand = if let Leans::Within(_) = self.leans_standing(&start, &state, allowed_rad)
-            {
-                Stand::Reached
-            } else {
-                match self.aim_at(&Command { linear_mm: start.at(0.0), ..state }, limits)? {
-                    Aim::At(to_rad) => {
-                        self.lead_to(&to_rad, &feed.start, block, curve_of(feed).length_mm())?;
-                        Stand::Reached
-                    }
-                    Aim::Held(_) => Stand::Held,
-                }
-            };
-        }
-        self.correct_plain(motion, block)
-    }
-
-    /// How the rotary axes stand where a feed begins on whose way they turn; `None` where directions are not corrected.
-    pub(crate) fn standing_at(&self, feed: &Feed) -> Option<Standing> {
-        let Orientation::Full(limits) = self.options.orientation else { return None };
-        let output_deg = [0, 1, 2].map(|axis| feed.start.rotary_deg[axis] + self.directions.aside_deg[axis]);
-        Some(Standing { output_deg, reached: self.directions.stand == Stand::Reached, limits })
-    }
-
-    /// Takes note of how they stand where it ends.
-    pub(crate) fn stand_at(&mut self, standing: &Standing, end_deg: [f64; 3]) {
-        self.directions.aside_deg = [0, 1, 2].map(|axis| standing.output_deg[axis] - end_deg[axis]);
-        self.directions.stand = if standing.reached { Stand::Reached } else { Stand::Held };
-    }
-
-    /// The words that point the tool where it shall at the end of a part, as far as the axes may be corrected on its way.
-    pub(crate) fn directed_words(
-        &self,
-        follow: &Follow<'_, '_>,
-        part: &Curve,
-        standing: &Standing,
-    ) -> Result<Option<RotaryWords>, CorrectionError> {
-        let (Some(mut turning), Some(programmed_rad), Some(from_rad)) =
-            (follow.turning, part.rotary_rad(1.0), part.rotary_rad(0.0))
-        else {
-            return Ok(None);
-        };
-        let block = follow.block;
-        let target = Command { linear_mm: part.at(1.0), rotary_rad: programmed_rad, ..follow.machine.state };
-        let (wanted_rad, mut reached) = match self.aim_at(&target, &standing.limits)? {
-            Aim::At(rad) => (rad - programmed_rad, true),
-            Aim::Held(_) => (Vector::zeros(), false),
-        };
-        let most_rad = standing.limits.most_share * (programmed_rad - from_rad).abs().sum();
-        let whole_end = Vector::from(turning.end_deg.map(f64::to_radians)) == programmed_rad;
-        let first = follow.corrected.pieces.is_empty();
-        let mut words = [Goal::Stays; 3];
-        let mut output_deg = standing.output_deg;
-        for axis in 0..3 {
-            let programmed_deg =
-                if whole_end { turning.end_deg[axis] } else { programmed_rad[axis].to_degrees() };
-            let stands_rad = (standing.output_deg[axis] - from_rad[axis].to_degrees()).to_radians();
-            let room = most_rad + block.half_turn_step_rad(axis);
-            let by_rad = wanted_rad[axis].clamp(stands_rad - room, stands_rad + room);
-            reached &= (by_rad - wanted_rad[axis]).abs() <= 1e-12;
-            let own = block.stated.rotary[axis];
-            if !own && !self.directions.named[axis] {
-                // No word of the program has said where it is.
-                continue;
-            }
-            let own_deg = match (own && whole_end, block.rotary_increments()) {
-                (false, _) => None,
-                (true, false) => Some(turning.end_deg[axis]),
-                (true, true) if first => Some(self.own_deg(block, axis, turning.end_deg[axis])),
-                (true, true) => None,
-            };
-            (words[axis], output_deg[axis]) =
-                block.turn(axis, aside(programmed_deg, by_rad), standing.output_deg[axis], own_deg);
-        }
-        turning.directed = Some(Standing { output_deg, reached, ..*standing });
-        let end_rad = Vector::from_fn(|axis, _| {
-            let programmed_deg = turning.end_deg[axis];
-            // What stays at the programmed angle has its bits.
-            if output_deg[axis] == programmed_deg && whole_end {
-                programmed_rad[axis]
-            } else {
-                output_deg[axis].to_radians()
-            }
-        });
-        Ok(Some(RotaryWords { words, end_rad, turning, reached }))
-    }
 }
 
 /// An angle with its correction, degrees: the same bits without one.
-fn aside(programmed_deg: f64, by_rad: f64) -> f64 {
+pub(crate) fn aside(programmed_deg: f64, by_rad: f64) -> f64 {
     if by_rad == 0.0 { programmed_deg } else { programmed_deg + by_rad.to_degrees() }
-}
-
-/// A feed's geometry.
-fn curve_of(feed: &Feed) -> Curve {
-    let [from, to] = [feed.start, feed.end];
-    if from.rotary_deg != to.rotary_deg && matches!(feed.shape, Shape::Line) {
-        return Curve::Turn {
-            ends: [from, to].map(|place| place.linear_mm.into()),
-            rotary_rad: [from, to].map(|place| place.rotary_deg.map(f64::to_radians).into()),
-        };
-    }
-    Curve::new(from.linear_mm.into(), to.linear_mm.into(), &feed.shape)
 }
 
 /// Puts the rotary words of a block into the first piece that stands for it; the block itself where none does.

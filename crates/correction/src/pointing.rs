@@ -108,16 +108,13 @@ impl Corrector<'_> {
 
     /// What is proven of the direction on a piece.
     ///
-    /// * `may_lean` – near a singularity, where the tool points as well as it may; what it is off by then is looked at, not
-    ///   proven
-    ///
     /// # Errors
     /// [`CorrectionError::Leans`] where splitting does not help.
     pub(crate) fn piece_leans(
         &self,
         pair: &Pair<'_>,
         machine: &Machine<'_>,
-        may_lean: bool,
+        demand: Demand,
     ) -> Result<Pointing, CorrectionError> {
         let orientation_rad = self.options.orientation_rad;
         let at = |s: f64| {
@@ -140,10 +137,12 @@ impl Corrector<'_> {
         match proven(at, bound, orientation_rad - GUARD_RAD) {
             Leans::Within(rad) => Ok(Pointing::Holds(directed(rad, false))),
             // A short way at a time, so that no more of a motion leans than has to.
-            Leans::Beyond { rad, .. } if may_lean && pair.wanted.turned_rad() > HELD_RAD => {
+            Leans::Beyond { rad, .. }
+                if demand == Demand::AsNearAsMayBe && pair.wanted.turned_rad() > HELD_RAD =>
+            {
                 Ok(Pointing::Leans { s: 0.5, rad })
             }
-            Leans::Beyond { .. } if may_lean => {
+            Leans::Beyond { .. } if demand == Demand::AsNearAsMayBe => {
                 let places = [0.0, 0.25, 0.5, 0.75, 1.0].map(|s| at(s).unwrap_or(f64::INFINITY));
                 Ok(Pointing::Holds(directed(places.into_iter().fold(0.0, f64::max), true)))
             }
@@ -153,6 +152,15 @@ impl Corrector<'_> {
             }
         }
     }
+}
+
+/// What is asked of the direction on a piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Demand {
+    /// It is proven.
+    Proven,
+    /// Near a singularity the tool points as well as it may: what it is off by is looked at, not proven.
+    AsNearAsMayBe,
 }
 
 /// What became of the direction on a piece.

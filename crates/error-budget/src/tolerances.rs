@@ -105,8 +105,15 @@ pub fn equal_influence(
     };
     let mut aim_mm = target_mm;
     loop {
-        let proportional = shares.iter().all(|share| share.is_proportional_to(aim_mm));
-        let influence_mm = influence(|c| figure_of(c).0, proportional, aim_mm)?;
+        if aim_mm <= 0.0 {
+            return None;
+        }
+        // Below the aim by what rounding may add.
+        let below_mm = aim_mm * (1.0 - 1e-12);
+        let influence_mm = match shares.iter().all(|share| share.is_proportional_to(aim_mm)) {
+            true => below_mm * (below_mm / figure_of(below_mm).0),
+            false => influence(|c| figure_of(c).0, below_mm)?,
+        };
         let (figure_mm, at) = figure_of(influence_mm);
         let worst = worst_case(&field.scaled(&factors(influence_mm)));
         let whole_model_mm = whole_model(influence_mm, at, &worst);
@@ -150,15 +157,7 @@ impl Share {
 
 /// The influence whose figure is the aim, not above it. The figure grows with the influence, since a length is convex, and is at
 /// least the influence, unless all factors are at their limits.
-fn influence(figure_mm: impl Fn(f64) -> f64, proportional: bool, aim_mm: f64) -> Option<f64> {
-    if aim_mm <= 0.0 {
-        return None;
-    }
-    // Below the aim by what rounding may add.
-    let aim_mm = aim_mm * (1.0 - 1e-12);
-    if proportional {
-        return Some(aim_mm * (aim_mm / figure_mm(aim_mm)));
-    }
+fn influence(figure_mm: impl Fn(f64) -> f64, aim_mm: f64) -> Option<f64> {
     let (mut low, mut high) = (0.0, aim_mm);
     let (mut below, mut above) = (figure_mm(low) - aim_mm, figure_mm(high) - aim_mm);
     if below > 0.0 {

@@ -1,7 +1,7 @@
 //! Deliberately blind plans, one for each alias.
 
 use crate::alias::Alias;
-use crate::design::{Block, Columns, Layout, Recorder, axis_line, record};
+use crate::design::{Block, Columns, Layout, Pitch, Recorder, Ways, axis_line, record};
 use crate::dice::Dice;
 use crate::machine::Machine;
 use crate::row::Sight;
@@ -76,8 +76,8 @@ fn blind(plan: &BlindPlan, machine: &Machine, dice: &mut Dice) -> Layout {
     for (k, (axis, offset)) in plan.lines.iter().enumerate() {
         // Not where a run begins: its offset would take the change.
         let load = if 3 * k >= plan.lines.len() { plan.late_load } else { 0.0 };
-        let targets = axis_line(dice, machine, *axis, *offset, 11, true);
-        blocks.push(Block { targets, tool: plan.tool, feed: plan.feed, load, repeats: 3, both_ways: true });
+        let targets = axis_line(dice, machine, *axis, *offset, 11, Pitch::Even);
+        blocks.push(Block { targets, tool: plan.tool, feed: plan.feed, load, repeats: 3, ways: Ways::Both });
     }
     let recorder = Recorder::new(dice, Sight::Components(plan.seen));
     let mut layout = record(recorder, &blocks, plan.runs, Columns::ALL, dice);

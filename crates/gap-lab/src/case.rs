@@ -12,7 +12,7 @@ use crate::machine::{Contribution, Machine};
 use crate::matrix::{carry, shift, tilt, times};
 use crate::noise::{NoiseKind, draw};
 use crate::outside::Outside;
-use crate::plans::{hold_out, lay_out};
+use crate::plans::{Runs, hold_out, lay_out};
 use crate::row::{Row, Sight};
 use crate::shape::{Bend, Withheld, form};
 use crate::textbook::{variants, visible};
@@ -121,6 +121,15 @@ struct Attempt {
 /// No withheld effect displaces the tip by more, mm: what is larger is seen without instruments. (A knock between two
 /// runs whose offsets are free needs 100 mm to show at all.)
 const LARGEST_MM: f64 = 1.0;
+/// What is wished of a case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wish {
+    /// The question that its kind asks, and no two effects much alike.
+    Clean,
+    /// One that shows its effects.
+    Any,
+}
+
 /// Attempts before the wish for a clean case is given up.
 const STRICT_ATTEMPTS: u64 = 40;
 
@@ -148,7 +157,7 @@ impl CaseSpec {
     }
 
     fn attempt(&self, attempt: u64, dice: &mut Dice) -> Option<Attempt> {
-        let strict = attempt < STRICT_ATTEMPTS;
+        let wish = if attempt < STRICT_ATTEMPTS { Wish::Clean } else { Wish::Any };
         let plan = match (attempt as usize) < self.plans.len() {
             true => self.plans[attempt as usize],
             false if self.kind == Kind::Single || self.kind == Kind::Multiple => Plan::Good,
@@ -159,7 +168,10 @@ impl CaseSpec {
             // Some names have no life of their own once they are out of the library: take another.
             effects = vec![dice.pick(&Effect::linear())];
         }
-        let mut machine = Machine::random(dice, dice_known(self, attempt));
+        let mut machine = Machine::random(dice);
+        if dice_known(self, attempt) {
+            machine = machine.with_known_errors(dice);
+        }
         if let Plan::Aliased(..) = plan {
             machine.order = [0, 1, 2];
         }
@@ -168,8 +180,11 @@ impl CaseSpec {
             machine.centre = Some(middle);
             machine.tables = [None, None, None];
         }
-        let long_runs = effects.iter().any(|e| e.needs_long_runs()) || dice.chance(0.3);
-        let mut layout = lay_out(plan, &machine, long_runs, dice);
+        let runs = match effects.iter().any(|e| e.needs_long_runs()) || dice.chance(0.3) {
+            true => Runs::Long,
+            false => Runs::OfOneLine,
+        };
+        let mut layout = lay_out(plan, &machine, runs, dice);
         if self.observation == Observation::Position {
             layout.columns.tool = false;
             layout.rows.iter_mut().for_each(|row| row.tool = [0.0; 3]);
@@ -189,12 +204,12 @@ impl CaseSpec {
         let sigma = dice.scale(0.5, 2.0);
         self.scaled(
             Attempt { plan, machine, layout, withheld, effects: Vec::new(), gap: Vec::new(), sigma },
-            strict,
+            wish,
         )
     }
 
     /// Gives every withheld effect its size and looks whether the case is what it should be.
-    fn scaled(&self, mut a: Attempt, strict: bool) -> Option<Attempt> {
+    fn scaled(&self, mut a: Attempt, wish: Wish) -> Option<Attempt> {
         let view = View::new(&a.machine, &a.layout);
         let library = if a.withheld.is_empty() { Vec::new() } else { view.library() };
         let rows = a.layout.rows.len() as f64;
@@ -228,7 +243,7 @@ impl CaseSpec {
                 (Some(effect), _) => effect.id(),
                 (None, outside) => outside.map_or("outside", Outside::word).to_owned(),
             };
-            if strict && !self.wanted(&library, &clean, withheld.effect, &rivals) {
+            if wish == Wish::Clean && !self.wanted(&library, &clean, withheld.effect, &rivals) {
                 return None;
             }
             a.effects.push(TrueEffect {
@@ -241,7 +256,8 @@ impl CaseSpec {
             cleaned.push(clean.into_iter().map(|v| v * gain).collect());
         }
         let close = |u: &[f64], v: &[f64]| dot(u, v).abs() > 0.7 * (dot(u, u) * dot(v, v)).sqrt();
-        if strict && (0..cleaned.len()).any(|i| (0..i).any(|j| close(&cleaned[i], &cleaned[j]))) {
+        if wish == Wish::Clean && (0..cleaned.len()).any(|i| (0..i).any(|j| close(&cleaned[i], &cleaned[j])))
+        {
             return None;
         }
         let size = a.layout.rows.iter().map(|r| r.seen([0.0; 3]).len()).sum();

@@ -118,29 +118,12 @@ fn spec(kind: Kind, turn: usize, index: u64, seed: u64) -> CaseSpec {
         }
         Kind::Removed => {}
         Kind::BallBar => {
-            let axis = turn % 3;
-            let pair = [(0, 1), (0, 2), (1, 2)][axis];
-            let family = [
-                Effect::Squareness(pair.0, pair.1),
-                Effect::Backlash(axis),
-                Effect::Scale(axis),
-                Effect::ServoLag(axis),
-                Effect::LostMotion((axis + 1) % 3, axis),
-                Effect::ServoMismatch(pair.0, pair.1),
-            ];
             spec.plans = vec![Plan::BallBar];
-            spec.effects = vec![family[turn / 3 % family.len()]];
+            spec.effects = vec![on_a_circle(turn)];
             spec.snr = vec![LADDER[1 + turn % 3]];
         }
         Kind::Magnitude => {
-            let family = [
-                Effect::Scale(turn % 3),
-                Effect::Squareness([0, 0, 1][turn % 3], [1, 2, 2][turn % 3]),
-                Effect::Straightness((turn + 1) % 3, turn % 3),
-                Effect::Backlash(turn % 3),
-                Effect::Load(turn % 3),
-            ];
-            spec.effects = vec![family[turn / 3 % family.len()]];
+            spec.effects = vec![by_its_size(turn)];
             spec.observation = Observation::Magnitude;
             spec.noise = NoiseKind::Plain;
         }
@@ -150,6 +133,34 @@ fn spec(kind: Kind, turn: usize, index: u64, seed: u64) -> CaseSpec {
         }
     }
     spec
+}
+
+/// An effect that a ball bar sees, in turn.
+fn on_a_circle(turn: usize) -> Effect {
+    let axis = turn % 3;
+    let (a, b) = [(0, 1), (0, 2), (1, 2)][axis];
+    let family = [
+        Effect::Squareness(a, b),
+        Effect::Backlash(axis),
+        Effect::Scale(axis),
+        Effect::ServoLag(axis),
+        Effect::LostMotion((axis + 1) % 3, axis),
+        Effect::ServoMismatch(a, b),
+    ];
+    family[turn / 3 % family.len()]
+}
+
+/// An effect that the size of the displacement shows, in turn.
+fn by_its_size(turn: usize) -> Effect {
+    let axis = turn % 3;
+    let family = [
+        Effect::Scale(axis),
+        Effect::Squareness([0, 0, 1][axis], [1, 2, 2][axis]),
+        Effect::Straightness((axis + 1) % 3, axis),
+        Effect::Backlash(axis),
+        Effect::Load(axis),
+    ];
+    family[turn / 3 % family.len()]
 }
 
 /// Cases whose noise is not what a fit takes for granted: in turn nulls and single effects, every kind of

@@ -173,7 +173,7 @@ mod tests {
     use crate::alias::Alias;
     use crate::design::Plan;
     use crate::dice::Dice;
-    use crate::plans::lay_out;
+    use crate::plans::{Runs, lay_out};
 
     fn unit(effect: Effect, machine: &Machine, layout: &Layout) -> Vec<f64> {
         let view = View::new(machine, layout);
@@ -183,8 +183,8 @@ mod tests {
 
     #[test]
     fn a_set_up_is_invisible_after_cleaning() {
-        let machine = Machine::random(&mut Dice::new(2, 0, 0), false);
-        let layout = lay_out(Plan::Good, &machine, false, &mut Dice::new(2, 0, 1));
+        let machine = Machine::random(&mut Dice::new(2, 0, 0));
+        let layout = lay_out(Plan::Good, &machine, Runs::OfOneLine, &mut Dice::new(2, 0, 1));
         let view = View::new(&machine, &layout);
         let moved = view.clean(|r| {
             let p = r.tip();
@@ -195,10 +195,10 @@ mod tests {
 
     #[test]
     fn one_feed_makes_lag_and_backlash_the_same_and_two_feeds_do_not() {
-        let machine = Machine::random(&mut Dice::new(2, 0, 0), false);
+        let machine = Machine::random(&mut Dice::new(2, 0, 0));
         let mut dice = Dice::new(2, 0, 1);
         let one = crate::blind::layout(Alias::LagOrBacklash, 0, &machine, &mut dice);
-        let two = lay_out(Plan::Good, &machine, false, &mut dice);
+        let two = lay_out(Plan::Good, &machine, Runs::OfOneLine, &mut dice);
         for (layout, same) in [(one, true), (two, false)] {
             let lag = unit(Effect::ServoLag(0), &machine, &layout);
             let library = View::new(&machine, &layout).library();
@@ -209,8 +209,8 @@ mod tests {
 
     #[test]
     fn a_name_is_expressed_by_its_own_columns() {
-        let machine = Machine::random(&mut Dice::new(3, 0, 0), false);
-        let layout = lay_out(Plan::Good, &machine, true, &mut Dice::new(3, 0, 1));
+        let machine = Machine::random(&mut Dice::new(3, 0, 0));
+        let layout = lay_out(Plan::Good, &machine, Runs::Long, &mut Dice::new(3, 0, 1));
         let library = View::new(&machine, &layout).library();
         for effect in [Effect::Scale(1), Effect::Squareness(0, 2), Effect::Load(2), Effect::LostMotion(1, 0)]
         {

@@ -78,7 +78,16 @@ pub(crate) struct Layout {
     pub(crate) span: f64,
 }
 
-/// A pass over the same targets, both ways, under the same conditions.
+/// Directions in which targets are passed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ways {
+    /// From the first to the last.
+    One,
+    /// And back.
+    Both,
+}
+
+/// Passes over the same targets under the same conditions.
 #[derive(Clone)]
 pub(crate) struct Block {
     pub(crate) targets: Vec<[f64; 3]>,
@@ -86,7 +95,7 @@ pub(crate) struct Block {
     pub(crate) feed: f64,
     pub(crate) load: f64,
     pub(crate) repeats: usize,
-    pub(crate) both_ways: bool,
+    pub(crate) ways: Ways,
 }
 
 /// Writes down rows in the order of time.
@@ -122,19 +131,16 @@ impl Recorder {
     pub(crate) fn block(&mut self, run: usize, block: &Block, dice: &mut Dice) {
         self.clock += 40.0;
         for repeat in 1..=block.repeats {
-            self.pass(run, block, repeat, false, dice);
-            if block.both_ways {
-                self.pass(run, block, repeat, true, dice);
+            self.pass(run, block, repeat, block.targets.clone(), dice);
+            if block.ways == Ways::Both {
+                self.pass(run, block, repeat, block.targets.iter().rev().copied().collect(), dice);
             }
         }
     }
 
-    fn pass(&mut self, run: usize, block: &Block, repeat: usize, backwards: bool, dice: &mut Dice) {
+    /// Reads the targets one after the other.
+    fn pass(&mut self, run: usize, block: &Block, repeat: usize, targets: Vec<[f64; 3]>, dice: &mut Dice) {
         let overrun = dice.between(4.0, 8.0);
-        let mut targets = block.targets.clone();
-        if backwards {
-            targets.reverse();
-        }
         let Some((first, last)) = targets.first().zip(targets.last()) else { return };
         let way = [0, 1, 2].map(|i| last[i] - first[i]);
         let length = (way[0] * way[0] + way[1] * way[1] + way[2] * way[2]).sqrt();
@@ -166,12 +172,20 @@ impl Recorder {
     }
 }
 
-/// Targets on the straight line between two points; inner ones are moved off the even pitch, as ISO 230-2
-/// asks for, so that an error periodic with the screw is seen. Equal components stay equal.
-fn targets(dice: &mut Dice, from: [f64; 3], to: [f64; 3], count: usize, even: bool) -> Vec<[f64; 3]> {
+/// How far apart targets on a line are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pitch {
+    /// All alike.
+    Even,
+    /// Inner ones are moved off the even pitch, as ISO 230-2 asks for, so that an error periodic with the screw is seen.
+    Uneven,
+}
+
+/// Targets on the straight line between two points. Equal components stay equal.
+fn targets(dice: &mut Dice, from: [f64; 3], to: [f64; 3], count: usize, pitch: Pitch) -> Vec<[f64; 3]> {
     (0..count)
         .map(|k| {
-            let inner = k > 0 && k + 1 < count && !even;
+            let inner = k > 0 && k + 1 < count && pitch == Pitch::Uneven;
             let off = if inner { dice.between(-0.35, 0.35) } else { 0.0 };
             let s = (k as f64 + off) / (count - 1) as f64;
             [0, 1, 2].map(|i| {
@@ -189,7 +203,7 @@ pub(crate) fn axis_line(
     axis: usize,
     offset: [f64; 2],
     count: usize,
-    even: bool,
+    pitch: Pitch,
 ) -> Vec<[f64; 3]> {
     let place = |a: usize, s: f64| machine.travel[a][0] + s * (machine.travel[a][1] - machine.travel[a][0]);
     let round = |v: f64| v.round();
@@ -200,7 +214,7 @@ pub(crate) fn axis_line(
     }
     from[axis] = round(place(axis, dice.between(0.02, 0.05)));
     to[axis] = round(place(axis, dice.between(0.95, 0.98)));
-    targets(dice, from, to, count, even)
+    targets(dice, from, to, count, pitch)
 }
 
 /// A 45° line in two or three axes, rising in each axis where `signs` is 1.
@@ -214,7 +228,7 @@ pub(crate) fn diagonal(dice: &mut Dice, machine: &Machine, signs: [f64; 3], coun
         from[a] = middle - signs[a] * (reach / 2.0).round();
         to[a] = middle + signs[a] * (reach / 2.0).round();
     }
-    targets(dice, from, to, count, false)
+    targets(dice, from, to, count, Pitch::Uneven)
 }
 
 /// Assigns blocks to runs and records them.

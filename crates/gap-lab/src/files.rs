@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use crate::AXES;
-use crate::design::Layout;
+use crate::design::{Columns, Layout};
 use crate::machine::Machine;
-use crate::row::Sight;
+use crate::row::{Row, Sight};
 use crate::truth::Truth;
 
 /// Which columns carry the reading.
@@ -78,6 +78,21 @@ pub(crate) fn tables(machine: &Machine) -> Vec<(String, String)> {
     files
 }
 
+/// A column of a measurement: its name, and its cell of a row and the tip that was read there, mm.
+type Column<'a> = (&'static str, Box<dyn Fn(&Row, &[f64; 3]) -> String + 'a>);
+
+fn column<'a>(name: &'static str, cell: impl Fn(&Row, &[f64; 3]) -> String + 'a) -> Column<'a> {
+    (name, Box::new(cell))
+}
+
+/// Three columns of one kind, by the axis.
+fn three<'a>(
+    names: [&'static str; 3],
+    cell: impl Fn(&Row, &[f64; 3], usize) -> String + Copy + 'a,
+) -> [Column<'a>; 3] {
+    [0, 1, 2].map(|axis| column(names[axis], move |row, read| cell(row, read, axis)))
+}
+
 /// Text of a measurement. `read_mm` is the measured tip at every row, `prefix` names its runs.
 pub(crate) fn measurement(
     machine: &Machine,
@@ -87,92 +102,92 @@ pub(crate) fn measurement(
     declared_um: Option<f64>,
     prefix: &str,
 ) -> String {
-    let shows = layout.columns;
-    let rotary = machine.centre.is_some();
-    let ball = layout.rows.iter().any(|r| matches!(r.sight, Sight::Ball(_)));
-    // A column that nobody measured is not there at all.
-    let measured =
-        [0, 1, 2].map(|i| layout.rows.iter().any(|r| matches!(r.sight, Sight::Components(mask) if mask[i])));
-    let mut header = vec!["run", "x_mm", "y_mm", "z_mm"];
-    if rotary {
-        header.push("c_deg");
+    let mut columns = vec![column("run", |row, _| format!("{prefix}{}", row.run))];
+    columns.extend(three(["x_mm", "y_mm", "z_mm"], |row, _, axis| format!("{:.4}", row.command[axis])));
+    if machine.centre.is_some() {
+        columns.push(column("c_deg", |row, _| format!("{:.3}", row.turn.to_degrees())));
     }
-    match observation {
-        _ if ball => header.extend(["length_mm", "bx_mm", "by_mm", "bz_mm"]),
-        Observation::Displacement => {
-            let names = ["dx_um", "dy_um", "dz_um"].into_iter().zip(measured);
-            header.extend(names.filter(|(_, measured)| *measured).map(|(name, _)| name));
-        }
-        Observation::Position => header.extend(["xm_mm", "ym_mm", "zm_mm"]),
-        Observation::Magnitude => header.push("d_um"),
+    columns.extend(readings(machine, layout, observation));
+    columns.extend(circumstances(layout.columns));
+    columns.push(column("repeat", |row, _| row.repeat.to_string()));
+    if let Some(u) = declared_um {
+        columns.push(column("u_um", move |_, _| format!("{u:.3}")));
     }
-    if shows.approach {
-        header.extend(["dir_x", "dir_y", "dir_z"]);
-    }
-    if shows.feed {
-        header.push("feed_mm_min");
-    }
-    if shows.tool {
-        header.extend(["tool_x_mm", "tool_y_mm", "tool_z_mm"]);
-    }
-    for (shown, name) in [(shows.load, "load_kg"), (shows.time, "time_s"), (shows.temperature, "temp_c")] {
-        if shown {
-            header.push(name);
-        }
-    }
-    header.push("repeat");
-    if declared_um.is_some() {
-        header.push("u_um");
-    }
-    let mut text = header.join(",");
+    let mut text = columns.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(",");
     text.push('\n');
     for (row, read) in layout.rows.iter().zip(read_mm) {
-        let mut words = vec![format!("{prefix}{}", row.run)];
-        words.extend(row.command.map(|v| format!("{v:.4}")));
-        if rotary {
-            words.push(format!("{:.3}", row.turn.to_degrees()));
-        }
-        let nominal = machine.nominal(row);
-        let off = [0, 1, 2].map(|i| (read[i] - nominal[i]) * 1e3);
-        match (row.sight, observation) {
-            (Sight::Ball(centre), _) => {
-                let square: f64 = (0..3).map(|i| (read[i] - centre[i]) * (read[i] - centre[i])).sum();
-                words.push(format!("{:.6}", square.sqrt()));
-                words.extend(centre.map(|v| format!("{v:.4}")));
-            }
-            (Sight::Components(mask), Observation::Displacement) => {
-                let shown = (0..3).filter(|i| measured[*i]);
-                words.extend(shown.map(|i| if mask[i] { format!("{:.3}", off[i]) } else { String::new() }));
-            }
-            (Sight::Components(_), Observation::Position) => words.extend(read.map(|v| format!("{v:.6}"))),
-            (Sight::Components(_), Observation::Magnitude) => {
-                words.push(format!("{:.3}", (off[0] * off[0] + off[1] * off[1] + off[2] * off[2]).sqrt()));
-            }
-        }
-        if shows.approach {
-            words.extend(row.approach.map(|v| format!("{v:.0}")));
-        }
-        if shows.feed {
-            words.push(format!("{:.0}", row.feed));
-        }
-        if shows.tool {
-            words.extend(row.tool.map(|v| format!("{v:.1}")));
-        }
-        for (shown, value) in
-            [(shows.load, row.load), (shows.time, row.time), (shows.temperature, row.temperature)]
-        {
-            if shown {
-                words.push(format!("{value:.2}"));
-            }
-        }
-        words.push(row.repeat.to_string());
-        if let Some(u) = declared_um {
-            words.push(format!("{u:.3}"));
-        }
-        text.push_str(&words.join(","));
+        let cells: Vec<String> = columns.iter().map(|(_, cell)| cell(row, read)).collect();
+        text.push_str(&cells.join(","));
         text.push('\n');
     }
     text
+}
+
+/// What was read. A column that nobody measured is not there at all.
+fn readings<'a>(machine: &'a Machine, layout: &Layout, observation: Observation) -> Vec<Column<'a>> {
+    let off_um = |row: &Row, read: &[f64; 3]| {
+        let nominal = machine.nominal(row);
+        [0, 1, 2].map(|i| (read[i] - nominal[i]) * 1e3)
+    };
+    let centre = |row: &Row| match row.sight {
+        Sight::Ball(centre) => centre,
+        Sight::Components(_) => [0.0; 3],
+    };
+    if layout.rows.iter().any(|row| matches!(row.sight, Sight::Ball(_))) {
+        let length = column("length_mm", move |row, read| {
+            let centre = centre(row);
+            let square: f64 = (0..3).map(|i| (read[i] - centre[i]) * (read[i] - centre[i])).sum();
+            format!("{:.6}", square.sqrt())
+        });
+        let station =
+            three(["bx_mm", "by_mm", "bz_mm"], move |row, _, axis| format!("{:.4}", centre(row)[axis]));
+        return [length].into_iter().chain(station).collect();
+    }
+    match observation {
+        Observation::Displacement => {
+            let sees = |row: &Row, axis: usize| matches!(row.sight, Sight::Components(mask) if mask[axis]);
+            let cell = move |row: &Row, read: &[f64; 3], axis: usize| {
+                if sees(row, axis) { format!("{:.3}", off_um(row, read)[axis]) } else { String::new() }
+            };
+            let all = three(["dx_um", "dy_um", "dz_um"], cell).into_iter().enumerate();
+            all.filter(|(axis, _)| layout.rows.iter().any(|row| sees(row, *axis)))
+                .map(|(_, own)| own)
+                .collect()
+        }
+        Observation::Position => {
+            three(["xm_mm", "ym_mm", "zm_mm"], |_, read, axis| format!("{:.6}", read[axis])).into()
+        }
+        Observation::Magnitude => vec![column("d_um", move |row, read| {
+            let off = off_um(row, read);
+            format!("{:.3}", (off[0] * off[0] + off[1] * off[1] + off[2] * off[2]).sqrt())
+        })],
+    }
+}
+
+/// What else is known of a row.
+fn circumstances(shows: Columns) -> Vec<Column<'static>> {
+    let mut columns = Vec::new();
+    if shows.approach {
+        columns
+            .extend(three(["dir_x", "dir_y", "dir_z"], |row, _, axis| format!("{:.0}", row.approach[axis])));
+    }
+    if shows.feed {
+        columns.push(column("feed_mm_min", |row, _| format!("{:.0}", row.feed)));
+    }
+    if shows.tool {
+        let names = ["tool_x_mm", "tool_y_mm", "tool_z_mm"];
+        columns.extend(three(names, |row, _, axis| format!("{:.1}", row.tool[axis])));
+    }
+    if shows.load {
+        columns.push(column("load_kg", |row, _| format!("{:.2}", row.load)));
+    }
+    if shows.time {
+        columns.push(column("time_s", |row, _| format!("{:.2}", row.time)));
+    }
+    if shows.temperature {
+        columns.push(column("temp_c", |row, _| format!("{:.2}", row.temperature)));
+    }
+    columns
 }
 
 /// Text of the truth, JSON.

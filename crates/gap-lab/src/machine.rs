@@ -78,8 +78,8 @@ pub(crate) struct Machine {
 }
 
 impl Machine {
-    /// A machine of random size and chain; `known` of them with tables of their own.
-    pub(crate) fn random(dice: &mut Dice, known: bool) -> Self {
+    /// A machine of random size and chain, of which nothing is known.
+    pub(crate) fn random(dice: &mut Dice) -> Self {
         let order = dice.pick(&[[0, 1, 2], [1, 0, 2], [0, 1, 2], [1, 0, 2], [2, 0, 1], [0, 2, 1]]);
         let round = |v: f64| (v / 10.0).round() * 10.0;
         let sizes = [dice.between(400.0, 900.0), dice.between(300.0, 600.0), dice.between(250.0, 500.0)];
@@ -88,19 +88,21 @@ impl Machine {
             let low = if starts[a] < 0.0 { -round(sizes[a]) } else { 0.0 };
             [low, low + round(sizes[a])]
         });
-        let mut machine = Self {
+        Self {
             order,
             bed_before: dice.below(4),
             travel,
             tables: [None, None, None],
             squareness_urad: [0.0; 3],
             centre: None,
-        };
-        if known {
-            machine.tables = [0, 1, 2].map(|a| Some(known_table(dice, machine.travel[a], a)));
-            machine.squareness_urad = [0; 3].map(|_| (dice.between(-30.0, 30.0) * 10.0).round() / 10.0);
         }
-        machine
+    }
+
+    /// The same with tables and squarenesses that are known.
+    pub(crate) fn with_known_errors(mut self, dice: &mut Dice) -> Self {
+        self.tables = [0, 1, 2].map(|a| Some(known_table(dice, self.travel[a], a)));
+        self.squareness_urad = [0; 3].map(|_| (dice.between(-30.0, 30.0) * 10.0).round() / 10.0);
+        self
     }
 
     /// Position of the command within the travel, 0 … 1.

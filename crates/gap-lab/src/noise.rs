@@ -170,11 +170,11 @@ mod tests {
     use super::*;
     use crate::design::Plan;
     use crate::machine::Machine;
-    use crate::plans::lay_out;
+    use crate::plans::{Runs, lay_out};
 
     fn noise(kind: NoiseKind) -> Vec<f64> {
-        let machine = Machine::random(&mut Dice::new(1, 0, 0), false);
-        let layout = lay_out(Plan::Good, &machine, false, &mut Dice::new(1, 0, 1));
+        let machine = Machine::random(&mut Dice::new(1, 0, 0));
+        let layout = lay_out(Plan::Good, &machine, Runs::OfOneLine, &mut Dice::new(1, 0, 1));
         draw(kind, 0.0, &layout, &mut Dice::new(1, 0, 2)).into_iter().flatten().collect()
     }
 

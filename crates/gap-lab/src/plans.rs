@@ -1,6 +1,8 @@
 //! The plans, one function each.
 
-use crate::design::{ALL_SEEN, Block, Columns, Layout, OFFSETS, Plan, Recorder, axis_line, diagonal, record};
+use crate::design::{
+    ALL_SEEN, Block, Columns, Layout, OFFSETS, Pitch, Plan, Recorder, Ways, axis_line, diagonal, record,
+};
 use crate::dice::Dice;
 use crate::machine::Machine;
 use crate::row::{Row, Sight};
@@ -19,21 +21,40 @@ fn feeds(dice: &mut Dice) -> [f64; 3] {
     [dice.pick(&[500.0, 800.0]), dice.pick(&[4000.0, 5000.0]), dice.pick(&[1500.0, 2000.0])]
 }
 
-/// Makes the rows of a plan. With `long_runs` a run spans many lines, else it is one line.
-pub(crate) fn lay_out(plan: Plan, machine: &Machine, long_runs: bool, dice: &mut Dice) -> Layout {
+/// What a run spans.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Runs {
+    /// Many lines.
+    Long,
+    /// One line each.
+    OfOneLine,
+}
+
+impl Runs {
+    /// How many there are: few long ones, or one for each of the lines.
+    fn count(self, long: usize, lines: usize) -> usize {
+        match self {
+            Self::Long => long,
+            Self::OfOneLine => lines,
+        }
+    }
+}
+
+/// Makes the rows of a plan.
+pub(crate) fn lay_out(plan: Plan, machine: &Machine, runs: Runs, dice: &mut Dice) -> Layout {
     match plan {
-        Plan::Good => good(machine, long_runs, dice),
+        Plan::Good => good(machine, runs, dice),
         Plan::Sparse => {
             let (tools, feeds) = (tools(dice), feeds(dice));
             let setups = [(tools[0], feeds[0]), (tools[1], feeds[1]), (tools[0], feeds[1])];
-            few(machine, &[0.5], &setups, true, 2, if long_runs { 2 } else { 9 }, dice)
+            few(machine, &[0.5], &setups, Ways::Both, 2, runs.count(2, 9), dice)
         }
         Plan::FewLines => {
             let (tools, feeds) = (tools(dice), feeds(dice));
-            few(machine, &[0.5], &[(tools[0], feeds[0])], true, 5, if long_runs { 2 } else { 3 }, dice)
+            few(machine, &[0.5], &[(tools[0], feeds[0])], Ways::Both, 5, runs.count(2, 3), dice)
         }
         Plan::Interferometer => {
-            let mut layout = lay_out(Plan::FewLines, machine, long_runs, dice);
+            let mut layout = lay_out(Plan::FewLines, machine, runs, dice);
             for row in &mut layout.rows {
                 row.sight = Sight::Components(row.approach.map(|a| a != 0.0));
             }
@@ -41,7 +62,7 @@ pub(crate) fn lay_out(plan: Plan, machine: &Machine, long_runs: bool, dice: &mut
         }
         Plan::OneWay => {
             let (tools, feeds) = (tools(dice), feeds(dice));
-            few(machine, &[0.1, 0.9], &[(tools[0], feeds[0])], false, 5, if long_runs { 2 } else { 6 }, dice)
+            few(machine, &[0.1, 0.9], &[(tools[0], feeds[0])], Ways::One, 5, runs.count(2, 6), dice)
         }
         Plan::Plane => plane(machine, dice),
         Plan::Points => points(machine, dice),
@@ -51,7 +72,7 @@ pub(crate) fn lay_out(plan: Plan, machine: &Machine, long_runs: bool, dice: &mut
     }
 }
 
-fn good(machine: &Machine, long_runs: bool, dice: &mut Dice) -> Layout {
+fn good(machine: &Machine, runs: Runs, dice: &mut Dice) -> Layout {
     let (tools, feeds) = (tools(dice), feeds(dice));
     let lines = dice.pick(&[3, 4, 4]);
     let count = dice.pick(&[7, 9, 11]);
@@ -61,7 +82,7 @@ fn good(machine: &Machine, long_runs: bool, dice: &mut Dice) -> Layout {
         let mut offsets = OFFSETS;
         dice.shuffle(&mut offsets);
         for (k, offset) in offsets.into_iter().take(lines).enumerate() {
-            let targets = axis_line(dice, machine, axis, offset, count, false);
+            let targets = axis_line(dice, machine, axis, offset, count, Pitch::Uneven);
             for half in 0..2 {
                 blocks.push(Block {
                     targets: targets.clone(),
@@ -69,7 +90,7 @@ fn good(machine: &Machine, long_runs: bool, dice: &mut Dice) -> Layout {
                     feed: feeds[(k + 2 * half) % 3],
                     load: dice.pick(&[0.0, 0.0, 60.0, 150.0]),
                     repeats,
-                    both_ways: true,
+                    ways: Ways::Both,
                 });
             }
         }
@@ -93,12 +114,12 @@ fn good(machine: &Machine, long_runs: bool, dice: &mut Dice) -> Layout {
                 feed,
                 load,
                 repeats,
-                both_ways: true,
+                ways: Ways::Both,
             });
         }
     }
     dice.shuffle(&mut blocks);
-    let runs = if long_runs { 5 } else { blocks.len() };
+    let runs = runs.count(5, blocks.len());
     let recorder = Recorder::new(dice, ALL_SEEN);
     record(recorder, &blocks, runs, Columns::ALL, dice)
 }
@@ -108,7 +129,7 @@ fn few(
     machine: &Machine,
     places: &[f64],
     setups: &[([f64; 3], f64)],
-    both_ways: bool,
+    ways: Ways,
     repeats: usize,
     runs: usize,
     dice: &mut Dice,
@@ -117,11 +138,11 @@ fn few(
     let mut blocks = Vec::new();
     for axis in 0..3 {
         for place in places {
-            let targets = axis_line(dice, machine, axis, [*place, *place], count, false);
+            let targets = axis_line(dice, machine, axis, [*place, *place], count, Pitch::Uneven);
             for (tool, feed) in setups {
                 let (targets, load) =
                     (targets.clone(), if blocks.len().is_multiple_of(2) { 0.0 } else { 100.0 });
-                blocks.push(Block { targets, tool: *tool, feed: *feed, load, repeats, both_ways });
+                blocks.push(Block { targets, tool: *tool, feed: *feed, load, repeats, ways });
             }
         }
     }
@@ -139,9 +160,9 @@ fn plane(machine: &Machine, dice: &mut Dice) -> Layout {
     let mut blocks = Vec::new();
     for k in 0..lines {
         let across = 0.05 + 0.9 * f64::from(k) / f64::from(lines - 1);
-        let targets = axis_line(dice, machine, 0, [across, height], 9, false);
+        let targets = axis_line(dice, machine, 0, [across, height], 9, Pitch::Uneven);
         let (tool, feed) = (tools[0], feeds[0]);
-        blocks.push(Block { targets, tool, feed, load: 0.0, repeats: 2, both_ways: true });
+        blocks.push(Block { targets, tool, feed, load: 0.0, repeats: 2, ways: Ways::Both });
     }
     let recorder = Recorder::new(dice, ALL_SEEN);
     record(recorder, &blocks, 2, Columns { load: false, ..Columns::ALL }, dice)
@@ -181,11 +202,11 @@ fn points(machine: &Machine, dice: &mut Dice) -> Layout {
 /// over the same time. Three runs of its own.
 pub(crate) fn hold_out(plan: Plan, machine: &Machine, measured: &Layout, dice: &mut Dice) -> Layout {
     if matches!(plan, Plan::BallBar | Plan::Turntable) {
-        return lay_out(plan, machine, true, dice);
+        return lay_out(plan, machine, Runs::Long, dice);
     }
     if matches!(plan, Plan::Aliased(..)) {
         // Blind in the same way: what the measurement could not tell apart must not matter here either.
-        let mut layout = lay_out(plan, machine, true, dice);
+        let mut layout = lay_out(plan, machine, Runs::Long, dice);
         for (row, twin) in layout.rows.iter_mut().zip(&measured.rows) {
             (row.tool, row.feed, row.load) = (twin.tool, twin.feed, twin.load);
             (row.time, row.temperature) = (twin.time, twin.temperature);
@@ -202,17 +223,10 @@ pub(crate) fn hold_out(plan: Plan, machine: &Machine, measured: &Layout, dice: &
         let targets = if plan == Plan::Good && k >= 7 {
             diagonal(dice, machine, [[1.0, 1.0, 0.0], [0.0, 1.0, 1.0]][k - 7], 9)
         } else {
-            axis_line(dice, machine, axis, offset, 9, false)
+            axis_line(dice, machine, axis, offset, 9, Pitch::Uneven)
         };
-        let both_ways = plan != Plan::OneWay;
-        blocks.push(Block {
-            targets,
-            tool: from.tool,
-            feed: from.feed,
-            load: from.load,
-            repeats: 1,
-            both_ways,
-        });
+        let ways = if plan == Plan::OneWay { Ways::One } else { Ways::Both };
+        blocks.push(Block { targets, tool: from.tool, feed: from.feed, load: from.load, repeats: 1, ways });
     }
     // The same stretch of time, weather and all: the instrument came back between the runs.
     recorder.weather = [0.0; 5];
@@ -325,12 +339,12 @@ mod tests {
     use super::*;
 
     fn machine() -> Machine {
-        Machine::random(&mut Dice::new(1, 1, 1), false)
+        Machine::random(&mut Dice::new(1, 1, 1))
     }
 
     #[test]
     fn a_good_plan_varies_everything_and_is_neither_small_nor_huge() {
-        let layout = lay_out(Plan::Good, &machine(), false, &mut Dice::new(3, 0, 0));
+        let layout = lay_out(Plan::Good, &machine(), Runs::OfOneLine, &mut Dice::new(3, 0, 0));
         assert!((300..=3000).contains(&layout.rows.len()), "{}", layout.rows.len());
         let count = |mut values: Vec<i64>| {
             values.sort_unstable();
@@ -352,7 +366,7 @@ mod tests {
 
     #[test]
     fn ball_bar_circles_keep_their_radius_and_know_their_direction() {
-        let layout = lay_out(Plan::BallBar, &machine(), true, &mut Dice::new(3, 0, 0));
+        let layout = lay_out(Plan::BallBar, &machine(), Runs::Long, &mut Dice::new(3, 0, 0));
         for row in &layout.rows {
             let Sight::Ball(centre) = row.sight else { panic!("a ball bar") };
             let arm = [0, 1, 2].map(|i| row.tip()[i] - centre[i]);
@@ -367,7 +381,7 @@ mod tests {
 
     #[test]
     fn one_way_plans_have_one_direction() {
-        let layout = lay_out(Plan::OneWay, &machine(), false, &mut Dice::new(5, 0, 0));
+        let layout = lay_out(Plan::OneWay, &machine(), Runs::OfOneLine, &mut Dice::new(5, 0, 0));
         assert!(layout.rows.iter().all(|r| r.approach.iter().all(|a| *a >= 0.0)));
     }
 }

@@ -191,14 +191,14 @@ mod tests {
     use super::*;
     use crate::design::Plan;
     use crate::dice::Dice;
-    use crate::plans::lay_out;
+    use crate::plans::{Runs, lay_out};
     use crate::shape::{Bend, form};
 
     /// Every withheld effect points the way its textbook column does.
     #[test]
     fn withheld_effects_have_the_sign_of_their_name() {
-        let machine = Machine::random(&mut Dice::new(5, 0, 0), false);
-        let layout = lay_out(Plan::Good, &machine, true, &mut Dice::new(5, 0, 1));
+        let machine = Machine::random(&mut Dice::new(5, 0, 0));
+        let layout = lay_out(Plan::Good, &machine, Runs::Long, &mut Dice::new(5, 0, 1));
         for effect in Effect::linear() {
             let mut dice = Dice::new(5, 0, 2);
             let withheld = form(effect, &machine, layout.span, &mut dice, Bend::Natural);
@@ -223,9 +223,9 @@ mod tests {
     #[test]
     fn levers_agree_with_the_chain() {
         for order in [[0, 1, 2], [1, 0, 2], [2, 0, 1]] {
-            let mut machine = Machine::random(&mut Dice::new(5, 0, 0), false);
+            let mut machine = Machine::random(&mut Dice::new(5, 0, 0));
             machine.order = order;
-            let layout = lay_out(Plan::Good, &machine, true, &mut Dice::new(6, 0, 1));
+            let layout = lay_out(Plan::Good, &machine, Runs::Long, &mut Dice::new(6, 0, 1));
             for (about, a) in [(0, 0), (1, 0), (2, 1), (0, 2), (1, 2), (2, 0)] {
                 for row in layout.rows.iter().step_by(50) {
                     let mut c = crate::machine::Contribution::default();

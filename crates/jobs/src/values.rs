@@ -1,139 +1,14 @@
 //! Values of options: read once, where the command line is read.
 
-use std::error::Error;
-use std::fmt;
-use std::ops::Deref;
-use std::str::FromStr;
+mod given;
+mod of_machine;
 
 use diagnostic::{Language, Text, both};
 use error_map::Plane;
-use machine_model::{Axis, EngineId, Range};
+pub use given::{Given, Unread, Value};
+use machine_model::{EngineId, Range};
 use nc_expand::Preset;
-use serde::{Deserialize, Serialize};
-
-/// What an option may be given.
-pub trait Value: Sized {
-    /// What it is, with its unit: "millimetres".
-    const WHAT: Text;
-    /// How it is written.
-    const EXAMPLES: &'static [&'static str];
-
-    /// Reads it.
-    ///
-    /// # Errors
-    /// What is wrong, where more can be said than that it is not written so.
-    fn read(text: &str) -> Result<Self, Option<Text>>;
-}
-
-/// A value, and the text that it was read from: messages, pages and manifests say what was typed.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
-#[serde(bound(deserialize = "T: Value", serialize = "T: Clone"))]
-pub struct Given<T> {
-    text: String,
-    value: T,
-}
-
-impl<T> Given<T> {
-    /// As it was typed.
-    #[must_use]
-    pub fn text(&self) -> &str {
-        &self.text
-    }
-}
-
-impl<T> Deref for Given<T> {
-    type Target = T;
-
-    fn deref(&self) -> &T {
-        &self.value
-    }
-}
-
-impl<T> PartialEq for Given<T> {
-    fn eq(&self, other: &Self) -> bool {
-        self.text == other.text
-    }
-}
-
-impl<T> fmt::Display for Given<T> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text)
-    }
-}
-
-impl<T: Value> FromStr for Given<T> {
-    type Err = Unread;
-
-    fn from_str(text: &str) -> Result<Self, Unread> {
-        match T::read(text) {
-            Ok(value) => Ok(Self { text: text.to_owned(), value }),
-            Err(why) => Err(Unread { why, what: T::WHAT, examples: T::EXAMPLES }),
-        }
-    }
-}
-
-impl<T: Value> TryFrom<String> for Given<T> {
-    type Error = Unread;
-
-    fn try_from(text: String) -> Result<Self, Unread> {
-        text.parse()
-    }
-}
-
-impl<T> From<Given<T>> for String {
-    fn from(given: Given<T>) -> Self {
-        given.text
-    }
-}
-
-/// Why a value cannot be read.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Unread {
-    why: Option<Text>,
-    what: Text,
-    examples: &'static [&'static str],
-}
-
-impl Unread {
-    /// Of a bare number.
-    #[must_use]
-    pub fn number(why: Text) -> Self {
-        Self { why: Some(why), what: Text::pair("a number", "число"), examples: &["20"] }
-    }
-
-    /// What to say of an option that was given this.
-    #[must_use]
-    pub fn message(&self, option: &str, given: &str) -> Text {
-        match &self.why {
-            Some(why) => both!("`{option} {given}`: {why}", "`{option} {given}`: {why:#}"),
-            None => both!("`{option} {given}` cannot be read", "`{option} {given}`: значение непонятно"),
-        }
-    }
-
-    /// What to type.
-    #[must_use]
-    pub fn help(&self, option: &str) -> Text {
-        let examples: Vec<String> =
-            self.examples.iter().map(|example| format!("`{option} {example}`")).collect();
-        let (english, russian) = (examples.join(" or "), examples.join(" или "));
-        Text::new(
-            format!("write {} as in {english}", self.what),
-            format!("напишите {:#} так: {russian}", self.what),
-        )
-    }
-}
-
-impl fmt::Display for Unread {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.why {
-            Some(why) => why.fmt(f),
-            None => write!(f, "cannot be read: write {} as in {}", self.what, self.examples.join(" or ")),
-        }
-    }
-}
-
-impl Error for Unread {}
+pub use of_machine::{AxisTable, Centre, Sense, SquarenessReadings, Travel};
 
 fn finite(text: &str) -> Option<f64> {
     text.trim().parse::<f64>().ok().filter(|v| v.is_finite())
@@ -440,25 +315,6 @@ impl Value for Ball {
     }
 }
 
-/// `XY=12,ZX=-3,YZ=5`, µrad; planes that are not named are `None`.
-#[derive(Debug, Clone, Copy)]
-pub struct SquarenessReadings(pub [Option<f64>; 3]);
-
-impl Value for SquarenessReadings {
-    const WHAT: Text = Text::pair("µrad,", "мкрад");
-    const EXAMPLES: &'static [&'static str] = &["XY=12,ZX=-3,YZ=5"];
-
-    fn read(text: &str) -> Result<Self, Option<Text>> {
-        let mut read = [None; 3];
-        for part in text.split(',') {
-            let (name, value) = assignment(part).ok_or(None)?;
-            let plane = ["XY", "ZX", "YZ"].iter().position(|known| known.eq_ignore_ascii_case(name));
-            read[plane.ok_or(None)?] = Some(finite(value).ok_or(None)?);
-        }
-        Ok(Self(read))
-    }
-}
-
 /// `X0..X1,Y0..Y1,Z0..Z1`, mm, the lower end first.
 #[derive(Debug, Clone, Copy)]
 pub struct Region3(pub [Range; 3]);
@@ -477,110 +333,6 @@ fn range_mm(text: &str) -> Option<Range> {
     let (low, high) = text.split_once("..")?;
     let range = Range { low: millimetres(low)?, high: millimetres(high)? };
     (range.low <= range.high).then_some(range)
-}
-
-/// `X=0..500`
-#[derive(Debug, Clone, Copy)]
-pub struct Travel {
-    /// The axis.
-    pub axis: Axis,
-    /// mm.
-    pub range_mm: Range,
-}
-
-impl Value for Travel {
-    const WHAT: Text = Text::pair("an axis and millimetres", "ось и миллиметры");
-    const EXAMPLES: &'static [&'static str] = &["X=0..500"];
-
-    fn read(text: &str) -> Result<Self, Option<Text>> {
-        let (axis, range) = assignment(text).ok_or(None)?;
-        let axis = linear_axis(axis).ok_or(None)?;
-        // An axis that travels nowhere is none.
-        let range_mm = range_mm(range).filter(|range| range.low < range.high).ok_or(None)?;
-        Ok(Self { axis, range_mm })
-    }
-}
-
-/// `X=errors_x.csv`
-#[derive(Debug, Clone)]
-pub struct AxisTable {
-    /// The axis.
-    pub axis: Axis,
-    /// The file, relative to the profile.
-    pub path: String,
-}
-
-impl Value for AxisTable {
-    const WHAT: Text = Text::pair("an axis and a file", "ось и файл");
-    const EXAMPLES: &'static [&'static str] = &["X=errors_x.csv"];
-
-    fn read(text: &str) -> Result<Self, Option<Text>> {
-        let (axis, path) = assignment(text).ok_or(None)?;
-        let axis = linear_axis(axis).ok_or(None)?;
-        (!path.is_empty()).then(|| Self { axis, path: path.to_owned() }).ok_or(None)
-    }
-}
-
-/// `C=250,200,0`
-#[derive(Debug, Clone, Copy)]
-pub struct Centre {
-    /// The rotary axis.
-    pub axis: Axis,
-    /// A point of its line, machine coordinates, mm.
-    pub point_mm: [f64; 3],
-}
-
-impl Value for Centre {
-    const WHAT: Text = Text::pair("a rotary axis and millimetres", "поворотную ось и миллиметры");
-    const EXAMPLES: &'static [&'static str] = &["C=250,200,0"];
-
-    fn read(text: &str) -> Result<Self, Option<Text>> {
-        let (axis, point) = assignment(text).ok_or(None)?;
-        let axis = axis_of(axis).filter(|axis| !axis.is_linear()).ok_or(None)?;
-        three(point, millimetres).map(|point_mm| Self { axis, point_mm }).ok_or(None)
-    }
-}
-
-/// `C=right`
-#[derive(Debug, Clone, Copy)]
-pub struct Sense {
-    /// The rotary axis.
-    pub axis: Axis,
-    /// 1 where plus turns it right-handed about its letter's direction, -1 where against.
-    pub sign: f64,
-}
-
-impl Sense {
-    /// `right` or `left`.
-    #[must_use]
-    pub fn sign(text: &str) -> Option<f64> {
-        match text {
-            "right" => Some(1.0),
-            "left" => Some(-1.0),
-            _ => None,
-        }
-    }
-}
-
-impl Value for Sense {
-    const WHAT: Text = Text::pair("a rotary axis and right or left", "поворотную ось и right или left");
-    const EXAMPLES: &'static [&'static str] = &["C=right", "C=left"];
-
-    fn read(text: &str) -> Result<Self, Option<Text>> {
-        let (axis, way) = assignment(text).ok_or(None)?;
-        let axis = axis_of(axis).filter(|axis| !axis.is_linear()).ok_or(None)?;
-        Self::sign(way).map(|sign| Self { axis, sign }).ok_or(None)
-    }
-}
-
-fn linear_axis(text: &str) -> Option<Axis> {
-    axis_of(text).filter(|axis| axis.is_linear())
-}
-
-fn axis_of(text: &str) -> Option<Axis> {
-    let mut letters = text.chars();
-    let axis = letters.next().and_then(Axis::from_letter);
-    axis.filter(|_| letters.next().is_none())
 }
 
 /// `table=0..200,0..140,0..100`

@@ -1,11 +1,9 @@
 //! The six error functions of one axis, looked up together.
 
+use crate::component::Six;
 use crate::real::Real;
 use crate::table::{self, Cubic, Grid, slope_of, value_of};
 use crate::{Bounds, Range, Table};
-
-/// What one axis does wrong at one command: `EX EY EZ` in mm, `EA EB EC` in rad.
-pub type Six = [f64; 6];
 
 /// The six error functions of one axis on common nodes, so that the cell is found once.
 ///

@@ -115,8 +115,8 @@ struct Beyond<S> {
 #[inline(always)]
 fn add_cross<S: Simd<f64s = f64x4>>(sum: &mut Growth<S>, e: &Growth<S>, beyond: &Beyond<S>) {
     // The next component of the one with the one after that of the other, and the other way round.
-    add_product(sum, &next(e), &next_in(&next_in(beyond)), false);
-    add_product(sum, &next(&next(e)), &next_in(beyond), true);
+    add_product(sum, &next(e), &next_in(&next_in(beyond)));
+    add_product(sum, &next(&next(e)), &negative(&next_in(beyond)));
 }
 
 /// The components in the order Y, Z, X.
@@ -137,19 +137,23 @@ fn next_in<S: Simd<f64s = f64x4>>(of: &Beyond<S>) -> Beyond<S> {
     Beyond { low: of.low.next(), high: of.high.next(), growth: next(&of.growth) }
 }
 
-/// Adds bounds of a product, or of its negative.
+/// The other way round.
 #[inline(always)]
-fn add_product<S: Simd<f64s = f64x4>>(sum: &mut Growth<S>, e: &Growth<S>, beyond: &Beyond<S>, minus: bool) {
+fn negative<S: Simd<f64s = f64x4>>(of: &Beyond<S>) -> Beyond<S> {
+    Beyond { low: of.high.negative(), high: of.low.negative(), growth: of.growth }
+}
+
+/// Adds bounds of a product.
+#[inline(always)]
+fn add_product<S: Simd<f64s = f64x4>>(sum: &mut Growth<S>, e: &Growth<S>, beyond: &Beyond<S>) {
     let x = &beyond.growth;
     sum.value = sum.value + e.value * x.value;
     sum.first = sum.first + (e.first * x.value + e.value * x.first);
     // All products of a number of one interval with one of the other.
     let (a, b) = (e.low * beyond.low, e.low * beyond.high);
     let (c, d) = (e.high * beyond.low, e.high * beyond.high);
-    let (low, high) = (a.min(b).min(c).min(d), a.max(b).max(c).max(d));
-    let (low, high) = if minus { (high.negative(), low.negative()) } else { (low, high) };
-    sum.low = sum.low + low;
-    sum.high = sum.high + high;
+    sum.low = sum.low + a.min(b).min(c).min(d);
+    sum.high = sum.high + a.max(b).max(c).max(d);
     sum.either(e.first.scaled(2.0) * x.first + e.value * x.second());
     sum.jumps = sum.jumps + (e.jumps * x.value + e.value * x.jumps);
 }

@@ -10,7 +10,8 @@ use std::ops::{Add, Mul, Sub};
 use pulp::bytemuck::cast;
 use pulp::{Simd, f64x4};
 
-use crate::axis_tables::{AxisTables, Cell, Six};
+use crate::axis_tables::{AxisTables, Cell};
+use crate::component::Six;
 use crate::link::Link;
 use crate::real::Real;
 use crate::table::{slope_of, value_of};

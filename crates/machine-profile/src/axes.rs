@@ -6,13 +6,12 @@ use diagnostic::{Diagnostic, Text, both};
 use machine_model::{
     Axis, Chain, Interpolation, LinearAxis, Range, RotaryAxis, Squareness, Tilt, Traverse, Vector,
 };
-use toml::Spanned;
 use units::{Angle, Length};
 
 use crate::error::{CONFLICT, KEY, ProfileError, TILT, VALUE};
 use crate::format::{self, Document};
 use crate::loader::{Bounds, Loader, vector};
-use crate::number::{Finite, Triple};
+use crate::number::{Finite, Spanned, Triple};
 use crate::tables::{ErrorRows, traverse};
 
 /// No control of a machine whose errors are worth correcting has a coarser step, mm; a resolution in µm would be.

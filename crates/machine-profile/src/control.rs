@@ -1,12 +1,11 @@
 //! `[control]`: the dialect, and what the control adds to the path.
 
 use diagnostic::both;
-use toml::Spanned;
 
 use crate::error::VALUE;
 use crate::format::{self, Blending, BlendingMode};
 use crate::loader::Loader;
-use crate::number::Finite;
+use crate::number::{Finite, Spanned};
 
 /// Controls that round corners by more cut another part, mm.
 const MOST_BLENDING_MM: f64 = 10.0;

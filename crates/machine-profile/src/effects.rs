@@ -79,27 +79,32 @@ impl Profile {
         geometry
     }
 
-    /// The effects on this machine, `instrument` or not: faults of the measuring instrument are effects too,
-    /// but the machine does not go wrong by them.
+    /// The effects on this machine. Faults of the measuring instrument are effects too, but the machine does not go
+    /// wrong by them: they are left out.
     ///
     /// # Errors
     /// [`EngineError::Effect`] for an entry that is none (loading refuses it);
     /// [`EngineError::ReferenceTemperature`].
-    pub fn effect_terms(&self, instrument: bool) -> Result<Vec<EffectTerm>, EngineError> {
+    pub fn effect_terms(&self) -> Result<Vec<EffectTerm>, EngineError> {
+        let mut terms = self.terms_of_all()?;
+        terms.retain(|term| !term.kind().is_instrument());
+        Ok(terms)
+    }
+
+    /// Those of the machine, and behind them those of the instrument.
+    fn terms_of_all(&self) -> Result<Vec<EffectTerm>, EngineError> {
         let geometry = self.effect_geometry();
         let reference = self.calibrated.as_ref().and_then(|calibrated| calibrated.temperature_c);
         let mut terms = Vec::new();
         for entry in &self.effects {
             let term = EffectTerm::from_entry(&entry.id, &entry.parameters)?;
             let effect = term.kind();
-            if effect.is_instrument() != instrument {
-                continue;
-            }
             if reference.is_none() && matches!(effect, EffectKind::Thermal(_)) {
                 return Err(EngineError::ReferenceTemperature { effect });
             }
             terms.push(term.with_geometry(geometry.clone()));
         }
+        terms.sort_by_key(|term| term.kind().is_instrument());
         Ok(terms)
     }
 
@@ -108,7 +113,7 @@ impl Profile {
     /// # Errors
     /// [`EngineError`]: nothing an effect depends on is guessed.
     pub fn machine(&self, conditions: &Conditions) -> Result<WithEffects, EngineError> {
-        Ok(WithEffects::new(self.rigid_body.clone(), self.effect_terms(false)?, *conditions)?)
+        Ok(WithEffects::new(self.rigid_body.clone(), self.effect_terms()?, *conditions)?)
     }
 
     /// The machine as the measuring instrument shows it: with the instrument's own faults.
@@ -116,9 +121,7 @@ impl Profile {
     /// # Errors
     /// As [`Profile::machine`].
     pub fn measured_machine(&self, conditions: &Conditions) -> Result<WithEffects, EngineError> {
-        let mut terms = self.effect_terms(false)?;
-        terms.extend(self.effect_terms(true)?);
-        Ok(WithEffects::new(self.rigid_body.clone(), terms, *conditions)?)
+        Ok(WithEffects::new(self.rigid_body.clone(), self.terms_of_all()?, *conditions)?)
     }
 
     /// The lathe under these conditions; `None` for a mill.
@@ -149,7 +152,7 @@ impl Profile {
             }
             return Ok(Box::new(lathe));
         }
-        let terms = self.effect_terms(false)?;
+        let terms = self.effect_terms()?;
         if terms.is_empty() {
             return Ok(build(id, self.engine_inputs_without_effects())?);
         }

@@ -9,6 +9,7 @@ use units::Length;
 use crate::error::{CELL, COLUMN, CONFLICT, FIELD, FILE, ProfileError, ROWS, VALUE};
 use crate::format;
 use crate::loader::Loader;
+use crate::number::Spanned;
 
 /// Vectors beyond this are a mistake in the unit, or positions, mm.
 const LARGEST_MM: f64 = 20.0;
@@ -76,7 +77,7 @@ impl Loader<'_> {
     /// `[field]`
     pub(crate) fn field(
         &mut self,
-        written: &toml::Spanned<format::Field>,
+        written: &Spanned<format::Field>,
         refuses: Option<Text>,
         mut around: Around,
     ) -> Option<MeasuredField> {

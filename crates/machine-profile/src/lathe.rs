@@ -2,7 +2,6 @@
 
 use diagnostic::{Speaks, Text, both};
 use machine_model::Vector;
-use toml::Spanned;
 use turning::{
     Bending, Clamping, ErrorMotion, Force, Harmonic, Spindle, Station, Tailstock, Tip, Workpiece,
     WorkpieceError,
@@ -12,7 +11,7 @@ use units::{Angle, Length};
 use crate::error::{CHAIN, CONFLICT, KEY, VALUE};
 use crate::format::{self, ClampingName, Document, Nose as WrittenNose};
 use crate::loader::Loader;
-use crate::number::Finite;
+use crate::number::{Finite, Spanned};
 use crate::profile::{LatheParts, Nose};
 
 const fn number(value: Option<Finite>) -> f64 {

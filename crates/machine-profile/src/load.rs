@@ -5,14 +5,13 @@ use machine_model::effects::EffectTerm;
 use machine_model::{
     Axis, Chain, Description, EngineId, Interpolation, LinearAxis, Range, RigidBody, Singularity,
 };
-use toml::Spanned;
 use units::Angle;
 
 use crate::error::{CHAIN, CONFLICT, EFFECT, FORMAT, ProfileError, VALUE, span};
 use crate::field::Around;
 use crate::format::{self, Correction, Document, InterpolationName, OutsideName};
 use crate::loader::{ABOVE_ZERO, Loader, Read, ZERO_OR_MORE, triple};
-use crate::number::Finite;
+use crate::number::{Finite, Spanned};
 use crate::profile::{Calibrated, CorrectionOptions, EffectEntry, MeasuringFrame, Outside, Profile};
 use crate::tables::ErrorRows;
 use crate::toml_error;

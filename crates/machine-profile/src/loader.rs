@@ -6,10 +6,9 @@ use std::ops::RangeBounds as _;
 
 use diagnostic::{Code, Diagnostic, Text, both, of_system};
 use machine_model::{Axis, Range, Vector};
-use toml::Spanned;
 
 use crate::error::{FILE, ProfileError, VALUE, span};
-use crate::number::Finite;
+use crate::number::{Finite, Spanned};
 use crate::tables::{ErrorRows, error_rows};
 
 /// Gives the bytes of a file by the path the profile uses.

@@ -1,7 +1,10 @@
 //! Numbers as profiles write them.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer};
+use std::borrow::Cow;
+use std::ops::Range;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// A number that is neither infinite nor NaN: TOML knows both, machines neither.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
@@ -28,4 +31,39 @@ pub(crate) type Triple = [Finite; 3];
 pub(crate) enum Length {
     Number(Finite),
     Vector(Triple),
+}
+
+/// A value with the bytes of the profile that say it; to the schema the value alone.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(transparent)]
+pub(crate) struct Spanned<T>(toml::Spanned<T>);
+
+impl<T: JsonSchema> JsonSchema for Spanned<T> {
+    fn inline_schema() -> bool {
+        T::inline_schema()
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        T::schema_name()
+    }
+
+    fn schema_id() -> Cow<'static, str> {
+        T::schema_id()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        T::json_schema(generator)
+    }
+}
+
+impl<T> Spanned<T> {
+    /// Where it stands.
+    pub(crate) fn span(&self) -> Range<usize> {
+        self.0.span()
+    }
+
+    /// What it is.
+    pub(crate) fn get_ref(&self) -> &T {
+        self.0.get_ref()
+    }
 }

@@ -4,7 +4,6 @@ use std::ops::Bound::{Excluded, Included};
 
 use diagnostic::{Text, both};
 use machine_model::{Axis, Chain};
-use toml::Spanned;
 use toolpath::{TiltRule, WholeTurns};
 
 use crate::error::{CONFLICT, VALUE};
@@ -13,7 +12,7 @@ use crate::format::{
     ToolChange, XName,
 };
 use crate::loader::{Bounds, Loader, triple};
-use crate::number::Finite;
+use crate::number::{Finite, Spanned};
 use crate::profile::{
     AfterChange, BareLengths, FlankFrom, Kinematics, LeftAlone, ProgramRules, TurningRules,
 };

@@ -3,12 +3,11 @@
 use std::collections::BTreeSet;
 
 use diagnostic::{Text, both};
-use toml::Spanned;
 
 use crate::error::{CONFLICT, KEY, VALUE};
 use crate::format::{self, Document};
 use crate::loader::Loader;
-use crate::number::{Finite, Length};
+use crate::number::{Finite, Length, Spanned};
 use crate::profile::LatheParts;
 
 impl Loader<'_> {

@@ -4,12 +4,11 @@ use std::collections::BTreeMap;
 
 use diagnostic::{Text, both};
 use machine_model::Way;
-use toml::Spanned;
 use toolpath::AXIS_NAMES;
 
 use crate::error::{CONFLICT, KEY};
 use crate::loader::Loader;
-use crate::number::{Finite, Length};
+use crate::number::{Finite, Length, Spanned};
 use crate::zeros::{
     AlignedTo, End, Found, FoundOffset, OnePlace, Places, ToolThatTouched, TouchPlace, TouchedAt, TouchedBy,
     WorkOffset, ZeroFound,

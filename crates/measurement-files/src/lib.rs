@@ -31,6 +31,7 @@ mod bar;
 pub mod codes;
 mod columns;
 mod foreign;
+mod header;
 mod number;
 mod points;
 mod refusal;

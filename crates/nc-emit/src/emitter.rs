@@ -143,7 +143,7 @@ impl<'d> Emitter<'d> {
             long_words: &self.dialect.marks.long_words,
             habits: &self.habits,
             separator: separator.unwrap_or(self.habits.separator),
-            increments: Increments::new(&self.dialect.numbers, self.modes.inch),
+            increments: Increments::new(&self.dialect.numbers, &self.modes),
         };
         let (content, end) = self.split_end(block);
         // A last line without an end needs one as soon as something follows it.
@@ -156,7 +156,7 @@ impl<'d> Emitter<'d> {
         {
             out.truncate(from);
             let mut splices = Splices::default();
-            splices.make_first_piece(self.dialect, block, first, in_force, !later.is_empty())?;
+            splices.make_first_piece(self.dialect, block, (first, later), in_force)?;
             splices.write(block, content, &style, out);
         }
         if let Some(code) = first.motion {
@@ -168,8 +168,11 @@ impl<'d> Emitter<'d> {
         for (index, piece) in later.iter().enumerate() {
             out.extend_from_slice(end_between);
             from = out.len();
-            let last = index + 1 == later.len();
-            self.write_later_piece(block, piece, number, &style, last, out)?;
+            let mut line = Line { out, separator: style.separator, started: false };
+            self.write_later_piece(block, piece, number, &style, &mut line)?;
+            if index + 1 == later.len() {
+                self.write_after_motion(block, &mut line);
+            }
             number = number.map(|number| number + 1);
             if let Some(code) = piece.motion {
                 self.modes.write(self.dialect, code);
@@ -213,7 +216,7 @@ impl<'d> Emitter<'d> {
             long_words: &self.dialect.marks.long_words,
             habits: &self.habits,
             separator: separator.unwrap_or(self.habits.separator),
-            increments: Increments::new(&self.dialect.numbers, self.modes.inch),
+            increments: Increments::new(&self.dialect.numbers, &self.modes),
         };
         let from = out.len();
         let content = line.content();
@@ -371,10 +374,8 @@ impl<'d> Emitter<'d> {
         piece: &Piece,
         number: Option<u32>,
         style: &Style<'_>,
-        last: bool,
-        out: &mut Vec<u8>,
+        line: &mut Line<'_>,
     ) -> Result<(), Diagnostic> {
-        let mut line = Line { out, separator: style.separator, started: false };
         for item in &block.items {
             match item.kind {
                 ItemKind::Skip => line.add(block.text(item.span)),
@@ -419,14 +420,16 @@ impl<'d> Emitter<'d> {
                 }
             }
         }
-        if last {
-            for item in &block.items {
-                if is_after_motion(self.dialect, item.kind) {
-                    line.add(block.text(item.span));
-                }
+        Ok(())
+    }
+
+    /// What the control does behind a block's motion stands in the last of its pieces.
+    fn write_after_motion(&self, block: &Block<'_>, line: &mut Line<'_>) {
+        for item in &block.items {
+            if is_after_motion(self.dialect, item.kind) {
+                line.add(block.text(item.span));
             }
         }
-        Ok(())
     }
 }
 

@@ -304,11 +304,11 @@ pub(crate) struct Increments {
 }
 
 impl Increments {
-    pub(crate) fn new(numbers: &Numbers, inch: bool) -> Self {
+    pub(crate) fn new(numbers: &Numbers, modes: &Modes) -> Self {
         match numbers.point_free {
             PointFree::Unit => Self { length: None, angle: None },
             PointFree::LeastIncrement => Self {
-                length: Some(if inch {
+                length: Some(if modes.inch {
                     numbers.least_increment_decimals_inch
                 } else {
                     numbers.least_increment_decimals_mm

@@ -118,7 +118,7 @@ impl Style<'_> {
 
     pub(crate) fn write_g(&self, code: GCode, out: &mut Vec<u8>) {
         self.write_letter(b'G', out);
-        write_code(code, self.habits.two_digit_g, out);
+        write_code(code, if self.habits.two_digit_g { 2 } else { 1 }, out);
     }
 
     /// A number with leading zeros up to `width` digits.
@@ -135,9 +135,10 @@ impl Style<'_> {
     }
 }
 
-fn write_code(code: GCode, two_digits: bool, out: &mut Vec<u8>) {
+/// A code's number with leading zeros up to so many digits, one or two.
+fn write_code(code: GCode, digits: usize, out: &mut Vec<u8>) {
     let (whole, part) = (code.0 / 10, code.0 % 10);
-    if two_digits && whole < 10 {
+    if digits == 2 && whole < 10 {
         out.push(b'0');
     }
     let plain = units::decimal::Spelling { trailing_point: false, ..units::decimal::Spelling::FIXED };
@@ -161,7 +162,7 @@ enum Text {
     /// The code's digits alone.
     Code {
         code: GCode,
-        two_digits: bool,
+        digits: usize,
     },
     /// A new word.
     Word {
@@ -199,15 +200,15 @@ pub(crate) struct Splices {
 }
 
 impl Splices {
-    /// Adds what turns `block` into its first piece; `several` where more pieces follow it.
+    /// Adds what turns `block` into the first of its pieces.
     pub(crate) fn make_first_piece(
         &mut self,
         dialect: &Dialect,
         block: &Block<'_>,
-        piece: &Piece,
+        (piece, later): (&Piece, &[Piece]),
         in_force: Option<GCode>,
-        several: bool,
     ) -> Result<(), Diagnostic> {
+        let several = !later.is_empty();
         let removed =
             letters(piece.words.iter().filter(|word| word.1 == WordEdit::Remove).map(|word| word.0));
         let survives = |kind: ItemKind| {
@@ -269,9 +270,10 @@ impl Splices {
             Some((_, code)) if code == wanted => {}
             Some((span, _)) => {
                 let span = number_span(block, span);
-                let two_digits = block.text(span).iter().filter(|byte| byte.is_ascii_digit()).count() >= 2
-                    && block.text(span).first() == Some(&b'0');
-                self.add(span, 0, Text::Code { code: wanted, two_digits });
+                let own = block.text(span);
+                let is_padded =
+                    own.first() == Some(&b'0') && own.iter().filter(|b| b.is_ascii_digit()).count() >= 2;
+                self.add(span, 0, Text::Code { code: wanted, digits: if is_padded { 2 } else { 1 } });
             }
             None if in_force == Some(wanted) => {}
             None => {
@@ -317,7 +319,7 @@ impl Splices {
                         style.write_number(letter, Some(replaced), counts, decimals, out);
                     }
                 }
-                Text::Code { code, two_digits } => write_code(code, two_digits, out),
+                Text::Code { code, digits } => write_code(code, digits, out),
                 Text::Word { letter, counts, decimals, place } => {
                     put(place, separator, out, |out| {
                         style.write_letter(letter, out);

@@ -6,7 +6,9 @@
 use smallvec::SmallVec;
 
 use crate::Step;
-use crate::items::{Items, Left, Process};
+use crate::feeding::Left;
+use crate::items::Items;
+use crate::process::Process;
 use crate::stretch::{Place, Span, Stretch};
 
 /// A run begins no farther than this from where it should, mm: no machine that was measured is off by more.
@@ -61,6 +63,15 @@ pub(crate) struct Alignment<'m, I> {
     pub(crate) wanted: Items<'m, I>,
     approach: Option<Approach>,
     excused: Excused,
+}
+
+/// Where a feed may be entered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Entry {
+    /// At its start.
+    AtStart,
+    /// At any of its places: what lies before it may be left out.
+    OnTheWay,
 }
 
 /// Processes that differ and were said to.
@@ -125,12 +136,16 @@ impl<'m, I: Iterator<Item = Step>> Alignment<'m, I> {
             };
             self.approach = Some(Approach { start, within_mm, limit_mm, first_part_mm });
         }
-        self.enter(at, begins == Begins::Anywhere || away_mm <= first_part_mm)
+        let first = match begins == Begins::Anywhere || away_mm <= first_part_mm {
+            true => Entry::OnTheWay,
+            false => Entry::AtStart,
+        };
+        self.enter(at, first)
     }
 
-    /// The real path stands at a place: what is reached there, at the start or, if so much may be left out, behind it, and
-    /// how far beside the first feed that is, mm.
-    fn enter(&mut self, at: &Place, skips: bool) -> Option<f64> {
+    /// The real path stands at a place: what is reached there, of the first feed where it may be entered, and how far
+    /// beside that feed it is, mm.
+    fn enter(&mut self, at: &Place, entry: Entry) -> Option<f64> {
         let first = self.wanted.feed(0)?;
         let mut reaches = (at - first.start()).norm() <= first.limit_mm;
         let (mut ahead, mut nearest_mm) = (0, None);
@@ -138,7 +153,9 @@ impl<'m, I: Iterator<Item = Step>> Alignment<'m, I> {
             feed.left = Left { asked: true, ..Left::default() };
             for (k, stretch) in feed.stretches.iter().enumerate() {
                 let free = stretch.free(at, feed.limit_mm);
-                let free = free.filter(|free| (reaches && free.is_at_start()) || (ahead == 0 && skips));
+                let free = free.filter(|free| {
+                    (reaches && free.is_at_start()) || (ahead == 0 && entry == Entry::OnTheWay)
+                });
                 reaches = free.is_some_and(|free| free.is_at_end());
                 feed.left.push(k, free);
                 if ahead == 0 && free.is_some() {
@@ -184,7 +201,7 @@ impl<'m, I: Iterator<Item = Step>> Alignment<'m, I> {
             && (begin - approach.start).norm() <= approach.first_part_mm
             && self.wanted.feed(0).is_some_and(|feed| !feed.left.is_reached())
         {
-            self.enter(&begin, true);
+            self.enter(&begin, Entry::OnTheWay);
         }
         // Of the stretch: where the programmed path may stand at the start of the next piece of it.
         let mut bottom = self.approach.as_ref().and_then(|a| on.free(&a.start, a.limit_mm));
@@ -208,7 +225,10 @@ impl<'m, I: Iterator<Item = Step>> Alignment<'m, I> {
             let mut k = if bottom.is_some() || leaps { 0 } else { feed.left.first };
             while k < feed.stretches.len() && (bottom.is_some() || k < ends || (leaps && k == 0)) {
                 let (stretch, left) = (&feed.stretches[k], feed.left.at(k));
-                let (mut right, top) = cell(stretch, on, &end, [left, bottom], feed.limit_mm, goes);
+                let (mut right, top) = match goes {
+                    true => cell(stretch, on, &end, [left, bottom], feed.limit_mm),
+                    false => corners([left, bottom]),
+                };
                 if leaps && k == 0 {
                     right = stretch.free(&end, feed.limit_mm);
                 }
@@ -290,6 +310,12 @@ fn alike(excused: &Excused, wanted: &Process, commanded: &Process) -> bool {
     pair[0] == pair[1] || excused.pairs.contains(&pair)
 }
 
+/// What is reached where neither path goes on while the other does: from corner to corner only.
+fn corners([left, bottom]: [Option<Span>; 2]) -> (Option<Span>, Option<Span>) {
+    let corner = |span: Option<Span>| span.filter(Span::is_at_end).map(|_| Span::START);
+    (corner(bottom), corner(left))
+}
+
 /// One cell of the free space: `left` is what is reached of `wanted` at the start of `real`, `bottom` of `real` at the
 /// start of `wanted`; the answer is the same at their ends.
 fn cell(
@@ -298,15 +324,9 @@ fn cell(
     end: &Place,
     [left, bottom]: [Option<Span>; 2],
     limit_mm: f64,
-    goes: bool,
 ) -> (Option<Span>, Option<Span>) {
     if left.is_none() && bottom.is_none() {
         return (None, None);
-    }
-    if !goes {
-        // Neither goes on while the other does: from corner to corner only.
-        let corner = |span: Option<Span>| span.filter(Span::is_at_end).map(|_| Span::START);
-        return (corner(bottom), corner(left));
     }
     let back = limit_mm / wanted.length_mm().max(limit_mm);
     let right = wanted.free(end, limit_mm);

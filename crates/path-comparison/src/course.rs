@@ -1,22 +1,11 @@
 //! What several machines make of one program: the errors along every feed motion.
 
-use machine_model::{Command, Models, PathModel, Placement, Play, Vector};
-use toolpath::{Kinematics, PeckRetreats};
+use machine_model::Models;
+use toolpath::PeckRetreats;
 
 use crate::Step;
-use crate::items::{Counted, Item, Items, Role, behind_a_switch};
-use crate::way::Way;
-
-/// A feed motion with the errors of several machines along it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Course {
-    /// Line of its file.
-    pub line: u64,
-    /// The programmed places, ends included, as the workpiece sees them, mm.
-    pub places_mm: Vec<[f64; 3]>,
-    /// Real place minus programmed place, mm: at each place of each machine, in the order of the machines.
-    pub errors_mm: Vec<[f64; 3]>,
-}
+use crate::items::{Counted, Item, Items, Role};
+use crate::others::{Course, DatumOf, Others};
 
 /// Runs a program on several machines at once: every feed motion in order, a cycle as the feed motions that it makes,
 /// one for each trace that [`crate::compare`] keeps.
@@ -24,9 +13,9 @@ pub struct Course {
 /// Where axes turn and have their play taken up is asked of the first machine, and what the others are there; so the
 /// others should be the first without some of its errors.
 ///
-/// * `step_mm` – distance between places on a line, at most; an arc turns by [`TURN_RAD`] between them at most
-/// * `datum_of` – [`Command::datum`] of a machine, by its number, where that of the first is given: each machine would
-///   have been touched by itself
+/// * `step_mm` – distance between places on a line, at most; an arc turns by [`crate::TURN_RAD`] between them at most
+/// * `datum_of` – [`machine_model::Command::datum`] of a machine, by its number, where that of the first is given: each
+///   machine would have been touched by itself
 pub fn courses<'m>(
     models: &[Models<'m>],
     steps: impl Iterator<Item = Step>,
@@ -36,7 +25,7 @@ pub fn courses<'m>(
     each: &mut dyn FnMut(Course),
 ) {
     let Some((first, others)) = models.split_first() else { return };
-    let others = Others { datum_of, ..Others::new(others, step_mm) };
+    let others = Others::new(others, step_mm, datum_of);
     let mut items = Items::new(*first, steps, Role::Wanted, retreats, Counted::default()).with_others(others);
     while let Some(item) = items.pop() {
         if let Item::Feed(mut feed) = item
@@ -44,84 +33,5 @@ pub fn courses<'m>(
         {
             each(*course);
         }
-    }
-}
-
-/// See [`courses`].
-pub type DatumOf<'m> = dyn Fn(usize, Placement) -> Placement + 'm;
-
-/// Largest turn of an arc, and of all rotary axes together, between two places, rad: a chord lies off a circle by 1/800
-/// of its radius.
-pub const TURN_RAD: f64 = 0.1;
-
-/// Machines that go the way of another.
-pub(crate) struct Others<'m> {
-    machines: Vec<Other<'m>>,
-    step_mm: f64,
-    datum_of: &'m DatumOf<'m>,
-}
-
-struct Other<'m> {
-    models: Models<'m>,
-    model: &'m dyn PathModel,
-    play: Option<Play>,
-    /// Of the first machine and of this one.
-    datums: [Placement; 2],
-}
-
-impl<'m> Others<'m> {
-    fn new(models: &[Models<'m>], step_mm: f64) -> Self {
-        let mut others = Self {
-            machines: models
-                .iter()
-                .map(|models| Other {
-                    models: *models,
-                    model: models.axes,
-                    play: None,
-                    datums: [Placement::default(); 2],
-                })
-                .collect(),
-            step_mm,
-            datum_of: &|_, own| own,
-        };
-        others.switch(Kinematics::Axes);
-        others
-    }
-
-    /// From here on X, Y and Z are something else.
-    pub(crate) fn switch(&mut self, kinematics: Kinematics) {
-        for other in &mut self.machines {
-            other.model = other.models.of(kinematics).unwrap_or(other.models.axes);
-            other.play = behind_a_switch(other.model, other.play);
-        }
-    }
-
-    /// Those that have play.
-    pub(crate) fn playing(&mut self) -> impl Iterator<Item = (&'m dyn PathModel, &mut Play)> {
-        self.machines.iter_mut().filter_map(|other| Some((other.model, other.play.as_mut()?)))
-    }
-
-    /// Into how many pieces a way is cut.
-    pub(crate) fn pieces(&self, way: &Way, length_mm: f64) -> f64 {
-        let turned = way.turning_rad().max(way.rotary_turn_rad());
-        (turned / TURN_RAD).max(length_mm / self.step_mm)
-    }
-
-    /// The error of each, its axes having gone to a command.
-    pub(crate) fn errors_mm(&mut self, here: &Command) -> impl Iterator<Item = Vector> {
-        self.machines.iter_mut().zip(1..).map(|(other, number)| {
-            if other.datums[0] != here.datum {
-                other.datums = [here.datum, (self.datum_of)(number, here.datum)];
-            }
-            let here = &Command { datum: other.datums[1], ..*here };
-            match &mut other.play {
-                None => other.model.error_mm(here),
-                Some(play) => {
-                    play.go(other.model, here);
-                    play.turn(other.model, here, [true; 3]);
-                    play.error_mm(other.model, here)
-                }
-            }
-        })
     }
 }

@@ -1,7 +1,10 @@
 //! What two rows of items are, where they part: names by an alignment of least cost (Needleman and Wunsch 1970).
 
 use crate::What;
-use crate::items::{Feeding, Item, Positioning, ends_alike};
+use crate::alignment::Entry;
+use crate::feeding::Feeding;
+use crate::items::Item;
+use crate::positioning::{Positioning, ends_alike};
 
 /// Places that are nearer than so many limits are one.
 const NEAR_LIMITS: f64 = 4.0;
@@ -15,15 +18,19 @@ pub(crate) struct Found {
 
 /// Both programs may go on from here: the same is begun, and leads the same way.
 ///
+/// * `entry` – where on the wanted feed the one that was made may begin
 /// * `nearly_mm` – feeds so near each other are the same, though not as near as they should be; 0 for what the limits say
-pub(crate) fn fits(wanted: &Item, made: &Item, underway: bool, nearly_mm: f64) -> bool {
+pub(crate) fn fits(wanted: &Item, made: &Item, entry: Entry, nearly_mm: f64) -> bool {
     match (wanted, made) {
         (Item::Feed(wanted), Item::Feed(made)) => {
             let near_mm = (NEAR_LIMITS * wanted.limit_mm).max(nearly_mm);
             let ((from_mm, from), (to_mm, to)) = (wanted.nearest(&made.start()), wanted.nearest(&made.end()));
             let length_mm = wanted.length_mm().max(1e-9);
             let moves = (to - from) * length_mm > near_mm || wanted.reach_mm <= near_mm;
-            from_mm <= near_mm && to_mm <= near_mm && moves && (underway || from * length_mm <= near_mm)
+            from_mm <= near_mm
+                && to_mm <= near_mm
+                && moves
+                && (entry == Entry::OnTheWay || from * length_mm <= near_mm)
         }
         (Item::Position(wanted), Item::Position(made)) => ends_alike(wanted, made) && !wanted.is_small(),
         (Item::Deed(wanted), Item::Deed(made)) => wanted.number == made.number,

@@ -18,21 +18,29 @@
 //! model with the correction, and nothing else.
 
 mod alignment;
+mod along;
 mod comparison;
 mod course;
 mod difference;
+mod feeding;
+mod holes;
 mod items;
 mod matcher;
 mod offset;
+mod others;
+mod positioning;
+mod process;
 mod step;
 mod stretch;
+mod timing;
 mod way;
 
 use machine_model::Models;
 use toolpath::PeckRetreats;
 
 pub use comparison::{Comparison, Deviation, Lean, Mismatch, Trace, Traces, What};
-pub use course::{Course, DatumOf, TURN_RAD, courses};
+pub use course::courses;
+pub use others::{Course, DatumOf, TURN_RAD};
 pub use step::{Act, Pointing, Step};
 pub use stretch::LEVER_MM;
 pub use way::Way;

@@ -3,10 +3,14 @@
 use machine_model::Models;
 use toolpath::PeckRetreats;
 
-use crate::alignment::{Alignment, Begins, Processes, Reached};
+use crate::alignment::{Alignment, Begins, Entry, Processes, Reached};
 use crate::difference::{self, Found};
-use crate::items::{Counted, Feeding, Item, Items, Off, Process, Role, ends_alike};
+use crate::feeding::{Feeding, Off};
+use crate::items::{Counted, Item, Items, Role};
+use crate::positioning::ends_alike;
+use crate::process::Process;
 use crate::stretch::{Place, Stretch};
+use crate::timing::{Taken, Time};
 use crate::way::Way;
 use crate::{Comparison, Mismatch, Pointing, Step, Trace, Traces, What};
 
@@ -18,11 +22,6 @@ const AHEAD: usize = 24;
 const AHEAD_IS_FAR: usize = 200;
 /// A piece that is off by no more, mm, was made for that motion all the same.
 const NEARLY_MM: f64 = 1.0;
-/// By so much the time of a motion may differ under G93, whose F is rounded.
-const SAME_TIME: f64 = 0.02;
-/// So much longer than it should, as a share of a motion's time, one of its pieces may take: no line of an approach is given less.
-const NO_TIME: f64 = 1e-3;
-
 pub(crate) struct Matcher<'m, W, C> {
     alignment: Alignment<'m, W>,
     commanded: Items<'m, C>,
@@ -35,40 +34,6 @@ pub(crate) struct Matcher<'m, W, C> {
     /// Where the programs parted first without a name for it.
     unnamed: Option<Mismatch>,
     result: Comparison,
-}
-
-/// Minutes under G93, counted from the start of the first feed ahead.
-#[derive(Clone, Copy, Debug, Default)]
-struct Time {
-    /// At least and at most: a place within the limit is reached over some way, which is a long time for a fast piece that
-    /// goes on from a slow one.
-    made: [f64; 2],
-    /// How far along the way that leads at least, mm.
-    made_mm: f64,
-}
-
-impl Time {
-    /// The first motion was under way.
-    const UNKNOWN: Self = Self { made: [f64::NAN; 2], made_mm: f64::NAN };
-}
-
-/// What is reached of the feeds ahead, from its first place to its last.
-#[derive(Clone, Copy, Debug)]
-struct Reach {
-    /// Minutes at either.
-    minutes: [f64; 2],
-    /// How far along the way either is, mm.
-    way_mm: [f64; 2],
-    /// Of the slowest motion.
-    minutes_per_mm: f64,
-}
-
-impl Reach {
-    /// How far along the way it is after so many minutes, mm.
-    fn at_least_mm(&self, minutes: f64) -> f64 {
-        let ([from, to], [from_mm, to_mm]) = (self.minutes, self.way_mm);
-        if to > from { from_mm + (minutes - from) / (to - from) * (to_mm - from_mm) } else { from_mm }
-    }
 }
 
 /// Tip, direction and rotary axes at a place, each with its limit.
@@ -235,11 +200,12 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             Reached::At(ahead, _) => {
                 if process.feed.is_some() {
                     // Told by a speed, which is compared: it took the time that it should.
-                    if let Some(Reach { minutes, way_mm, .. }) = self.wanted_time() {
-                        self.time = Time { made: minutes, made_mm: way_mm[1] };
+                    if let Some(reach) = self.alignment.wanted_time() {
+                        self.time = reach.time();
                     }
                 } else if let Some(minutes) = minutes {
-                    self.compare_time(minutes, way_mm, short, ahead, line);
+                    let few = if short { minutes } else { 0.0 };
+                    self.compare_time(&Taken { minutes, few, way_mm }, ahead, line);
                 }
             }
         }
@@ -333,62 +299,13 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     }
 
     /// Under G93 a motion is known by what it takes.
-    ///
-    /// * `way_mm` – the length that is commanded
-    fn compare_time(&mut self, minutes: f64, way_mm: f64, short: bool, ahead: usize, line: u64) {
-        let Some(reach) = self.wanted_time() else { return };
-        let [from, to] = reach.minutes;
+    fn compare_time(&mut self, taken: &Taken, ahead: usize, line: u64) {
+        let Some(reach) = self.alignment.wanted_time() else { return };
         let Some(feed) = self.alignment.wanted.feed(ahead) else { return };
-        let (wanted_line, whole) = (feed.line, feed.minutes.unwrap_or(0.0));
-        // Of two motions about as long as the limit only one may count.
-        let of_short = |short: bool, minutes: f64| if short { minutes } else { 0.0 };
-        let few = of_short(short, minutes).max(of_short(feed.is_short(), whole));
-        if self.time.made[0].is_nan() {
-            self.time = Time { made: [to - minutes; 2], made_mm: reach.way_mm[1] };
+        let wanted_line = feed.line;
+        if let Some(times) = self.time.go_on(&reach, feed, taken) {
+            self.mismatch(What::Time(times), wanted_line, line);
         }
-        let before = self.time.made[0];
-        let since = minutes.max(to - before);
-        let early = SAME_TIME * since + few;
-        // What leads no farther, as while play is taken up, takes its time at the motion's speed: of one that ends at a corner
-        // nobody knows whose. No way takes less time for it.
-        let farther_mm = (reach.way_mm[1] - self.time.made_mm).max(0.0);
-        let detour = (way_mm - farther_mm).max(0.0) * reach.minutes_per_mm;
-        let late = early + NO_TIME * whole + detour;
-        let [least, most] = self.time.made.map(|made| made + minutes);
-        let differs = most < from - early || least > to + late;
-        if differs {
-            let wanted = (0.5 * (from + to) - before).max(1e-12);
-            self.mismatch(What::Time((least - before) / wanted), wanted_line, line);
-        }
-        let made = if differs { [from, to] } else { [from.max(least - late), to.min(most + early)] };
-        self.time = Time { made, made_mm: reach.at_least_mm(made[0]) };
-    }
-
-    /// The minutes and the way at the first and the last place that are reached.
-    fn wanted_time(&mut self) -> Option<Reach> {
-        let (mut reach, mut so_far, mut so_far_mm, mut k): (Option<Reach>, f64, f64, usize) =
-            (None, 0.0, 0.0, 0);
-        while let Some(feed) = self.alignment.wanted.feed(k).filter(|feed| feed.left.asked) {
-            let (minutes, way_mm) = feed.timed();
-            for (stretch, span) in feed.left.reached() {
-                let at = |s: f64| {
-                    let share = (stretch as f64 + s) / feed.stretches.len() as f64;
-                    (so_far + minutes * share, so_far_mm + way_mm * share)
-                };
-                let (low, high) = (at(span.low), at(span.high));
-                let reach = reach.get_or_insert(Reach {
-                    minutes: [low.0; 2],
-                    way_mm: [low.1; 2],
-                    minutes_per_mm: 0.0,
-                });
-                (reach.minutes[1], reach.way_mm[1]) = high;
-                if way_mm > 0.0 {
-                    reach.minutes_per_mm = reach.minutes_per_mm.max(minutes / way_mm);
-                }
-            }
-            (so_far, so_far_mm, k) = (so_far + minutes, so_far_mm + way_mm, k + 1);
-        }
-        reach
     }
 
     /// What is left of the run lies in the air above a hole.
@@ -501,9 +418,11 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             // Of as many, feeds before anything else, then as many on either side.
             let meets = |skipped: usize| {
                 let pair = (self.alignment.wanted.peek(done + skipped), self.commanded.peek(sum - skipped));
+                // The one that is under way goes on.
+                let entry = if skipped == 0 { Entry::OnTheWay } else { Entry::AtStart };
                 let rank = match pair {
                     (None, None) => 2,
-                    (Some(wanted), Some(made)) if difference::fits(wanted, made, skipped == 0, 0.0) => {
+                    (Some(wanted), Some(made)) if difference::fits(wanted, made, entry, 0.0) => {
                         u8::from(!matches!(made, Item::Feed(_)))
                     }
                     _ => return None,
@@ -518,7 +437,7 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
         // A program that was not corrected is off everywhere: there the next that is much the same.
         let same = (1..=most).find(|n| {
             let pair = self.alignment.wanted.peek(done + n).zip(self.commanded.peek(*n));
-            pair.is_some_and(|(wanted, made)| difference::fits(wanted, made, false, NEARLY_MM))
+            pair.is_some_and(|(wanted, made)| difference::fits(wanted, made, Entry::AtStart, NEARLY_MM))
         });
         if let Some(count) = same {
             return [count; 2];

@@ -6,6 +6,11 @@ use nalgebra::SVector;
 /// that of the tool times [`POINTING_LEVER_MM`] and A, B, C in radians times [`TURN_LEVER_MM`].
 pub(crate) type Place = SVector<f64, 9>;
 
+/// X, Y, Z of a place.
+pub(crate) fn first_three(place: &Place) -> [f64; 3] {
+    [place[0], place[1], place[2]]
+}
+
 /// Where directions are compared, a whole turn and another branch of the inverse kinematics are seen by this, mm a radian,
 /// and what a direction is corrected by is not.
 pub(crate) const TURN_LEVER_MM: f64 = 0.01;

@@ -131,7 +131,7 @@ pub(crate) fn unparted(html: &str) -> String {
     let mut out = String::with_capacity(html.len() + html.len() / 16);
     let mut rest = html;
     // The element whose texts are left alone, and whether amounts are to be typed.
-    let (mut kept, mut is_code) = (None::<&str>, false);
+    let (mut kept, mut kind) = (None::<&str>, Kind::Prose);
     while let Some(start) = rest.find('<') {
         let (text, tag) = rest.split_at(start);
         let length = tag.find('>').map_or(tag.len(), |end| end + 1);
@@ -139,7 +139,7 @@ pub(crate) fn unparted(html: &str) -> String {
         if kept.is_some() {
             out.push_str(text);
         } else {
-            unparted_text(text, is_code, &mut out);
+            unparted_text(text, kind, &mut out);
         }
         match kept {
             Some(element) if name.strip_prefix('/') == Some(element) => kept = None,
@@ -149,8 +149,8 @@ pub(crate) fn unparted(html: &str) -> String {
             Some(_) => {}
         }
         match name {
-            "code" => is_code = true,
-            "/code" => is_code = false,
+            "code" => kind = Kind::Code,
+            "/code" => kind = Kind::Prose,
             _ => {}
         }
         out.push_str(&tag[..length]);
@@ -185,13 +185,22 @@ pub(crate) fn longest(text: &str) -> usize {
     most
 }
 
+/// What a text of a page is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// Sentences, with amounts in them.
+    Prose,
+    /// What is typed.
+    Code,
+}
+
 /// One text of a page.
-fn unparted_text(text: &str, is_code: bool, out: &mut String) {
+fn unparted_text(text: &str, kind: Kind, out: &mut String) {
     let mut before = "";
     for (k, word) in text.split(' ').enumerate() {
         match k {
             0 => {}
-            _ if !is_code && stays_with(before, word) => out.push('\u{a0}'),
+            _ if kind == Kind::Prose && stays_with(before, word) => out.push('\u{a0}'),
             _ => out.push(' '),
         }
         if is_whole(word) {

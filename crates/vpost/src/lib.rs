@@ -60,7 +60,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => {
             if let Some(failure) = jobs::options::unread(&error) {
-                Messages::new(Color::Auto, false, language::of_arguments(&arguments)).failure(&failure);
+                Messages::new(Color::Auto, language::of_arguments(&arguments)).failure(&failure);
                 return ExitCode::from(USAGE);
             }
             let status = if error.use_stderr() { USAGE } else { DONE };
@@ -82,7 +82,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let interrupt = Interrupt::listen();
     let MessageOptions { color, quiet, language, .. } = &arguments.shared.messages;
     let language = language::chosen(language.as_deref().copied());
-    let messages = Messages::new(*color, *quiet, language);
+    let messages = Messages::new(*color, language);
+    let messages = if *quiet { messages.quiet() } else { messages };
     let result = match &arguments.command {
         Some(Command::Correct(a)) => correct::run(a, &arguments.shared, &messages),
         Some(Command::Batch(a)) => batch::run(a, &arguments.shared, &messages),

@@ -17,14 +17,19 @@ pub(crate) struct Messages {
 }
 
 impl Messages {
-    pub(crate) fn new(color: Color, quiet: bool, language: Language) -> Self {
+    pub(crate) fn new(color: Color, language: Language) -> Self {
         let colored = match color {
             Color::Always => true,
             Color::Never => false,
             Color::Auto => std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
         };
         let wording = if colored { Wording::colored() } else { Wording::plain() }.speaking(language);
-        Self { wording: if quiet { wording.quiet() } else { wording }, quiet, language }
+        Self { wording, quiet: false, language }
+    }
+
+    /// The same with errors alone.
+    pub(crate) fn quiet(self) -> Self {
+        Self { wording: self.wording.quiet(), quiet: true, ..self }
     }
 
     /// Prints a failure.

@@ -31,7 +31,7 @@ impl Session {
     pub fn new(options: &[&str], limits: Limits) -> Result<Self, Refusal> {
         let line = ["vpost"].iter().chain(options).chain(&["-"]).map(std::ffi::OsString::from);
         let arguments = Arguments::read(line).map_err(|error| Refusal(error.to_string()))?;
-        let messages = Messages::new(Color::Never, true, Language::English);
+        let messages = Messages::new(Color::Never, Language::English).quiet();
         match Settings::load(&arguments.shared.job) {
             Ok(mut settings) => {
                 settings.flow.limits = limits;

@@ -1,7 +1,7 @@
 //! Derivatives of what is read by what is unknown: equation (101).
 
 use diagnostic::Speaks;
-use machine_model::{Axis, AxisTables, Command, Description, Range, RigidBody, Vector};
+use machine_model::{Axis, AxisTables, Command, Component, Description, Range, RigidBody, Vector};
 use nalgebra::DMatrix;
 
 use super::terms::Term;
@@ -78,8 +78,10 @@ impl Columns {
     pub(crate) fn slope(&self, term: &Term, command: usize, turning: i8) -> Vector {
         let own = self.slopes(term.axis(), command);
         match term {
-            Term::Location(location) if location.is_length => own[location.direction],
-            Term::Location(location) => own[6 + location.direction],
+            Term::Location(location) => match location.component {
+                Component::Linear => own[location.direction],
+                Component::Angular => own[6 + location.direction],
+            },
             Term::Coefficient { axis, function, basis, group, which } => {
                 own[*function] * basis.values(*group, self.angles_rad[command][axis.direction()])[*which]
             }

@@ -30,8 +30,8 @@ pub use terms::Term;
 use crate::adjustment::{Estimate, Jacobian, Noise, Problem, adjust};
 use crate::ballbar::from_one_another;
 use crate::error::CalibrationError;
-use crate::machine_change::Base;
-use crate::rotary_ballbar::Location;
+use crate::points::Base;
+use crate::rotary_ballbar::{Location, out_of_place};
 use columns::Columns;
 use measured::Measured;
 use ownership::Normal;
@@ -95,9 +95,6 @@ const ASIDE_MM: f64 = 10.0;
 
 /// A ball nearer to an axis than this says nothing of its tilts, mm.
 pub const ON_AXIS_MM: f64 = 1.0;
-
-/// No location error of a machine is larger: 5 mm, 50 mrad.
-const LARGEST: [f64; 2] = [5.0, 0.05];
 
 /// What is left below is nothing that a table is worth, mm: tables are written to 0.01 µm.
 const FINEST_MM: f64 = 5e-6;
@@ -301,7 +298,7 @@ fn all_terms(
     groups: &dyn Fn(&TurnedAxis) -> usize,
 ) -> Vec<Term> {
     let mut terms: Vec<Term> =
-        axes.iter().flat_map(|own| Location::of(own.axis)).map(Term::Location).collect();
+        axes.iter().flat_map(|own| Location::all(own.axis)).map(Term::Location).collect();
     terms.extend(
         axes.iter().filter(|own| measured.comes_from_both(own.axis)).map(|own| Term::Reversal(own.axis)),
     );
@@ -411,10 +408,7 @@ fn found_term(
     open: &judgement::Open,
 ) -> FoundTerm {
     let base = match term {
-        Term::Location(Location { axis, is_length, direction }) => {
-            let rotary = &description.rotary[axis.direction()];
-            if is_length { rotary.shift_mm[direction] } else { rotary.tilt_rad[direction] }
-        }
+        Term::Location(location) => location.of(description),
         _ => 0.0,
     };
     FoundTerm {
@@ -428,18 +422,13 @@ fn found_term(
 }
 
 fn plausible(found: &[FoundTerm]) -> Result<(), CalibrationError> {
-    let wild = |f: &&FoundTerm| (f.base + f.change).abs() > LARGEST[usize::from(!f.term.is_length())];
-    let Some(wild) = found.iter().filter(|f| f.is_written).find(wild) else { return Ok(()) };
-    let (size, unit) = if wild.term.is_length() {
-        (1.0, Text::pair("mm", "мм"))
-    } else {
-        (1e3, Text::pair("mrad", "мрад"))
-    };
+    let mut written = found.iter().filter(|f| f.is_written);
+    let wild = |f: &FoundTerm| Some((f.term, out_of_place(f.term.component(), f.base + f.change)?));
+    let Some((term, (size, unit))) = written.find_map(wild) else { return Ok(()) };
     Err(CalibrationError::Contradicted(both!(
-        "{} would be {:.1} {unit}: no axis is so far from its place; are centre_mm and the angles those of this machine?",
-        "{} была бы {:.1} {unit:#}: так далеко от своего места ось не бывает; centre_mm и углы от этого станка?",
-        wild.term.name(),
-        (wild.base + wild.change) * size
+        "{} would be {size:.1} {unit}: no axis is so far from its place; are centre_mm and the angles those of this machine?",
+        "{} была бы {size:.1} {unit:#}: так далеко от своего места ось не бывает; centre_mm и углы от этого станка?",
+        term.name()
     )))
 }
 

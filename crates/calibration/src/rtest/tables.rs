@@ -9,8 +9,7 @@ use super::found::{BallReading, FoundTerm, TurnedAxis};
 use super::terms::{Term, change_at, tables};
 use crate::error::CalibrationError;
 use crate::field;
-use crate::machine_change::Base;
-use crate::rotary_ballbar::Location;
+use crate::points::Base;
 use crate::student::quantile_95;
 
 /// Between the nodes a written function keeps to what was found within: 0.01 µm, and as much at an arm of half a metre.
@@ -178,10 +177,8 @@ fn half_widths(
 pub(super) fn machine(base: &Base, found: &[FoundTerm], tables_of: &[WrittenTable]) -> Description {
     let mut machine = base.description.clone();
     for f in found.iter().filter(|f| f.is_written) {
-        if let Term::Location(Location { axis, is_length, direction }) = f.term {
-            let rotary = &mut machine.rotary[axis.direction()];
-            let vector = if is_length { &mut rotary.shift_mm } else { &mut rotary.tilt_rad };
-            vector[direction] += f.change;
+        if let Term::Location(location) = f.term {
+            location.add(&mut machine, f.change);
         }
     }
     for table in tables_of {

@@ -1,6 +1,6 @@
 //! What is unknown of the rotary axes, and the machine that has it: equations (100) and (101).
 
-use machine_model::{Axis, AxisTables, Description, Interpolation, Six, Table};
+use machine_model::{Axis, AxisTables, Component, Description, Interpolation, Six, Table};
 
 use super::basis::Basis;
 use crate::rotary_ballbar::Location;
@@ -43,13 +43,13 @@ impl Term {
         }
     }
 
-    /// True where it is counted in mm, false for rad.
+    /// Whether it is counted in mm or rad.
     #[must_use]
-    pub fn is_length(&self) -> bool {
+    pub fn component(&self) -> Component {
         match self {
-            Self::Location(location) => location.is_length,
-            Self::Coefficient { function, .. } => *function < 3,
-            Self::Reversal(_) => false,
+            Self::Location(location) => location.component,
+            Self::Coefficient { function, .. } => Component::of(*function),
+            Self::Reversal(_) => Component::Angular,
         }
     }
 
@@ -85,10 +85,8 @@ pub(crate) fn changed(
 ) -> Description {
     let mut machine = base.clone();
     for (term, value) in terms.iter().zip(x) {
-        if let Term::Location(Location { axis, is_length, direction }) = *term {
-            let rotary = &mut machine.rotary[axis.direction()];
-            let vector = if is_length { &mut rotary.shift_mm } else { &mut rotary.tilt_rad };
-            vector[direction] += value;
+        if let Term::Location(location) = term {
+            location.add(&mut machine, *value);
         }
     }
     for axis in &Axis::ALL[3..] {

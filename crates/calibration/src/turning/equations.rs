@@ -5,7 +5,7 @@ use turning::{Bending, Lathe, Spindle, Station, Tip};
 
 use super::rows::{Feature, TurnedReading};
 use crate::ChangedAxis;
-use crate::machine_change::tables_of;
+use crate::layout::tables_of;
 
 /// The lathe as it is known.
 #[derive(Clone, Debug)]

@@ -3,8 +3,9 @@
 use diagnostic::{Speaks, Text, both};
 use nalgebra::{DMatrix, DVector};
 
+use super::bases::{fisher_limit, orthonormal, without};
 use super::equations::{Change, Stretch, TurningBase};
-use super::readings::{Adjusted, Readings, fisher_limit, orthonormal, without};
+use super::readings::{Adjusted, Readings};
 use super::rows::{Feature, TurnedReading, check, check_repeats};
 use super::strata::Uncertainty;
 use super::term::Term;

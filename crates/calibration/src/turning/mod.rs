@@ -5,9 +5,12 @@
 //! counted as EB0S. Faces see how square X is to that axis: EB0S alone, for X is straight along itself; with both,
 //! EB0Z is told as well.
 
+mod bases;
 mod causes;
 mod equations;
 mod estimate;
+mod levels;
+mod one_machine;
 mod readings;
 mod rounding;
 mod rows;

@@ -2,7 +2,6 @@
 
 use diagnostic::{Speaks, both};
 use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::equations::{Change, Stretch, TurningBase};
 use super::rounding::{Stepped, is_smooth};
@@ -10,10 +9,12 @@ use super::rows::{Feature, TurnedReading, finest_mm};
 use super::strata::{Between, MeanSquare, Spread, Uncertainty, Whitening};
 use super::term::Term;
 use crate::CalibrationError;
-use crate::adjustment::{Estimate, Jacobian, Noise, Outlier, Problem, adjust, linear};
+use crate::adjustment::{Estimate, Jacobian, Noise, Outlier, Problem, adjust};
+use crate::turning::bases::{orthonormal, projection, without};
+pub(crate) use crate::turning::levels::{Levels, order_of_parts};
 
 /// Test pieces of one machine differ so much in their tapers with this chance.
-const PARTS_CHANCE: f64 = 1e-3;
+pub(crate) const PARTS_CHANCE: f64 = 1e-3;
 /// Of differences: large against rounding, small against the curvature of the model.
 const STEPS: [f64; 3] = [1e-4, 1e-4, 1e-2];
 /// A step that changes no reading by more is the last, mm: what it leaves is its square.
@@ -27,33 +28,6 @@ const MOST_OF_ROUNDING: f64 = 6.0;
 /// Shares below this are rounding.
 const NOTHING: f64 = 1e-9;
 
-/// Sizes and shifts, numbered.
-pub(super) struct Levels {
-    /// Of each row.
-    pub(super) of_row: Vec<usize>,
-    /// The first row of each.
-    pub(super) first: Vec<usize>,
-}
-
-impl Levels {
-    /// Rows of one key have one level.
-    fn by<K: PartialEq>(rows: &[TurnedReading], key: impl Fn(&TurnedReading) -> K) -> Self {
-        let mut first: Vec<usize> = Vec::new();
-        let of_row = rows.iter().enumerate().map(|(k, row)| {
-            first.iter().position(|known| key(&rows[*known]) == key(row)).unwrap_or_else(|| {
-                first.push(k);
-                first.len() - 1
-            })
-        });
-        let of_row = of_row.collect();
-        Self { of_row, first }
-    }
-
-    pub(super) fn count(&self) -> usize {
-        self.first.len()
-    }
-}
-
 /// Readings with what does not change from fit to fit.
 pub(super) struct Readings<'r> {
     pub(super) rows: &'r [TurnedReading],
@@ -62,7 +36,7 @@ pub(super) struct Readings<'r> {
     /// One size per tool, where it is known, else per part; a shift per part's faces.
     pub(super) tools: Levels,
     /// One size per part and tool: what parts share is none of the form.
-    cells: Levels,
+    pub(crate) cells: Levels,
     /// Parts that have diameters, in the order in which they are named.
     pub(super) parts: Vec<usize>,
     /// h from the mean.
@@ -70,7 +44,7 @@ pub(super) struct Readings<'r> {
     /// Order of its part among those of its tool, from the mean.
     order: Vec<f64>,
     /// mm, or relative.
-    weights: Vec<f64>,
+    pub(crate) weights: Vec<f64>,
     pub(super) is_known: bool,
 }
 
@@ -293,7 +267,7 @@ impl<'r> Readings<'r> {
     }
 
     /// Weighted sum of squares.
-    fn squares(&self, found: &Estimate) -> f64 {
+    pub(crate) fn squares(&self, found: &Estimate) -> f64 {
         found.residuals.iter().zip(&self.weights).map(|(r, w)| (r / w) * (r / w)).sum()
     }
 
@@ -459,138 +433,9 @@ impl<'r> Readings<'r> {
         let size = centred(&|k| self.rows[k].tip_mm().x);
         size.norm() > NOTHING && own.dot(&size).powi(2) > alike * own.norm_squared() * size.norm_squared()
     }
-
-    /// Refuses test pieces whose tapers differ beyond chance.
-    pub(super) fn one_machine(
-        &self,
-        terms: &[Term],
-        adjusted: &Adjusted,
-        names: &[String],
-    ) -> Result<(), CalibrationError> {
-        // What grows in time is told by the sizes of the parts: within a part it looks like a taper of its own.
-        let (terms, mut values): (Vec<Term>, Vec<f64>) =
-            (terms.iter().copied().zip(adjusted.values.iter().copied()))
-                .filter(|(term, _)| term.is_geometry())
-                .unzip();
-        values.resize(terms.len() + self.cells.count(), 0.0);
-        let design = self.jacobian(&terms, &self.cells, &values.into());
-        let middle = 0.5 * (self.stretch.low_mm + self.stretch.high_mm);
-        // The first part's own taper is what the others differ from.
-        let own = self.parts[1..].iter().map(|part| {
-            DVector::from_fn(self.rows.len(), |k, _| {
-                let row = &self.rows[k];
-                let is_own = row.part == *part && row.feature == Feature::Diameter;
-                if is_own { 2.0 * (row.command.linear_mm.z - middle) } else { 0.0 }
-            })
-        });
-        let columns: Vec<DVector<f64>> =
-            design.column_iter().map(|column| column.into_owned()).chain(own).collect();
-        let more = self.parts.len() - 1;
-        if self.rows.len() < columns.len() + 2 {
-            return Ok(());
-        }
-        let wide = DMatrix::from_columns(&columns);
-        let fitted = |design: &DMatrix<f64>| {
-            let gauge = DMatrix::zeros(0, design.ncols());
-            linear(design, &adjusted.residuals, Noise::Relative(&self.weights), &gauge)
-                .map_err(|error| CalibrationError::Contradicted(error.text()))
-        };
-        let (alike, apart) = (fitted(&design)?, fitted(&wide)?);
-        let (all, left) = (self.squares(&alike), self.squares(&apart));
-        let free = apart.redundancy.max(1);
-        let variance = if self.is_known { 1.0 } else { left / free as f64 };
-        let ratio = (all - left) / more as f64 / variance;
-        let limit =
-            fisher_limit(more as f64, if self.is_known { f64::INFINITY } else { free as f64 }, PARTS_CHANCE);
-        let tapers = apart.values.rows(design.ncols(), more);
-        let length = self.stretch.high_mm - self.stretch.low_mm;
-        let (low, high) = tapers.iter().fold((0.0f64, 0.0f64), |(l, h), t| (l.min(*t), h.max(*t)));
-        let apart_mm = 2.0 * (high - low) * length;
-        if ratio <= limit || apart_mm <= finest_mm(self.rows) {
-            return Ok(());
-        }
-        let odd = tapers.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-        let odd = odd.map_or(0, |(k, _)| self.parts[k + 1]);
-        Err(CalibrationError::Contradicted(both!(
-            "the test pieces differ in their tapers, by {:.2} um on the diameter over {length:.0} mm (F {ratio:.1}, {limit:.1} by \
-             chance at 0.1 %), `{}` and `{}` among them: that is their own bending or clamping, not one machine",
-            "конусность образцов различается на {:.2} мкм на диаметр на длине {length:.0} мм (F {ratio:.1}, случайно {limit:.1} \
-             при 0.1 %), в том числе `{}` и `{}`: это их собственный изгиб или закрепление, а не один станок",
-            apart_mm * 1e3,
-            names[self.parts[0]],
-            names[odd],
-        )))
-    }
 }
 
 /// Those that differ within a part; the others are part of its size.
 fn within_a_part(terms: &[Term]) -> Vec<Term> {
     terms.iter().copied().filter(|term| !matches!(term, Term::Wear | Term::PartToPart)).collect()
-}
-
-/// Which part of its tool a row's part is, counted from the mean: by time where all say it, else as the file lists them.
-fn order_of_parts(rows: &[TurnedReading], tools: &Levels) -> Vec<f64> {
-    let mut order = vec![0.0; rows.len()];
-    for level in 0..tools.count() {
-        let own: Vec<usize> = (0..rows.len()).filter(|k| tools.of_row[*k] == level).collect();
-        order_within(&own, |k| (rows[k].part, rows[k].time_s), &mut order);
-    }
-    order
-}
-
-/// The same for the rows `own` of one tool; `of`: part and time of a row, s.
-pub(super) fn order_within(own: &[usize], of: impl Fn(usize) -> (usize, Option<f64>), order: &mut [f64]) {
-    let mut parts: Vec<usize> = Vec::new();
-    for k in own {
-        if !parts.contains(&of(*k).0) {
-            parts.push(of(*k).0);
-        }
-    }
-    if own.iter().all(|k| of(*k).1.is_some()) {
-        let start = |part: usize| {
-            let times =
-                own.iter().map(|k| of(*k)).filter(|(of, _)| *of == part).filter_map(|(_, time_s)| time_s);
-            times.fold(f64::INFINITY, f64::min)
-        };
-        parts.sort_by(|a, b| start(*a).total_cmp(&start(*b)));
-    }
-    for k in own {
-        let place = parts.iter().position(|part| *part == of(*k).0).unwrap_or(0);
-        order[*k] = place as f64 - 0.5 * (parts.len() - 1) as f64;
-    }
-}
-
-/// What an F of so many degrees of freedom exceeds with this chance; infinite ones below: the noise is known.
-pub(super) fn fisher_limit(above: f64, below: f64, chance: f64) -> f64 {
-    FisherSnedecor::new(above, below.min(KNOWN_FREEDOM))
-        .map_or(f64::INFINITY, |f| f.inverse_cdf(1.0 - chance))
-}
-
-/// Degrees of freedom of a standard deviation that is stated.
-const KNOWN_FREEDOM: f64 = 1e6;
-
-/// Projection on what an orthonormal basis spans, its rows and columns `own`.
-fn projection(basis: &[DVector<f64>], own: &[usize]) -> DMatrix<f64> {
-    basis.iter().fold(DMatrix::zeros(own.len(), own.len()), |sum, vector| {
-        let vector = vector.select_rows(own);
-        sum + &vector * vector.transpose()
-    })
-}
-
-/// An orthonormal basis of what these span beyond the given one.
-pub(super) fn orthonormal(vectors: &[DVector<f64>], given: &[DVector<f64>]) -> Vec<DVector<f64>> {
-    let mut basis = given.to_vec();
-    for vector in vectors {
-        let own = without(vector, &basis);
-        if own.norm() > 1e-9 * vector.norm() {
-            basis.push(own.normalize());
-        }
-    }
-    basis
-}
-
-/// A vector less its part in an orthonormal basis; twice, for rounding.
-pub(super) fn without(vector: &DVector<f64>, basis: &[DVector<f64>]) -> DVector<f64> {
-    let once = basis.iter().fold(vector.clone(), |left, own| &left - own * own.dot(&left));
-    basis.iter().fold(once, |left, own| &left - own * own.dot(&left))
 }

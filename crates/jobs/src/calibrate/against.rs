@@ -4,7 +4,7 @@ use std::path::Path;
 
 use calibration::change::{by_function, compare};
 use diagnostic::{Text, both};
-use machine_model::{Range, Vector, Volume};
+use machine_model::{Component, Range, Vector, Volume};
 use machine_profile::Profile;
 use measurement_files::micro;
 
@@ -75,7 +75,7 @@ fn functions(old: &Profile, new: &Profile, uncertainty_mm: f64, volume: &Volume)
     for change in by_function(&old.description, &new.description) {
         let name =
             format!("E{}{}", ["X", "Y", "Z", "A", "B", "C"][change.function], ["X", "Y", "Z"][change.axis]);
-        let (factor, unit) = micro(change.function < 3);
+        let (factor, unit) = micro(Component::of(change.function));
         let arm = if change.function < 3 { 1.0 } else { arm_mm };
         if change.by.abs() * arm > 1.5 * uncertainty_mm {
             text.push(&both!(

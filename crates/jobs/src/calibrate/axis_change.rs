@@ -3,8 +3,8 @@
 
 use calibration::functions::{self, Function, FunctionReading};
 use calibration::measured_line::{
-    AxisOnNodes, Gauge, MeasuredLine, Zero, angles_between, apply_gauge, field_u95_mm, settle_directions,
-    squareness_for,
+    AxisOnNodes, FunctionSets, Gauge, MeasuredLine, Zero, angles_between, apply_gauge, field_u95_mm,
+    settle_directions, squareness_for,
 };
 use diagnostic::both;
 use machine_model::effects::{Conditions, EffectTerm};
@@ -43,6 +43,16 @@ pub(super) struct Session {
     has_base: bool,
 }
 
+/// A machine without errors, which as yet goes nowhere.
+fn perfect(chain: &Chain) -> Description {
+    Description {
+        chain: chain.clone(),
+        linear: std::array::from_fn(|_| LinearAxis::perfect(Range { low: f64::MAX, high: f64::MIN })),
+        rotary: std::array::from_fn(|_| RotaryAxis::perfect(Vector::zeros())),
+        squareness: Squareness::default(),
+    }
+}
+
 impl Session {
     /// The machine before, and the lines.
     ///
@@ -62,13 +72,7 @@ impl Session {
         }
         targets_mm.iter_mut().for_each(rising);
         let measured = targets_mm.each_ref().map(|targets| !targets.is_empty());
-        let perfect = || Description {
-            chain: chain.clone(),
-            linear: std::array::from_fn(|_| LinearAxis::perfect(Range { low: f64::MAX, high: f64::MIN })),
-            rotary: std::array::from_fn(|_| RotaryAxis::perfect(Vector::zeros())),
-            squareness: Squareness::default(),
-        };
-        let mut description = base.map_or_else(perfect, |base| base.description.clone());
+        let mut description = base.map_or_else(|| perfect(chain), |base| base.description.clone());
         let lines = lines(arguments, output, &description, &targets_mm)?;
         for axis in Axis::ALL.into_iter().take(3) {
             inside_travel(arguments, output, &description, axis, all)?;
@@ -98,7 +102,8 @@ impl Session {
             if places.iter().any(|at| *at < low || *at > high) {
                 nodes.extend(places);
                 rising(&mut nodes);
-                let longer = AxisOnNodes::new(axis, k, given[k].unwrap_or_default(), nodes, false);
+                let longer =
+                    AxisOnNodes::new(axis, k, given[k].unwrap_or_default(), nodes, FunctionSets::AsInBase);
                 if let Some(longer) = longer.axis(axis, interpolation) {
                     *axis = longer;
                 }
@@ -110,7 +115,7 @@ impl Session {
                 .extend((0..=LINE_CELLS).map(|i| low + (high - low) * f64::from(i) / f64::from(LINE_CELLS)));
         }
         let effects = match base {
-            Some(base) => base.effect_terms(false).map_err(|error| conditions::failure(&error))?,
+            Some(base) => base.effect_terms().map_err(|error| conditions::failure(&error))?,
             None => Vec::new(),
         };
         let conditions = conditions::conditions(work.options)?;
@@ -134,13 +139,9 @@ impl Session {
         self.given[axis.direction()].is_some()
     }
 
-    /// Where the numbers of an axis have their zero.
-    pub(super) fn zero(&self, axis: Axis, model: bool) -> Zero {
-        match (model, self.keeps_line(axis)) {
-            (true, _) => Zero::Model,
-            (false, true) => Zero::Base,
-            (false, false) => Zero::New,
-        }
+    /// Where the numbers of an axis have their zero, of one whose functions belong to no model.
+    pub(super) fn zero(&self, axis: Axis) -> Zero {
+        if self.keeps_line(axis) { Zero::Base } else { Zero::New }
     }
 
     fn machine(&self, description: &Description, temperature_c: Option<f64>) -> Result<WithEffects, Failure> {
@@ -175,7 +176,8 @@ impl Session {
             let read = std::array::from_fn(|f| all.iter().any(|s| s.axis == axis && s.function == f));
             let data = &mut description.linear[k];
             let given = self.given[k].unwrap_or_default();
-            let left = AxisOnNodes::new(data, k, given, tables_nodes(data), false).without(k, read);
+            let left =
+                AxisOnNodes::new(data, k, given, tables_nodes(data), FunctionSets::AsInBase).without(k, read);
             data.backlash_mm = left.backlash_mm;
             if let Some(left) = left.axis(data, self.interpolation) {
                 *data = left;
@@ -242,8 +244,11 @@ impl Session {
                 "leave one of them out", "уберите одну из них"
             )));
         }
-        let two = change.iter().flatten().any(|f| f.directions.is_some());
-        let mut made = AxisOnNodes::new(data, k, self.given[k].unwrap_or_default(), nodes, two);
+        let sets = match change.iter().flatten().any(|f| f.directions.is_some()) {
+            true => FunctionSets::ByDirection,
+            false => FunctionSets::AsInBase,
+        };
+        let mut made = AxisOnNodes::new(data, k, self.given[k].unwrap_or_default(), nodes, sets);
         if zero == Zero::Model {
             made = made.without(k, change.each_ref().map(Option::is_some));
         }

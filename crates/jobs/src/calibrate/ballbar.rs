@@ -149,7 +149,7 @@ impl Base {
     /// The machine under these conditions.
     fn machine(&self, conditions: Conditions) -> Result<WithEffects, Failure> {
         let effects: Vec<EffectTerm> = match &self.profile {
-            Some(profile) => profile.effect_terms(false).map_err(|error| conditions::failure(&error))?,
+            Some(profile) => profile.effect_terms().map_err(|error| conditions::failure(&error))?,
             None => Vec::new(),
         };
         WithEffects::new(body(&self.description)?, effects, conditions)

@@ -5,7 +5,7 @@ use calibration::linear_ballbar::{CircleCalibration, Term};
 use calibration::rotary_ballbar::{RotaryCalibration, Test};
 use calibration::rotary_sequence::{Sequence, approximation_mm, sequence};
 use diagnostic::{Text, both};
-use machine_model::{Axis, Description, Vector};
+use machine_model::{Axis, Component, Description, Vector};
 use measurement_files::micro;
 
 use super::sources::line;
@@ -49,7 +49,7 @@ pub(super) fn rotary_report(found: &RotaryCalibration, tests: &[Test], descripti
         format!("{value:>10.3} ± {half:>8.3}{by}{}", if based { base } else { Text::EMPTY })
     };
     for (k, f) in found.locations.iter().enumerate() {
-        let (scale, unit) = micro(f.location.is_length);
+        let (scale, unit) = micro(f.location.component);
         let by = published.as_ref().map(|by| by.piges[k] * scale);
         let base = Text::same(format!(" {:>11.3}", f.base * scale));
         let row = columns(f.value * scale, f.half_width_95 * scale, by, base);
@@ -80,10 +80,10 @@ pub(super) fn before_and_after(before: &RotaryCalibration, after: &RotaryCalibra
     let mut largest = [0.0_f64; 2];
     for f in &before.locations {
         let Some(g) = after.locations.iter().find(|g| g.location == f.location) else { continue };
-        let (scale, unit) = micro(f.location.is_length);
+        let (scale, unit) = micro(f.location.component);
         let row = format!("  {}  {:>9.2}  {:>9.2}", f.location.name(), f.value * scale, g.value * scale);
         out.push(&line(row, &unit));
-        if f.location.is_length {
+        if f.location.component == Component::Linear {
             largest[0] = largest[0].max(f.value.abs() * scale);
             largest[1] = largest[1].max(g.value.abs() * scale);
         }
@@ -122,7 +122,7 @@ pub(super) fn circle_report(found: &CircleCalibration) -> Text {
     let ratio = || (1e6, both!("um/m", "мкм/м"));
     for (name, found) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().zip(found.squareness_rad) {
         if let Some(t) = found {
-            out.push(&term(Text::same(name), t, micro(false), base(t.base * 1e6)));
+            out.push(&term(Text::same(name), t, micro(Component::Angular), base(t.base * 1e6)));
         }
     }
     for (name, found) in SCALES.into_iter().zip(found.mismatch) {
@@ -140,7 +140,9 @@ pub(super) fn circle_report(found: &CircleCalibration) -> Text {
     }
     for (axis, found) in Axis::ALL.iter().zip(found.backlash_mm) {
         out.push(&match found {
-            Some(t) => term(both!("backlash {axis}", "люфт {axis}"), t, micro(true), base(t.base * 1e3)),
+            Some(t) => {
+                term(both!("backlash {axis}", "люфт {axis}"), t, micro(Component::Linear), base(t.base * 1e3))
+            }
             None => both!(
                 "  backlash {axis}  not seen: no reading says the direction of {axis} both ways\n",
                 "  люфт {axis}      не виден: нет отсчётов с направлением {axis} в обе стороны\n"

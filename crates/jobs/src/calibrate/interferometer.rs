@@ -4,7 +4,7 @@ use calibration::functions::{self, refined};
 use calibration::iso230_2;
 use calibration::measured_line::{AxisOnNodes, Gauge, Zero};
 use diagnostic::{Text, both};
-use machine_model::{Axis, Interpolation, Six, Squareness, Table};
+use machine_model::{Axis, Component, Interpolation, Six, Squareness, Table};
 use measurement_files::micro;
 use measurement_files::series::{Origin, Series, Told};
 
@@ -132,7 +132,7 @@ fn change(
     let mut made: [Option<AxisOnNodes>; 3] = Default::default();
     let mut on_base: Vec<Axis> = Vec::new();
     for axis in Axis::ALL.into_iter().take(3).filter(|axis| all.iter().any(|s| s.axis == *axis)) {
-        let zero = session.zero(axis, model(axis));
+        let zero = if model(axis) { Zero::Model } else { session.zero(axis) };
         let without_slopes = match zero {
             Zero::Model => arguments.straightness_slopes == Some(Slopes::Remove),
             Zero::Base | Zero::New => !keep,
@@ -161,7 +161,7 @@ fn change(
         values(session.squareness(&made, asked, mean_temperature(all).or(temperature_c))?)
     };
     if !on_base.is_empty() {
-        zeros(out, session, &on_base, keep);
+        zeros(out, session, &on_base, arguments.straightness_slopes);
     }
     for (k, name) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().enumerate() {
         // Half a nanoradian is what is written.
@@ -211,8 +211,8 @@ fn say_directions(axis: Axis, all: &[Series]) -> Result<(), Failure> {
 }
 
 /// What the set-up hides, and what was taken for it.
-fn zeros(out: &mut Text, session: &Session, on_base: &[Axis], keep_slopes: bool) {
-    let slopes = if keep_slopes {
+fn zeros(out: &mut Text, session: &Session, on_base: &[Axis], slopes: Option<Slopes>) {
+    let slopes = if slopes == Some(Slopes::Keep) {
         Text::EMPTY
     } else {
         Text::pair(", no slope across its axis", ", без наклона поперёк оси")
@@ -233,7 +233,7 @@ fn zeros(out: &mut Text, session: &Session, on_base: &[Axis], keep_slopes: bool)
 fn changed_lines(out: &mut Text, axis: Axis, change: &Functions) {
     for (f, function) in change.iter().enumerate() {
         let Some(function) = function else { continue };
-        let (scale, unit) = micro(f < 3);
+        let (scale, unit) = micro(Component::of(f));
         let values = function.directions.iter().flatten().chain([&function.mean]).flatten();
         let (low, high) = sources::span(values.map(|value| value * scale));
         out.push(&both!(
@@ -374,7 +374,7 @@ fn summary(out: &mut Text, axes: &[Functions; 3]) {
     for (axis, functions) in axes.iter().enumerate() {
         for (f, function) in functions.iter().enumerate() {
             let Some(function) = function else { continue };
-            let (scale, unit) = micro(f < 3);
+            let (scale, unit) = micro(Component::of(f));
             let (low, high) = sources::span(function.mean.iter().map(|value| value * scale));
             let directions = both!(", both directions", ", оба направления");
             let directions = function.directions.as_ref().map_or(Text::EMPTY, |_| directions);

@@ -179,11 +179,28 @@ pub struct RTest {
     pub target: Target,
     /// The rows are places at which a touch probe was centred on a sphere fixed to the workpiece: no dx_um dy_um dz_um.
     #[arg(long)]
-    pub sphere: bool,
+    sphere: bool,
     /// Rows that no fit sees judge the profile; one that makes them worse is not written.
     #[arg(long, value_name = "HELD.csv")]
     pub holdout: Option<PathBuf>,
     /// Write what was found, with covariance, as JSON.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+}
+
+/// How the rotary axes were measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RTestMethod {
+    /// Deviations of a ball in its nest, by an R-test.
+    Deviations,
+    /// Places at which a touch probe was centred on a sphere.
+    Sphere,
+}
+
+impl RTest {
+    /// How the rows were measured.
+    #[must_use]
+    pub fn method(&self) -> RTestMethod {
+        if self.sphere { RTestMethod::Sphere } else { RTestMethod::Deviations }
+    }
 }

@@ -8,8 +8,9 @@ use calibration::{Base, ChangedAxis, SetUp};
 use clap::Args;
 use diagnostic::Speaks;
 use machine_model::effects::{Conditions, EffectKind};
-use machine_model::{Axis, Chain, Command, Description, Six, Vector};
+use machine_model::{Axis, Chain, Command, Component, Description, Six, Vector};
 use machine_profile::{Calibrated, Profile, ProfileText};
+use measurement_files::micro;
 
 use crate::figures::short;
 use crate::message::{Failure, OPTION, notice};
@@ -264,11 +265,11 @@ impl Output {
 
     /// A location error of a rotary axis, in its own unit.
     pub(super) fn location(&mut self, location: &Location, value: f64, decimals: i32) {
-        let (unit, scale) = if location.is_length { ("um", 1e3) } else { ("urad", 1e6) };
+        let (scale, unit) = micro(location.component);
         let axis = location.axis.letter().to_string();
         let key = format!("{}_{unit}", location.name());
         self.text.set_number(&["rotary", &axis, &key], value * scale, decimals);
-        if !location.is_length {
+        if location.component == Component::Angular {
             self.text.say_tilt(&axis);
         }
     }
@@ -361,7 +362,7 @@ impl Output {
     fn temperature_c(&self, measured: Option<f64>) -> Option<f64> {
         let base = self.base.as_ref();
         let before = base.and_then(|base| base.calibrated.as_ref()?.temperature_c);
-        let terms = base.and_then(|base| base.effect_terms(false).ok()).unwrap_or_default();
+        let terms = base.and_then(|base| base.effect_terms().ok()).unwrap_or_default();
         let thermal = terms.iter().any(|term| matches!(term.kind(), EffectKind::Thermal(_)));
         if thermal { before } else { measured.or(before) }
     }

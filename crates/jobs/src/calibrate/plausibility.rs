@@ -3,6 +3,7 @@
 use calibration::functions::Function;
 use calibration::iso230_2::{self, Runs};
 use diagnostic::{Text, both};
+use machine_model::Component;
 
 use crate::message::{Failure, notice};
 
@@ -73,8 +74,12 @@ pub(super) fn copies(
         let differences = || up.iter().zip(down).map(|(u, d)| u - d);
         differences().fold(f64::MIN, f64::max) - differences().fold(f64::MAX, f64::min)
     });
-    let is_length = series.function < 3;
-    let (finest, (scale, unit)) = (if is_length { FINEST } else { FINEST_RAD }, micro(is_length));
+    let component = Component::of(series.function);
+    let (scale, unit) = micro(component);
+    let finest = match component {
+        Component::Linear => FINEST,
+        Component::Angular => FINEST_RAD,
+    };
     if apart > finest {
         return Err(Failure::usage(notice!(RUNS;
             "{message}, while the difference of the directions wanders by {} {unit} from target to target: was one run written several times?",

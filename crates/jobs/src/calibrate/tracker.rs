@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use calibration::Base;
 use calibration::tracker::{
     FarCorner, Frame, TrackerCalibration, TrackerMachine, Verdict, calibrate, machine,
 };
@@ -9,7 +10,7 @@ use calibration::{MeanTraverse, Noise, Point, PointReading, Reading, SetUp};
 use clap::{Args, ValueEnum};
 use diagnostic::{Diagnostic, Text, both};
 use machine_model::effects::Conditions;
-use machine_model::{Axis, Command, Vector};
+use machine_model::{Axis, Command, Component, Vector};
 use measurement_files::{Sheet, micro};
 
 use crate::conditions::conditions;
@@ -160,12 +161,12 @@ pub(super) fn run(arguments: &Tracker, work: &Work<'_>) -> Result<(), Failure> {
     let changed = machine(&points, &base, &found, frame).map_err(|error| read.refused("x_mm", &error))?;
     let text = report(&found, Some(&changed), arguments)?;
     work.print(&text);
-    judge(&changed, base.is_known, work)?;
+    judge(&changed, &base, work)?;
     judge_chords(&found, work)?;
     if !arguments.target.writes() {
         return Ok(());
     }
-    write_profile(&mut output, &found, arguments.as_published);
+    write_profile(&mut output, &found, arguments);
     output.changed(&base, &changed.axes, &changed.description);
     output.set_up(&changed.setups);
     let scatter_mm = found.traverses.iter().map(|t| t.scatter_mm.max()).fold(0.0, f64::max);
@@ -198,7 +199,7 @@ fn warn_of_gaps(name: &str, mean: &MeanTraverse, work: &Work<'_>) {
 }
 
 /// Refuses a field that is known worse than it deviates.
-fn judge(changed: &TrackerMachine, has_base: bool, work: &Work<'_>) -> Result<(), Failure> {
+fn judge(changed: &TrackerMachine, base: &Base, work: &Work<'_>) -> Result<(), Failure> {
     let [known, found] = [changed.field_u95_mm, changed.field_p95_mm].map(|mm| short(mm * 1e3, 1));
     let field = both!(
         "the field is known to ±{known} um (95 % of the volume's points), the deviations found are {found} um",
@@ -206,13 +207,13 @@ fn judge(changed: &TrackerMachine, has_base: bool, work: &Work<'_>) -> Result<()
     );
     let help = both!("measure each node more often", "измеряйте каждый узел больше раз");
     // A base corrects whatever it did before; without one a correction has to be better than none.
-    if !has_base && changed.field_u95_mm > changed.field_p95_mm {
+    if !base.is_known && changed.field_u95_mm > changed.field_p95_mm {
         return Err(Failure::unfit(notice!(UNFIT;
             "these traverses cannot carry a correction: {field}", "эти проходы не дают поправки: {field:#}";
             help
         )));
     }
-    if !has_base && changed.field_u95_mm > 0.5 * changed.field_p95_mm {
+    if !base.is_known && changed.field_u95_mm > 0.5 * changed.field_p95_mm {
         work.warn(DOUBTFUL, field, help);
     }
     Ok(())
@@ -251,11 +252,11 @@ fn judge_chords(found: &TrackerCalibration, work: &Work<'_>) -> Result<(), Failu
 }
 
 /// The interval tables: directions of every interval with their standard uncertainties.
-fn cosines(found: &TrackerCalibration, as_published: bool) -> String {
+fn cosines(found: &TrackerCalibration, arguments: &Tracker) -> String {
     let mut text = String::from("axis,from_mm,to_mm,cos_x,cos_y,cos_z,u_cos_x,u_cos_y,u_cos_z\n");
     for (axis, intervals) in found.cosines.iter().enumerate() {
         for one in intervals {
-            let c = if as_published { one.cosines.abs() } else { one.cosines };
+            let c = if arguments.as_published { one.cosines.abs() } else { one.cosines };
             let cells: Vec<String> = [one.from_mm, one.to_mm].iter().map(|v| short(*v, 6)).collect();
             let values: Vec<String> = c.iter().chain(one.uncertainty.iter()).map(|v| short(*v, 7)).collect();
             text.push_str(&format!("{},{},{}\n", Axis::ALL[axis], cells.join(","), values.join(",")));
@@ -265,7 +266,7 @@ fn cosines(found: &TrackerCalibration, as_published: bool) -> String {
 }
 
 /// The traverses in the machine's directions, for the engines that work on them.
-fn write_profile(output: &mut Output, found: &TrackerCalibration, as_published: bool) {
+fn write_profile(output: &mut Output, found: &TrackerCalibration, arguments: &Tracker) {
     for axis in 0..3 {
         let traverse = &found.traverses[axis];
         let mut text = String::from(
@@ -283,7 +284,7 @@ fn write_profile(output: &mut Output, found: &TrackerCalibration, as_published: 
         let name = output.table(&format!("tracker_{letter}.csv"), text.into_bytes());
         output.text.set_text(&["tracker", letter], &name);
     }
-    output.table("cosines.csv", cosines(found, as_published).into_bytes());
+    output.table("cosines.csv", cosines(found, arguments).into_bytes());
 }
 
 fn report(
@@ -336,7 +337,7 @@ fn report(
     let angles = [("EC0Y", s.ec0y_rad), ("EB0Z", s.eb0z_rad), ("EA0Z", s.ea0z_rad)];
     for ((name, angle), u) in angles.into_iter().zip(found.squareness_uncertainty_rad) {
         let (angle, half) = (angle * 1e6, factor * u * 1e6);
-        out.push(&line(format_args!("  {name}       {angle:+.1} ± {half:.1}"), &micro(false).1));
+        out.push(&line(format_args!("  {name}       {angle:+.1} ± {half:.1}"), &micro(Component::Angular).1));
     }
     if let Some(changed) = changed {
         out.push(&of_machine(changed));
@@ -409,7 +410,10 @@ fn of_machine(changed: &TrackerMachine) -> Text {
         for direction in 0..3 {
             let (low, high) = span(own.errors.iter().map(|row| row[direction] * 1e3));
             let name = Axis::ALL[direction];
-            out.push(&line(format_args!("  E{name}{letter}        {low:.1} … {high:.1}"), &micro(true).1));
+            out.push(&line(
+                format_args!("  E{name}{letter}        {low:.1} … {high:.1}"),
+                &micro(Component::Linear).1,
+            ));
         }
         if let Some((value, half)) = changed.play_mm[axis] {
             let (value, half) = (value * 1e3, half * 1e3);

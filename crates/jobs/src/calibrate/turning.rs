@@ -239,13 +239,15 @@ pub(super) fn run(arguments: &Turning, work: &Work<'_>) -> Result<(), Failure> {
     let holdout = (!held.is_empty()).then(|| found.held_out(held, &base)).transpose();
     let holdout = holdout.map_err(|error| parts.read.refused("d_um", &error))?;
     let timed = rows.iter().all(|row| row.feature != Feature::Diameter || row.time_s.is_some());
-    let outcome = Outcome { found: &found, holdout, base: &base, names: &parts.names, rows, timed };
+    let refuted = holdout.filter(|judged| judged.rms_after_mm > judged.rms_before_mm + 1e-9);
+    let is_refuted = refuted.is_some();
+    let outcome =
+        Outcome { found: &found, holdout, is_refuted, base: &base, names: &parts.names, rows, timed };
     work.print(&outcome.report());
     work.show(arguments.json.as_ref(), || crate::summary::json(&outcome.json()));
-    let refuted = holdout.filter(|judged| judged.rms_after_mm > judged.rms_before_mm + 1e-9);
     let page = |target: &Target, uncertainty_mm: Option<f64>| {
-        let page = Pieces::new(&outcome, held, refuted.is_some());
-        let page = page.map_err(|error| failure("", &[], &CalibrationError::Axes(error.text())))?;
+        let page = Pieces::new(&outcome, held)
+            .map_err(|error| failure("", &[], &CalibrationError::Axes(error.text())))?;
         let shown = Shown { html: arguments.html.clone(), ..Shown::default() };
         let mut files = arguments.files.clone();
         files.extend(arguments.holdout.clone());

@@ -7,7 +7,7 @@ use calibration::volumetric::{Options, VolumetricCalibration, calibrate};
 use calibration::{Point, PointReading, SetUp};
 use clap::Args;
 use diagnostic::{Text, both};
-use machine_model::{Axis, Vector};
+use machine_model::{Axis, Component, Vector};
 use measurement_files::{Row, micro, numbered};
 
 use crate::conditions::conditions;
@@ -178,7 +178,7 @@ fn report(found: &VolumetricCalibration, runs: &[String]) -> Text {
         "изменение от … до, наибольшая полуширина 95-процентных интервалов\n",
     );
     for f in &found.functions {
-        let (scale, unit) = micro(f.function < 3);
+        let (scale, unit) = micro(Component::of(f.function));
         let (low, high) = span(f.values.iter().map(|value| value * scale));
         let u = f.half_widths_95.iter().copied().fold(0.0, f64::max) * scale;
         let (function, axis) = (Axis::ALL[f.function], Axis::ALL[f.axis]);
@@ -186,7 +186,7 @@ fn report(found: &VolumetricCalibration, runs: &[String]) -> Text {
     }
     out.push(&Text::pair("machine\n", "станок\n"));
     for (name, (value, half)) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().zip(found.squareness_rad) {
-        let (scale, unit) = micro(false);
+        let (scale, unit) = micro(Component::Angular);
         out.push(&line(format_args!("{name}   {:.2} ± {:.2}", value * scale, half * scale), &unit));
     }
     for (axis, play) in found.play_mm.iter().enumerate() {

@@ -8,6 +8,15 @@ use diagnostic::{Text, both};
 use gap_diagnosis::{Measurements, Options, Reading, Row, diagnose, gap_rms_um};
 use machine_model::Vector;
 
+/// Whether rows that fit better with a sign flipped or two columns swapped are refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Books {
+    /// They are.
+    Checked,
+    /// The columns are taken as they are named.
+    AsWritten,
+}
+
 /// The gap must fall to less than this share of what it is: two effects of one machine do not cancel so by chance.
 const SHARE: f64 = 0.6;
 /// The same for a slip with numbers that are fitted.

@@ -12,9 +12,10 @@ use gap_diagnosis::{Diagnosis, Options};
 use machine_model::effects::EffectKind;
 
 use crate::message::Failure;
+pub use books::Books;
 use change::Change;
 pub use model::Model;
-pub use read::{Books, File, Measured, of_one_machine, read, readable};
+pub use read::{File, Measured, of_one_machine, read, readable};
 
 /// A diagnosis, and what each of its causes changes in the profile.
 pub struct Diagnosed {

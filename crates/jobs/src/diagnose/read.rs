@@ -4,7 +4,7 @@ use diagnostic::{Speaks, Text, both};
 use gap_diagnosis::{Measurements, Row};
 use machine_profile::Profile;
 
-use super::books;
+use super::books::{self, Books};
 use super::measurements;
 use super::model::Model;
 use crate::message::Failure;
@@ -27,15 +27,6 @@ pub struct File {
     pub hash: String,
     /// Its comment lines.
     pub comments: Vec<String>,
-}
-
-/// Whether rows that fit better with a sign flipped or two columns swapped are refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Books {
-    /// They are.
-    Checked,
-    /// The columns are taken as they are named.
-    AsWritten,
 }
 
 /// Refuses a hold-out whose rows move what the measurements hold still: a rotary axis, or nothing that they move.

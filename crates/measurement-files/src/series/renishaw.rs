@@ -1,6 +1,7 @@
 //! Files of laser interferometers: Renishaw's RTL text, and tables with one column a run.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use diagnostic::{Text, both};
 use machine_model::Axis;
@@ -25,99 +26,13 @@ struct Deviation<'f> {
 pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
     let (function, axis) = file.function()?;
     let factor = file.factor(function, None)?;
-    let (mut section, mut part) = (String::new(), String::new());
-    let mut targets: Vec<f64> = Vec::new();
-    let mut rows: Vec<Deviation<'_>> = Vec::new();
-    let (mut announced_targets, mut announced_runs) = (None, None);
-    for line in file.lines() {
-        let words = numbers(line.text);
-        if let Some(title) = line.text.strip_suffix("::") {
-            section = title.trim().to_uppercase();
-            part.clear();
-            if section == "DEVIATIONS" && !rows.is_empty() {
-                let message = both!("a second measurement in one file", "второе измерение в одном файле");
-                let help = both!(
-                    "export each measurement to a file of its own",
-                    "выведите каждое измерение в отдельный файл"
-                );
-                return Err(file.refuse(RUNS, line.span(), message, help));
-            }
-        } else if let Some((key, rest)) = line.text.split_once(':') {
-            part = key.trim().to_lowercase();
-            let count = rest.trim().parse::<usize>().ok().map(|count| (count, line.span()));
-            match (section.as_str(), part.as_str()) {
-                ("TARGET DATA", "target-count") => announced_targets = count,
-                ("RUNS", "run-count") => announced_runs = count,
-                ("USER-TEXT", "axis") => {
-                    let letters: Vec<Axis> = rest
-                        .chars()
-                        .filter_map(|c| Axis::from_letter(c.to_ascii_uppercase()))
-                        .filter(|a| a.is_linear())
-                        .collect();
-                    if let [other] = letters[..]
-                        && other != axis
-                    {
-                        let message = both!(
-                            "{}: the file says axis {}, the command line {axis}",
-                            "{}: в файле ось {}, в команде {axis}",
-                            file.name,
-                            rest.trim()
-                        );
-                        let help = both!(
-                            "correct the symbol behind the file's name",
-                            "исправьте обозначение после имени файла"
-                        );
-                        return Err(file.refuse(AXES, line.span(), message, help));
-                    }
-                }
-                _ => {}
-            }
-        } else if let Some(words) = words {
-            match (section.as_str(), part.as_str()) {
-                ("TARGET DATA", "targets") => targets.extend(words),
-                ("DEVIATIONS", "run target data") => match words[..] {
-                    [run, target, value] if run >= 1.0 && target >= 1.0 => {
-                        rows.push(Deviation { run: run as usize, target: target as usize, value, line });
-                    }
-                    _ => {
-                        let message = both!(
-                            "expected run, target and deviation",
-                            "ожидались проход, цель и отклонение"
-                        );
-                        return Err(file.damaged(line.span(), message));
-                    }
-                },
-                _ => {}
-            }
-        }
-    }
-    let (announced, span) = announced_targets.unwrap_or((targets.len(), 0..0));
-    if announced != targets.len() || targets.is_empty() {
-        let message = both!(
-            "{announced} targets are announced and {} are there",
-            "целей объявлено {announced}, а есть {}",
-            targets.len()
-        );
-        return Err(file.damaged(span, message));
-    }
-    let found = rows.iter().map(|row| row.run).max().unwrap_or(0);
-    if let Some((announced, place)) = announced_runs.filter(|(count, _)| *count != found) {
-        let message = both!(
-            "{}: {announced} runs are announced and {found} are there",
-            "{}: проходов объявлено {announced}, а есть {found}",
-            file.name
-        );
-        let help = both!(
-            "the measurement was broken off, or the file is damaged: export complete runs",
-            "измерение оборвано, или файл повреждён: выведите полные проходы"
-        );
-        return Err(file.refuse(RUNS, place, message, help));
-    }
+    let read = Rtl::read(file, axis)?;
+    read.is_whole(file)?;
     let mut series = Series::new(axis, function, file.name, Origin::Instrument);
-    for run in rows.iter().map(|row| row.run).collect::<BTreeSet<_>>() {
-        let own: Vec<_> = rows.iter().filter(|row| row.run == run).collect();
+    for run in read.rows.iter().map(|row| row.run).collect::<BTreeSet<_>>() {
+        let own: Vec<_> = read.rows.iter().filter(|row| row.run == run).collect();
         // A run passes the targets in one direction: the order of its rows says which.
-        let at = |row: &&Deviation<'_>| targets.get(row.target - 1).copied();
+        let at = |row: &&Deviation<'_>| read.targets.get(row.target - 1).copied();
         let direction = match (own.first().and_then(at), own.last().and_then(at)) {
             (Some(a), Some(b)) if b > a => 1,
             (Some(a), Some(b)) if b < a => -1,
@@ -125,7 +40,7 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
         };
         for row in own {
             let Some(position) = at(&row) else {
-                let message = both!("target {} of {}", "цель {} из {}", row.target, targets.len());
+                let message = both!("target {} of {}", "цель {} из {}", row.target, read.targets.len());
                 return Err(file.damaged(row.line.span(), message));
             };
             // Runs of the two directions are numbered through; as ISO 230-2 counts them, two make one.
@@ -133,6 +48,120 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
         }
     }
     Ok(series)
+}
+
+/// What an RTL text says.
+#[derive(Default)]
+struct Rtl<'f> {
+    targets: Vec<f64>,
+    rows: Vec<Deviation<'f>>,
+    /// How many it says there are, and where.
+    announced_targets: Option<(usize, Range<usize>)>,
+    announced_runs: Option<(usize, Range<usize>)>,
+}
+
+impl<'f> Rtl<'f> {
+    fn read(file: &File<'f>, axis: Axis) -> Result<Self, Box<Refusal>> {
+        let (mut section, mut part) = (String::new(), String::new());
+        let mut read = Self::default();
+        for line in file.lines() {
+            let words = numbers(line.text);
+            if let Some(title) = line.text.strip_suffix("::") {
+                section = title.trim().to_uppercase();
+                part.clear();
+                if section == "DEVIATIONS" && !read.rows.is_empty() {
+                    let message = both!("a second measurement in one file", "второе измерение в одном файле");
+                    let help = both!(
+                        "export each measurement to a file of its own",
+                        "выведите каждое измерение в отдельный файл"
+                    );
+                    return Err(file.refuse(RUNS, line.span(), message, help));
+                }
+            } else if let Some((key, rest)) = line.text.split_once(':') {
+                part = key.trim().to_lowercase();
+                let count = rest.trim().parse::<usize>().ok().map(|count| (count, line.span()));
+                match (section.as_str(), part.as_str()) {
+                    ("TARGET DATA", "target-count") => read.announced_targets = count,
+                    ("RUNS", "run-count") => read.announced_runs = count,
+                    ("USER-TEXT", "axis") => is_of_axis(file, axis, line, rest)?,
+                    _ => {}
+                }
+            } else if let Some(words) = words {
+                match (section.as_str(), part.as_str()) {
+                    ("TARGET DATA", "targets") => read.targets.extend(words),
+                    ("DEVIATIONS", "run target data") => match words[..] {
+                        [run, target, value] if run >= 1.0 && target >= 1.0 => {
+                            read.rows.push(Deviation {
+                                run: run as usize,
+                                target: target as usize,
+                                value,
+                                line,
+                            });
+                        }
+                        _ => {
+                            let message = both!(
+                                "expected run, target and deviation",
+                                "ожидались проход, цель и отклонение"
+                            );
+                            return Err(file.damaged(line.span(), message));
+                        }
+                    },
+                    _ => {}
+                }
+            }
+        }
+        Ok(read)
+    }
+
+    /// Refuses a measurement that was broken off.
+    fn is_whole(&self, file: &File<'_>) -> Result<(), Box<Refusal>> {
+        let (announced, span) = self.announced_targets.clone().unwrap_or((self.targets.len(), 0..0));
+        if announced != self.targets.len() || self.targets.is_empty() {
+            let message = both!(
+                "{announced} targets are announced and {} are there",
+                "целей объявлено {announced}, а есть {}",
+                self.targets.len()
+            );
+            return Err(file.damaged(span, message));
+        }
+        let found = self.rows.iter().map(|row| row.run).max().unwrap_or(0);
+        if let Some((announced, place)) = self.announced_runs.clone().filter(|(count, _)| *count != found) {
+            let message = both!(
+                "{}: {announced} runs are announced and {found} are there",
+                "{}: проходов объявлено {announced}, а есть {found}",
+                file.name
+            );
+            let help = both!(
+                "the measurement was broken off, or the file is damaged: export complete runs",
+                "измерение оборвано, или файл повреждён: выведите полные проходы"
+            );
+            return Err(file.refuse(RUNS, place, message, help));
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a file of which its user said that it is of another axis.
+fn is_of_axis(file: &File<'_>, axis: Axis, line: Piece<'_>, said: &str) -> Result<(), Box<Refusal>> {
+    let letters: Vec<Axis> = said
+        .chars()
+        .filter_map(|c| Axis::from_letter(c.to_ascii_uppercase()))
+        .filter(|a| a.is_linear())
+        .collect();
+    if let [other] = letters[..]
+        && other != axis
+    {
+        let message = both!(
+            "{}: the file says axis {}, the command line {axis}",
+            "{}: в файле ось {}, в команде {axis}",
+            file.name,
+            said.trim()
+        );
+        let help =
+            both!("correct the symbol behind the file's name", "исправьте обозначение после имени файла");
+        return Err(file.refuse(AXES, line.span(), message, help));
+    }
+    Ok(())
 }
 
 /// Which way a run went, by `+`/`-`, `forward`/`reverse` or `up`/`down` in its title; `None` where that does not say it.

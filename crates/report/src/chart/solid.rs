@@ -89,6 +89,15 @@ fn flat([x, y, z]: [f64; 3]) -> (f64, f64) {
     ((x + y) * COS, (y - x) * 0.5 + z)
 }
 
+/// Where an edge of the box lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    /// Behind everything.
+    Back,
+    /// In front of it.
+    Front,
+}
+
 /// An edge of the box along which an axis has its numbers.
 struct Edge {
     axis: usize,
@@ -113,15 +122,15 @@ impl Placed {
         (self.shift.0 + right * self.scale, self.shift.1 - up * self.scale)
     }
 
-    /// Edges that are behind everything, and those in front of it.
-    fn edges(&self, front: bool) -> Markup {
+    /// Edges of the box.
+    fn edges(&self, side: Side) -> Markup {
         // Seen from high X, low Y and above: hidden is the corner at low X, high Y, low Z.
         const HIDDEN: usize = 0b010;
         html! {
             @for from in 0..8usize {
                 @for axis in 0..3usize {
                     @let to = from | 1 << axis;
-                    @if to != from && (from == HIDDEN || to == HIDDEN) != front {
+                    @if to != from && (from == HIDDEN || to == HIDDEN) == (side == Side::Back) {
                         (line("zero", self.at(self.solid.corner(from)), self.at(self.solid.corner(to))))
                     }
                 }
@@ -165,12 +174,12 @@ pub fn spots(language: Language, title: &Text, solid: Solid, all: &[Spot], amoun
     let depth = |s: &Spot| s.at[0] - s.at[1] + s.at[2];
     order.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
     let body = html! {
-        (placed.edges(false))
+        (placed.edges(Side::Back))
         @for spot in order {
             @let (x, y) = placed.at(spot.at);
             circle class={ "spot " (amounts.class(spot.value)) } cx=(px(x)) cy=(px(y)) r="3.4" {}
         }
-        (placed.edges(true))
+        (placed.edges(Side::Front))
         (placed.labels(language, 0.0))
         (amounts.key(language, (LEFT, placed.bottom + 34.0)))
     };
@@ -207,11 +216,11 @@ pub fn displacements(
     let body = html! {
         (before_and_after(language, LEFT))
         (text(LEFT + 170.0, 14.0, "m", magnified.in_language(language)))
-        (placed.edges(false))
+        (placed.edges(Side::Back))
         path class="line s1" d=(strokes(|d| d.before)) {}
         path class="line s0" style="stroke-width:2" d=(strokes(|d| d.after)) {}
         path class="dots s3" style="stroke-width:2" d=(spotted(all.iter().map(|d| placed.at(d.at)))) {}
-        (placed.edges(true))
+        (placed.edges(Side::Front))
         (placed.labels(language, out))
     };
     let count = all.len();
@@ -235,8 +244,8 @@ pub fn path(
     let placed = solid.placed(0.04);
     let begins = both!("start", "начало");
     let body = html! {
-        (placed.edges(false))
-        (placed.edges(true))
+        (placed.edges(Side::Back))
+        (placed.edges(Side::Front))
         // Below the colours, so that dark ones are seen in the dark and bright ones in the light.
         path class="casing" d=(all.iter().map(|s| way(&placed, &s.places)).collect::<String>()) {}
         @for stretch in all {
@@ -276,8 +285,8 @@ pub fn ways(language: Language, title: &Text, solid: Solid, all: &[Way]) -> Mark
     let names: Vec<(&str, Text)> = all.iter().map(|way| (way.class.0, way.words.clone())).collect();
     let body = html! {
         (legend(language, LEFT, 14.0, &names))
-        (placed.edges(false))
-        (placed.edges(true))
+        (placed.edges(Side::Back))
+        (placed.edges(Side::Front))
         @for one in all {
             path class={ "path " (one.class.1) } d=(one.pieces.iter().map(|piece| way(&placed, piece)).collect::<String>()) {}
         }

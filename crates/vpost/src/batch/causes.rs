@@ -15,8 +15,8 @@ struct Cause<'r> {
     /// What was said of the first.
     fault: &'r Fault,
     message: &'r str,
-    /// Files could not be read or written.
-    failed: bool,
+    /// What became of them.
+    status: Status,
     /// What the profile lacks, each once.
     entries: Vec<Entry>,
     programs: BTreeSet<&'r str>,
@@ -27,17 +27,17 @@ struct Cause<'r> {
 impl<'r> Cause<'r> {
     /// What stands together in one line: the number of the message, and where files failed what the system said.
     fn headline(&self) -> (&'r str, &'r str) {
-        (&self.fault.code, if self.failed { self.message } else { "" })
+        (&self.fault.code, if self.status == Status::Failed { self.message } else { "" })
     }
 
     /// One message number, and one way out: the same words, or entries of the same table of the profile.
-    fn takes(&self, fault: &Fault, message: &str, failed: bool) -> bool {
+    fn takes(&self, fault: &Fault, message: &str, status: Status) -> bool {
         if self.fault.code != fault.code {
             return false;
         }
         match (self.entries.first(), fault.settled_by.first()) {
             (Some(known), Some(entry)) => known.is_beside(&entry.entry()),
-            (None, None) if failed => self.message == message,
+            (None, None) if status == Status::Failed => self.message == message,
             (None, None) => self.fault.help == fault.help,
             _ => false,
         }
@@ -73,7 +73,7 @@ pub(crate) fn causes(records: &[Record]) -> Text {
         let Cause { fault, message, first, .. } = ways[0];
         text.push(&line(programs(ways), &fault.code, message, first));
         for way in ways.iter().take(MOST_WAYS) {
-            text.push(&settled(way, ways.len() > 1));
+            text.push(&settled(way, ways.len()));
         }
         if let Some(more) = ways.len().checked_sub(MOST_WAYS).filter(|more| *more > 0) {
             text.push(&both!(
@@ -89,15 +89,15 @@ pub(crate) fn causes(records: &[Record]) -> Text {
 fn gathered(records: &[Record]) -> Vec<Cause<'_>> {
     let mut causes: Vec<Cause<'_>> = Vec::new();
     for record in records {
-        let failed = record.status == Status::Failed;
+        let status = record.status;
         for fault in &record.errors {
             // Files fail for more than one reason: what the system said stands behind the name.
-            let reason = failed.then(|| fault.message.rsplit_once(": ")).flatten();
+            let reason = (status == Status::Failed).then(|| fault.message.rsplit_once(": ")).flatten();
             let message = reason.map_or(fault.message.as_str(), |(_, reason)| reason);
-            let known = causes.iter().position(|cause| cause.takes(fault, message, failed));
+            let known = causes.iter().position(|cause| cause.takes(fault, message, status));
             let index = known.unwrap_or_else(|| {
                 let (entries, programs, first) = (Vec::new(), BTreeSet::new(), record.output.as_str());
-                causes.push(Cause { fault, message, failed, entries, programs, first });
+                causes.push(Cause { fault, message, status, entries, programs, first });
                 causes.len() - 1
             });
             causes[index].add(fault);
@@ -117,9 +117,9 @@ pub(super) fn line(count: usize, code: &str, message: &str, first: &str) -> Text
 }
 
 /// What settles a cause; for how many programs, where a message has several ways out.
-fn settled(cause: &Cause<'_>, of_several: bool) -> Text {
+fn settled(cause: &Cause<'_>, ways: usize) -> Text {
     let count = cause.programs.len();
-    let count = if of_several { format!("{count} x ") } else { String::new() };
+    let count = if ways > 1 { format!("{count} x ") } else { String::new() };
     let way = if cause.entries.is_empty() {
         let Some(english) = &cause.fault.help else { return Text::EMPTY };
         let russian = cause.fault.help_in_russian.as_ref().unwrap_or(english);

@@ -34,14 +34,20 @@ impl Progress {
         progress
     }
 
-    /// A program is done. What an earlier run had done is no work and counts for no speed.
-    pub(crate) fn done(&self, item: &Item, resumed: bool) {
+    /// A program is done.
+    pub(crate) fn done(&self, item: &Item) {
+        self.bar.inc(item.bytes);
+        self.count();
+    }
+
+    /// An earlier run had done a program, which is no work and counts for no speed.
+    pub(crate) fn was_done(&self, item: &Item) {
+        self.bar.dec_length(item.bytes);
+        self.count();
+    }
+
+    fn count(&self) {
         self.done.set(self.done.get() + 1);
-        if resumed {
-            self.bar.dec_length(item.bytes);
-        } else {
-            self.bar.inc(item.bytes);
-        }
         self.say();
     }
 

@@ -135,7 +135,10 @@ impl<'a> Batch<'a> {
                 group.extend(receiver.try_iter().flatten());
                 shelf.put(group.iter_mut().map(|(_, outcome)| outcome));
                 for (index, outcome) in group {
-                    progress.done(&items[index], outcome.resumed);
+                    match outcome.resumed {
+                        true => progress.was_done(&items[index]),
+                        false => progress.done(&items[index]),
+                    }
                     told.take(index, outcome, progress, messages);
                 }
             }

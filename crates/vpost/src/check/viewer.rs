@@ -40,8 +40,8 @@ pub(super) fn write(
         let Some(trace) = traces.get(read).filter(|_| refused.is_none()) else { return };
         let machines = 1 + others.len();
         let joins = |place: &[f64; 3]| end.is_some_and(|end| apart_mm(place, &end) < SAME_MM);
-        let begins = !course.places_mm.first().is_some_and(joins);
-        let made = Made::of(traces, read, begins);
+        let goes_on = course.places_mm.first().is_some_and(joins);
+        let made = Made::of(&traces[read], traces[..read].last().filter(|_| goes_on));
         read += 1;
         let last = course.places_mm.len().saturating_sub(1);
         let mut from = 0;
@@ -54,7 +54,7 @@ pub(super) fn write(
         {
             let after = after[k];
             // A motion that goes on begins where the last has ended.
-            if k == 0 && !begins {
+            if k == 0 && goes_on {
                 continue;
             }
             let place = Place {
@@ -159,12 +159,12 @@ fn apart_mm(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 struct Made<'t>(&'t [[f64; 3]]);
 
 impl<'t> Made<'t> {
-    /// Where nothing is made of a motion, being shorter than the limit, the tool stays at the end of the one before.
-    fn of(traces: &'t [Trace], at: usize, begins: bool) -> Self {
-        let own = traces[at].made_mm.as_slice();
-        let before = at.checked_sub(1).filter(|_| own.is_empty() && !begins);
-        let before = before.map_or(&[][..], |before| traces[before].made_mm.as_slice());
-        Self(if own.is_empty() { &before[before.len().saturating_sub(1)..] } else { own })
+    /// Where nothing is made of a motion, being shorter than the limit, the tool stays at the end of the one that it
+    /// goes on from.
+    fn of(trace: &'t Trace, before: Option<&'t Trace>) -> Self {
+        let made = trace.made_mm.as_slice();
+        let before = before.map_or(&[][..], |before| before.made_mm.as_slice());
+        Self(if made.is_empty() { &before[before.len().saturating_sub(1)..] } else { made })
     }
 
     /// From a programmed place to the nearest real one, mm; `None` where nothing was made of the motion.

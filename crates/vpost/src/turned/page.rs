@@ -11,35 +11,16 @@ use turning::Lathe;
 use crate::file;
 use crate::message::{Failure, Wording};
 use crate::origin::{Origin, PROFILE};
-use crate::settings::Settings;
 use jobs::turned::judged::{Form, Outline, mm, ridges, um};
 use jobs::turned::surface::{HIGHEST_WAVE, Stretch, Surface, Turned};
 
 mod outline;
 mod round;
+mod shown;
 
 use round::Drawn;
-
-/// What the main job makes of the program.
-pub(super) enum Correction {
-    /// What the lathe turns by the corrected one.
-    Turned(Turned),
-    /// Nothing to correct.
-    Unchanged,
-    /// It is refused, for this.
-    Refused(Failure),
-}
-
-/// What the page is made of besides the surface.
-pub(super) struct Facts<'a> {
-    /// The program, as it is called.
-    pub(super) name: &'a str,
-    /// Its bytes.
-    pub(super) text: &'a [u8],
-    pub(super) settings: &'a Settings,
-    /// Z of the cross sections that are wanted, from the chuck, mm.
-    pub(super) at_mm: &'a [f64],
-}
+use shown::Shown;
+pub(super) use shown::{Correction, Facts};
 
 /// What the JSON in the page says beside `predict --lathe --json`.
 #[derive(Serialize)]
@@ -58,17 +39,6 @@ struct Cylinder<'a> {
     before: Option<Form>,
     after: Option<Form>,
     corrected: Option<&'a Stretch>,
-}
-
-/// All that the sections are made of.
-struct Shown<'a> {
-    facts: &'a Facts<'a>,
-    surface: &'a Surface,
-    turned: &'a Turned,
-    correction: &'a Correction,
-    before: Outline,
-    after: Option<Outline>,
-    sections: Vec<Drawn>,
 }
 
 /// The file.

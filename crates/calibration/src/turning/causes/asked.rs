@@ -4,7 +4,7 @@ use nalgebra::DVector;
 use units::math;
 
 use super::columns::{Cause, CauseRow, Columns};
-use super::mixed::{Fitted, Mixed};
+use super::mixed::{Fitted, Mixed, Noise};
 
 /// Chance of a name that is none, over all causes.
 const LEVEL: f64 = 0.01;
@@ -52,27 +52,36 @@ pub(super) fn centres(rows: &[CauseRow]) -> Vec<DVector<f64>> {
     sections.iter().flat_map(|section| [wave(section, math::cos), wave(section, math::sin)]).collect()
 }
 
+/// What has a size of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sizes {
+    /// Each tool, and each part of which none is named.
+    OfTools,
+    /// Each part with each tool.
+    OfParts,
+}
+
 impl<'a> Asked<'a> {
-    /// * `is_each_its_own` – every part has its own size
-    pub(super) fn new(columns: &'a Columns<'a>, parts: &[usize], is_each_its_own: bool) -> Self {
+    pub(super) fn new(columns: &'a Columns<'a>, parts: &[usize], sizes: Sizes) -> Self {
         let rows = columns.rows;
-        let is_known = rows.iter().all(|row| row.uncertainty_mm.is_some());
-        let weights: Vec<f64> =
-            rows.iter().map(|row| if is_known { row.uncertainty_mm.unwrap_or(1.0) } else { 1.0 }).collect();
+        // Stated of all rows, or alike in all.
+        let stated: Option<Vec<f64>> = rows.iter().map(|row| row.uncertainty_mm).collect();
+        let noise = if stated.is_some() { Noise::Stated } else { Noise::Common };
+        let weights = stated.unwrap_or_else(|| vec![1.0; rows.len()]);
         let weigh = |column: DVector<f64>| DVector::from_fn(rows.len(), |k, _| column[k] / weights[k]);
         let weighed = |all: Vec<DVector<f64>>| all.into_iter().map(weigh).collect::<Vec<DVector<f64>>>();
         let centres = centres(rows);
         let with = |own: Vec<DVector<f64>>| weighed(own.into_iter().chain(centres.clone()).collect());
         let cells = with(levels(rows, |row| (row.part, row.tool)));
-        let sizes = match is_each_its_own {
-            true => cells.clone(),
-            false => with(levels(rows, |row| (row.tool, row.tool.is_none().then_some(row.part)))),
+        let sizes = match sizes {
+            Sizes::OfParts => cells.clone(),
+            Sizes::OfTools => with(levels(rows, |row| (row.tool, row.tool.is_none().then_some(row.part)))),
         };
         let shared = weighed(
             parts.iter().map(|part| indicator(rows, |row| f64::from(u8::from(row.part == *part)))).collect(),
         );
         let readings = weigh(indicator(rows, |row| row.gap_mm));
-        let mixed = Mixed::new(readings, sizes, &cells, shared, is_known);
+        let mixed = Mixed::new(readings, sizes, &cells, shared, noise);
         let mut asked = Self { columns, mixed, all: Vec::new(), weights: weights.clone() };
         for cause in Cause::ALL {
             let own: Vec<DVector<f64>> = weighed(columns.cause(cause))

@@ -4,7 +4,7 @@ use nalgebra::DVector;
 use turning::{Bending, Clamping, Force, Workpiece, WorkpieceError};
 use units::math;
 
-use crate::turning::readings::order_within;
+use crate::turning::levels::order_within;
 
 /// A radius that was read.
 #[derive(Clone, Debug, PartialEq)]

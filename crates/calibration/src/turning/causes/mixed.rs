@@ -3,13 +3,22 @@
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use super::super::readings::{orthonormal, without};
+use super::super::bases::{orthonormal, without};
 use super::super::strata::{Between, MeanSquare, Spread, Whitening};
 
 /// Degrees of freedom of noise that is stated.
 const KNOWN: f64 = 1e6;
 /// Below this share of its length a column is nothing.
 const NOTHING: f64 = 1e-9;
+
+/// What is known of the noise of readings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Noise {
+    /// The uncertainty of each is stated: the weights hold it.
+    Stated,
+    /// The same for all, from the residuals.
+    Common,
+}
 
 /// Readings, with the levels that are never blamed.
 pub(super) struct Mixed {
@@ -21,7 +30,7 @@ pub(super) struct Mixed {
     cells: Vec<DVector<f64>>,
     /// What a part shares: one column per part.
     shared: Vec<DVector<f64>>,
-    is_known: bool,
+    noise: Noise,
 }
 
 /// A model that was fitted.
@@ -44,9 +53,9 @@ impl Mixed {
         levels: Vec<DVector<f64>>,
         cells: &[DVector<f64>],
         shared: Vec<DVector<f64>>,
-        is_known: bool,
+        noise: Noise,
     ) -> Self {
-        Self { readings, levels, cells: orthonormal(cells, &[]), shared, is_known }
+        Self { readings, levels, cells: orthonormal(cells, &[]), shared, noise }
     }
 
     /// Least squares with what parts share, equation (78): columns must be independent of the levels and of each other.
@@ -55,9 +64,9 @@ impl Mixed {
         let within = orthonormal(columns, &self.cells);
         let left = without(&self.readings, &within).norm_squared();
         let free = rows.saturating_sub(within.len()) as f64;
-        let noise = match self.is_known {
-            true => MeanSquare { value: 1.0, freedom: f64::INFINITY },
-            false => MeanSquare { value: left / free.max(1.0), freedom: free.max(1.0) },
+        let noise = match self.noise {
+            Noise::Stated => MeanSquare { value: 1.0, freedom: f64::INFINITY },
+            Noise::Common => MeanSquare { value: left / free.max(1.0), freedom: free.max(1.0) },
         };
         let all: Vec<DVector<f64>> = self.levels.iter().chain(columns).cloned().collect();
         let basis = orthonormal(&all, &[]);
@@ -129,12 +138,19 @@ impl Mixed {
             let redundancy = (1.0 - taken).max(0.0);
             // What is left without it judges it.
             let others = (left.norm_squared() - left[k] * left[k] / redundancy.max(1e-6)).max(0.0);
-            let noise = if self.is_known { 1.0 } else { (others / (free - 1.0).max(1.0)).sqrt() };
+            let noise = match self.noise {
+                Noise::Stated => 1.0,
+                Noise::Common => (others / (free - 1.0).max(1.0)).sqrt(),
+            };
             if redundancy > 1e-3 && noise > 0.0 { (left[k] / redundancy.sqrt() / noise).abs() } else { 0.0 }
         };
         let sizes = (0..left.len()).map(|k| (k, one(k)));
         let (worst, size) = sizes.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0));
-        (worst, size, if self.is_known { f64::INFINITY } else { (free - 1.0).max(1.0) })
+        let freedom = match self.noise {
+            Noise::Stated => f64::INFINITY,
+            Noise::Common => (free - 1.0).max(1.0),
+        };
+        (worst, size, freedom)
     }
 }
 

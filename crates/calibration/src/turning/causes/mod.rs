@@ -19,7 +19,7 @@ use nalgebra::DVector;
 use turning::WorkpieceError;
 use units::math;
 
-use asked::{Asked, centres, indicator, levels};
+use asked::{Asked, Sizes, centres, indicator, levels};
 use columns::Columns;
 pub use columns::{Bar, Cause, CauseRow};
 use mixed::Fitted;
@@ -60,11 +60,11 @@ pub fn lathe_causes(
     let mut parts: Vec<usize> = rows.iter().map(|row| row.part).collect();
     parts.sort_unstable();
     parts.dedup();
-    let mut asked = Asked::new(&columns, &parts, false);
+    let mut asked = Asked::new(&columns, &parts, Sizes::OfTools);
     let everything = asked.everything();
     if !asked.mixed.fit(&asked.independent(&everything)).is_scatter_seen {
         // No part is left that tells how parts differ: then every part has its own size, and drift is not asked.
-        asked = Asked::new(&columns, &parts, true);
+        asked = Asked::new(&columns, &parts, Sizes::OfParts);
     }
     Ok(asked.diagnosis(&parts, held, bar, tailstock_mm))
 }

@@ -5,6 +5,8 @@ use calibration::linear_ballbar::{CircleCalibration, Term};
 use calibration::rotary_ballbar::RotaryCalibration;
 use diagnostic::{Text, both};
 use machine_model::Axis;
+use measurement_files::micro;
+use report::numbers::digits;
 use serde_json::{Value, json};
 
 use crate::figures::{round, rounded_um};
@@ -128,10 +130,10 @@ fn plane(test: &CircularTest, names: &[String]) -> Value {
 
 fn locations(found: &RotaryCalibration) -> Value {
     let each = found.locations.iter().map(|f| {
-        let (scale, unit) = if f.location.is_length { (1e3, "um") } else { (1e6, "urad") };
+        let (scale, unit) = micro(f.location.component);
         json!({
             "name": f.location.name(),
-            "unit": unit,
+            "unit": unit.english(),
             "value": round(f.value * scale, 6),
             "base": round(f.base * scale, 6),
             "u95": round(f.half_width_95 * scale, 6),
@@ -144,4 +146,9 @@ fn locations(found: &RotaryCalibration) -> Value {
         "tool_ball_um": found.cup_mm.map(rounded_um),
         "tool_ball_u95_um": found.cup_half_width_95_mm.map(rounded_um),
     })
+}
+
+/// Micrometres with two decimals.
+pub(super) fn um(mm: f64) -> Text {
+    digits(mm * 1e3, 2)
 }

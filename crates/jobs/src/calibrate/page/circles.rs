@@ -1,9 +1,10 @@
 //! The page of a ball bar: the polar plot of each plane, its causes one by one, and location errors.
 
-use calibration::circular_test::{Cause, CirclePoint, CircularTest, Pattern, Sense, Trace};
+use calibration::circular_test::{CirclePoint, CircularTest, Pattern, Sense, Trace};
 use calibration::linear_ballbar::{CircleCalibration, Term};
 use calibration::rotary_ballbar::RotaryCalibration;
 use diagnostic::{Text, both};
+use machine_model::Component;
 use report::body::{Body, Table};
 use report::chart::{Magnification, Polar, Round, polar};
 use report::numbers::{count, digits, number, percent};
@@ -12,8 +13,9 @@ use report::text::MICROMETRES;
 use serde_json::Value;
 
 use super::super::bar_report::{CENTRED_APART, SCALES};
-use super::bars::{Bars, PLANES, SQUARENESS, cause_name, sense_name};
+use super::bars::{Bars, PLANES, SQUARENESS, cause_name, sense_name, um};
 use super::bars_csv;
+use super::circle_verdict::{CLOSED_DEG, Verdict};
 use super::facts::Facts;
 use super::found::Found;
 
@@ -59,13 +61,6 @@ impl Found for Bars<'_> {
     }
 }
 
-/// Gaps wider than this are told: the circle was not closed, degrees.
-const CLOSED_DEG: f64 = 15.0;
-
-fn um(mm: f64) -> Text {
-    digits(mm * 1e3, 2)
-}
-
 /// The circle that is least round, by both senses or by the worst run.
 fn worst<'b>(bars: &'b Bars<'_>) -> Option<&'b CircularTest> {
     bars.tests().iter().max_by(|a, b| whole_mm(a).total_cmp(&whole_mm(b)))
@@ -75,89 +70,6 @@ fn worst<'b>(bars: &'b Bars<'_>) -> Option<&'b CircularTest> {
 fn whole_mm(test: &CircularTest) -> f64 {
     let largest = test.traces.iter().map(|t| t.circularity_mm).fold(0.0, f64::max);
     test.bidirectional_mm.unwrap_or(largest)
-}
-
-/// What the circles of a plane say first.
-enum Verdict<'t> {
-    /// They are no whole circles: sizes of causes count what was read.
-    Open { degrees: f64 },
-    /// More than any cause makes is explained by none.
-    Unexplained,
-    /// The largest cause.
-    Named(&'t Pattern),
-}
-
-impl<'t> Verdict<'t> {
-    fn of(test: &'t CircularTest) -> Self {
-        let gap_deg = test.traces.iter().map(|t| t.gap_rad.to_degrees()).fold(0.0, f64::max);
-        if gap_deg > CLOSED_DEG {
-            return Self::Open { degrees: 360.0 - gap_deg };
-        }
-        match test.patterns.first() {
-            Some(p) if p.range_mm > p.half_width_95_mm && p.range_mm > test.left_mm => Self::Named(p),
-            _ => Self::Unexplained,
-        }
-    }
-
-    fn word(&self) -> Text {
-        match self {
-            Self::Open { .. } => both!("PARTIAL CIRCLE", "НЕПОЛНАЯ ОКРУЖНОСТЬ"),
-            Self::Unexplained => both!("NO CAUSE", "НЕТ ПРИЧИНЫ"),
-            Self::Named(p) => match p.cause {
-                Cause::Squareness => both!("SQUARENESS", "ПЕРПЕНДИКУЛЯРНОСТЬ"),
-                Cause::Mismatch => both!("SCALE MISMATCH", "РАЗНЫЙ МАСШТАБ"),
-                Cause::Backlash(_) => both!("BACKLASH", "ЛЮФТ"),
-            },
-        }
-    }
-
-    /// Behind the size of the deviation.
-    fn goes_on(&self, plane: usize) -> Text {
-        match self {
-            Self::Open { degrees } => {
-                both!(" over the {} degrees that were read", " на измеренных {:#}°", digits(*degrees, 0))
-            }
-            Self::Unexplained => {
-                both!("; no cause explains most of it", "; большей части не объясняет ни одна причина")
-            }
-            Self::Named(p) => {
-                let (cause, size, half) =
-                    (cause_name(p.cause, plane), um(p.range_mm), um(p.half_width_95_mm));
-                both!(
-                    "; the largest cause, {cause}, makes {size} \u{b5}m (\u{b1} {half}, 95\u{a0}%)",
-                    "; главная причина, {cause:#}, даёт {size:#} мкм (\u{b1} {half:#}, 95\u{a0}%)"
-                )
-            }
-        }
-    }
-
-    /// What to do.
-    fn remedy(&self) -> Text {
-        match self {
-            Self::Open { .. } => Text::pair(
-                "Read whole circles before judging by the sizes of the causes: part of a circle lies about a circle of its own.",
-                "Прежде чем судить по величине причин, снимите полные окружности: часть окружности ложится на свою собственную.",
-            ),
-            Self::Unexplained => Text::pair(
-                "Read circles both ways round with the direction of every reading, and look at straightness, pitch of the screws and servo: a bar that sees none of squareness, scale and backlash sees one of those, or its own noise.",
-                "Снимите окружности в обе стороны с направлением каждого отсчёта и проверьте прямолинейность, шаг винтов и приводы: если измеритель не видит ни перпендикулярности, ни масштаба, ни люфта, он видит одно из этого или собственный шум.",
-            ),
-            Self::Named(p) => match p.cause {
-                Cause::Squareness => Text::pair(
-                    "Align the axes, or correct by a profile: a squareness stays what it is until something is moved.",
-                    "Выверьте оси или исправляйте по профилю: отклонение от перпендикулярности не меняется, пока ничего не сдвинуто.",
-                ),
-                Cause::Mismatch => Text::pair(
-                    "A bar does not say which of the two axes is too long: measure the positioning of both with an interferometer before correcting.",
-                    "Которая из двух осей длиннее, измеритель не говорит: прежде чем исправлять, измерьте позиционирование обеих интерферометром.",
-                ),
-                Cause::Backlash(_) => Text::pair(
-                    "Look at nut, bearings and the control's own backlash value first; what repeats of it a profile corrects.",
-                    "Сначала проверьте гайку, подшипники и значение люфта в самом ЧПУ; то, что повторяется, исправит профиль.",
-                ),
-            },
-        }
-    }
 }
 
 /// Curves of the base below this are rounding, mm.
@@ -197,7 +109,7 @@ fn worst_circle(out: &mut Body, test: &CircularTest) {
 
 fn rotary_head(out: &mut Body, found: &RotaryCalibration) {
     out.verdict_alone(&both!("LOCATION ERRORS", "ПОЛОЖЕНИЕ ОСЕЙ"));
-    let lengths = found.locations.iter().filter(|f| f.location.is_length);
+    let lengths = found.locations.iter().filter(|f| f.location.component == Component::Linear);
     if let Some(f) = lengths.max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())) {
         let (axis, name) = (f.location.axis, f.location.name());
         let (value, half) = (um(f.value), um(f.half_width_95));
@@ -488,9 +400,9 @@ fn together(out: &mut Body, found: &CircleCalibration) {
 
 fn locations(out: &mut Body, found: &RotaryCalibration) {
     let row = |f: &calibration::rotary_ballbar::Found| {
-        let (scale, unit) = match f.location.is_length {
-            true => (1e3, MICROMETRES.clone()),
-            false => (1e6, both!("\u{b5}rad", "мкрад")),
+        let (scale, unit) = match f.location.component {
+            Component::Linear => (1e3, MICROMETRES.clone()),
+            Component::Angular => (1e6, both!("\u{b5}rad", "мкрад")),
         };
         let numbers = [f.value, f.half_width_95, f.base].map(|v| digits(v * scale, 3));
         (Text::same(f.location.name()), numbers, unit)

@@ -4,6 +4,7 @@
 
 mod bars;
 mod bars_csv;
+mod circle_verdict;
 mod circles;
 mod facts;
 mod found;

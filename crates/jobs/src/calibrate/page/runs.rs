@@ -5,7 +5,8 @@ use std::fmt::Write;
 use calibration::functions::Function;
 use calibration::iso230_2::{Evaluation, HeldOut, Runs};
 use diagnostic::{Text, both};
-use machine_model::Axis;
+use machine_model::{Axis, Component};
+use measurement_files::micro;
 use measurement_files::series::Series;
 use report::text::MICROMETRES;
 use serde_json::{Value, json};
@@ -23,8 +24,8 @@ pub(in super::super) struct Read {
     pub(super) name: String,
     /// True along the axis itself: what ISO 230-2 is about.
     pub(super) is_positioning: bool,
-    /// True for an angle: µrad instead of µm.
-    pub(super) is_angle: bool,
+    /// In µm or µrad.
+    pub(super) component: Component,
     /// Deviations by run, mm or rad.
     pub(super) runs: Runs,
     /// True where a reading does not say its direction.
@@ -53,7 +54,7 @@ impl Read {
             axis: series.axis,
             name: series.name(),
             is_positioning: series.function == series.axis.direction(),
-            is_angle: series.function >= 3,
+            component: Component::of(series.function),
             is_direction_unsaid: series.readings.iter().any(|r| r.direction == 0),
             mean: [low, high],
             scatter: function.scatter,
@@ -69,11 +70,14 @@ impl Read {
 
     /// To µm or µrad.
     pub(super) fn scale(&self) -> (f64, Text) {
-        if self.is_angle { (1e6, both!("\u{b5}rad", "мкрад")) } else { (1e3, MICROMETRES.clone()) }
+        match self.component {
+            Component::Linear => (1e3, MICROMETRES.clone()),
+            Component::Angular => (1e6, both!("\u{b5}rad", "мкрад")),
+        }
     }
 
     fn json(&self) -> Value {
-        let (scale, unit) = if self.is_angle { (1e6, "urad") } else { (1e3, "um") };
+        let (scale, unit) = micro(self.component);
         let shown = |v: f64| round(v * scale, 6);
         let key = |name: &str| format!("{name}_{unit}");
         let lists = |all: &[Vec<f64>]| {
@@ -82,7 +86,7 @@ impl Read {
         let mut out = json!({
             "function": self.name,
             "axis": self.axis.letter().to_string(),
-            "unit": unit,
+            "unit": unit.english(),
             "targets_mm": self.runs.targets,
             "up": lists(&self.runs.positive),
             "down": lists(&self.runs.negative),
@@ -137,7 +141,7 @@ impl Positions {
     pub(super) fn csv(&self) -> String {
         let mut out = String::from("function,series,dir,position_mm,deviation,unit\n");
         for read in &self.0 {
-            let (scale, unit) = if read.is_angle { (1e6, "urad") } else { (1e3, "um") };
+            let (scale, unit) = micro(read.component);
             let mut put = |series: &str, direction: i8, values: &[f64]| {
                 for (position, value) in read.runs.targets.iter().zip(values) {
                     // Writing to a String cannot fail.

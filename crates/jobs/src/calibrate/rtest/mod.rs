@@ -11,7 +11,7 @@ use crate::message::{Failure, notice};
 use crate::profile::load_mill;
 
 use super::codes::{AXES, CONTRADICTED, DOUBTFUL, OPEN, OUTLIER, QUESTION, UNFIT, UNSAID, body, failure};
-use super::options::RTest;
+use super::options::{RTest, RTestMethod};
 use super::output::{Output, columns, error_table};
 use super::work::Work;
 use rows::Rows;
@@ -41,7 +41,7 @@ pub(super) fn run(arguments: &RTest, work: &Work<'_>) -> Result<(), Failure> {
     };
     let base = output.measured_from(&arguments.target)?;
     let rows = Rows::read(&arguments.files, arguments, &profile, &output, work)?;
-    if let Some((run, mm)) = rows.moving_ball().filter(|_| !arguments.sphere) {
+    if let Some((run, mm)) = rows.moving_ball().filter(|_| arguments.method() == RTestMethod::Deviations) {
         work.warning(notice!(DOUBTFUL;
             "run `{run}`: by the profile the place of the ball in the workpiece moves by {mm:.0} mm, and a ball stays in its nest",
             "серия `{run}`: по профилю место шара на детали смещается на {mm:.0} мм, а шар остаётся в гнезде";

@@ -4,6 +4,7 @@ use calibration::rtest::{
     Basis, FoundTerm, HeldOut, ON_AXIS_MM, RotaryTables, Term, TurnedAxis, WrittenTable,
 };
 use diagnostic::{Text, both};
+use machine_model::Component;
 use measurement_files::micro;
 use serde_json::{Value, json};
 
@@ -13,11 +14,6 @@ use super::super::sources::{line, span};
 use super::rows::Rows;
 
 const FUNCTIONS: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
-
-/// Factor to what is printed, and its unit as JSON has it.
-fn unit(is_length: bool) -> (f64, &'static str) {
-    if is_length { (1e3, "um") } else { (1e6, "urad") }
-}
 
 fn degree(own: &TurnedAxis, groups: usize) -> Text {
     let per_turn = groups.saturating_sub(1);
@@ -162,7 +158,7 @@ fn left(found: &RotaryTables, held: Option<&HeldOut>) -> Text {
 }
 
 fn term_line(own: &FoundTerm) -> Text {
-    let (scale, unit) = micro(own.term.is_length());
+    let (scale, unit) = micro(own.term.component());
     let (name, value, base) = (own.term.name(), (own.base + own.change) * scale, own.base * scale);
     let half = own.half_width_95 * scale;
     match own.term {
@@ -191,7 +187,7 @@ fn functions(table: &WrittenTable) -> Text {
         "функции погрешностей {axis}, записаны от {first} до {last} градусов в узлах ({nodes}), между ними {um:.3} мкм и {urad:.3} мкрад\n"
     );
     for f in (0..6).filter(|f| table.changed[*f]) {
-        let (scale, unit) = micro(f < 3);
+        let (scale, unit) = micro(Component::of(f));
         let (low, high) = span(table.rows.iter().map(|row| row[f] * scale));
         let half = table.half_widths_95.iter().map(|row| row[f] * scale).fold(0.0, f64::max);
         let row = format!("  E{}{}   {low:>9.3} … {high:>9.3} ± {half:.3}", FUNCTIONS[f], table.axis);
@@ -209,12 +205,12 @@ pub(super) fn json(found: &RotaryTables, held: Option<&HeldOut>, rows: &Rows) ->
     };
     let freedom = found.estimate.degrees_of_freedom;
     let term = |own: &FoundTerm| {
-        let (scale, unit) = unit(own.term.is_length());
-        json!({ "name": own.term.name(), "unit": unit, "value": (own.base + own.change) * scale, "base": own.base * scale,
+        let (scale, unit) = micro(own.term.component());
+        json!({ "name": own.term.name(), "unit": unit.english(), "value": (own.base + own.change) * scale, "base": own.base * scale,
                 "u": own.standard_uncertainty * scale, "degrees_of_freedom": freedom, "u95": own.half_width_95 * scale,
                 "written": own.is_written })
     };
-    let scales: Vec<f64> = found.terms.iter().map(|own| unit(own.term.is_length()).0).collect();
+    let scales: Vec<f64> = found.terms.iter().map(|own| micro(own.term.component()).0).collect();
     let first = found.estimate.values.len() - found.terms.len();
     let covariance: Vec<Vec<f64>> = (0..scales.len())
         .map(|i| {
@@ -224,9 +220,9 @@ pub(super) fn json(found: &RotaryTables, held: Option<&HeldOut>, rows: &Rows) ->
         .collect();
     let table = |own: &WrittenTable| {
         let function = |f: usize| {
-            let (scale, unit) = unit(f < 3);
+            let (scale, unit) = micro(Component::of(f));
             let of = |all: &[[f64; 6]]| -> Vec<f64> { all.iter().map(|row| row[f] * scale).collect() };
-            json!({ "name": format!("E{}{}", FUNCTIONS[f], own.axis), "unit": unit, "changed": own.changed[f],
+            json!({ "name": format!("E{}{}", FUNCTIONS[f], own.axis), "unit": unit.english(), "changed": own.changed[f],
                     "values": of(&own.rows), "u95": of(&own.half_widths_95) })
         };
         json!({ "axis": own.axis.to_string(), "angles_deg": own.angles_deg,

@@ -10,7 +10,7 @@ use measurement_files::{Row, Sheet, numbered};
 
 use super::super::work::Work;
 use crate::calibrate::codes::{AXES, CELL, QUESTION, UNITS};
-use crate::calibrate::options::RTest;
+use crate::calibrate::options::{RTest, RTestMethod};
 use crate::calibrate::output::Output;
 use crate::calibrate::sources;
 use crate::conditions::conditions;
@@ -61,7 +61,7 @@ impl Rows {
         let Self { read, runs, nominal_mm } = &mut all;
         for path in files {
             let sheet = sources::sheet(work.read(path)?, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;
-            columns(&sheet, arguments.sphere, profile)?;
+            columns(&sheet, arguments.method(), profile)?;
             let file = sheet.name().to_owned();
             read.add(sheet, |row| {
                 let mut name = row.text("run").into_owned();
@@ -74,7 +74,7 @@ impl Rows {
                 if files.len() > 1 {
                     name = format!("{file} {name}");
                 }
-                let mut reading = reading(row, numbered(runs, &name), arguments.sphere, profile, machine)?;
+                let mut reading = reading(row, numbered(runs, &name), arguments.method(), profile, machine)?;
                 let here = sources::conditions_of(row, said, arguments.target.temperature)?;
                 let by_effects_mm = output.by_effects_mm(&reading.command, &here)?;
                 for (value, by) in reading.deviation_mm.iter_mut().zip(&by_effects_mm) {
@@ -88,7 +88,7 @@ impl Rows {
         let stated = all.read.rows.iter().filter(|r| r.uncertainty_mm.is_some()).count();
         sources::all_state_or_none(stated, all.read.rows.len())?;
         all.turn_as_the_profile_says(profile)?;
-        if arguments.sphere {
+        if arguments.method() == RTestMethod::Sphere {
             all.about_one_place()?;
         }
         Ok(all)
@@ -185,7 +185,7 @@ impl Rows {
 }
 
 /// Refuses a file that lacks a column, or has one of the other kind.
-fn columns(sheet: &Sheet, sphere: bool, profile: &Profile) -> Result<(), Failure> {
+fn columns(sheet: &Sheet, method: RTestMethod, profile: &Profile) -> Result<(), Failure> {
     let help = both!(
         "a run is one mounting of the ball: its offset is never the machine's",
         "серия — одна установка шара: её сдвиг к станку не относится"
@@ -197,8 +197,8 @@ fn columns(sheet: &Sheet, sphere: bool, profile: &Profile) -> Result<(), Failure
     );
     sheet.need(&["x_mm", "y_mm", "z_mm"], help)?;
     let deviation = DEVIATIONS.iter().find(|key| sheet.has(key));
-    match (sphere, deviation) {
-        (true, Some(key)) => {
+    match (method, deviation) {
+        (RTestMethod::Sphere, Some(key)) => {
             let message = both!("`{}` with `--sphere`", "`{}` вместе с `--sphere`", sheet.header(key));
             let help = both!(
                 "rows of a sphere hold where the axes stood when the probe was centred; deviations are read without --sphere",
@@ -206,7 +206,7 @@ fn columns(sheet: &Sheet, sphere: bool, profile: &Profile) -> Result<(), Failure
             );
             return Err(sheet.refuse_column(AXES, key, message, help).into());
         }
-        (false, None) => {
+        (RTestMethod::Deviations, None) => {
             return Err(Failure::usage(notice!(QUESTION;
                 "{} has no reading", "в {} нет отсчётов", sheet.name();
                 "give dx_um,dy_um,dz_um; where a touch probe was centred on a sphere at every row, add `--sphere`",
@@ -276,13 +276,13 @@ fn other_way(profile: &Profile, turned: &[Axis], [as_said_mm, turned_mm]: [f64; 
 fn reading(
     row: &Row<'_>,
     run: usize,
-    sphere: bool,
+    method: RTestMethod,
     profile: &Profile,
     machine: &RigidBody,
 ) -> Result<BallReading, Failure> {
     let command = row.command(profile.default_tool_mm)?;
     stands_where_the_profile_knows(row, &command, profile, machine)?;
-    let deviation_mm = if sphere {
+    let deviation_mm = if method == RTestMethod::Sphere {
         let there = machine.predict(&command);
         // Turned round: the sum with the run's offset is what the machine's error is.
         (there.error_mm - there.position_mm).map(Some).into()

@@ -10,6 +10,8 @@ use serde_json::{Value, json};
 pub(super) struct Outcome<'a> {
     pub(super) found: &'a TurningCalibration,
     pub(super) holdout: Option<HeldOut>,
+    /// The hold-out got worse, so that nothing was written.
+    pub(super) is_refuted: bool,
     pub(super) base: &'a TurningBase,
     pub(super) names: &'a Names,
     /// Readings that the adjustment saw.
@@ -140,7 +142,7 @@ impl Outcome<'_> {
     }
 
     pub(super) fn json(&self) -> Value {
-        let Self { found, holdout, base, names, rows, timed: _ } = *self;
+        let Self { found, holdout, base, names, rows, .. } = *self;
         let known = |u: Uncertainty, scale: f64| {
             let freedom = u.freedom.is_finite().then_some(u.freedom);
             (u.standard * scale, freedom, u.half_width_95() * scale)

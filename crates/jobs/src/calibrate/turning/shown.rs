@@ -22,8 +22,6 @@ const NOTHING_UM: f64 = 0.1;
 /// What is shown.
 pub(super) struct Pieces<'a> {
     pub(super) of: &'a Outcome<'a>,
-    /// The hold-out got worse, so that nothing was written.
-    pub(super) is_refuted: bool,
     curve: Vec<(f64, f64)>,
     read: Vec<Placed>,
     held: Vec<Placed>,
@@ -46,14 +44,10 @@ impl<'a> Pieces<'a> {
     ///
     /// # Errors
     /// An axis' tables and its travel have no interval in common.
-    pub(super) fn new(
-        of: &'a Outcome<'a>,
-        held: &[TurnedReading],
-        is_refuted: bool,
-    ) -> Result<Self, Unusable> {
+    pub(super) fn new(of: &'a Outcome<'a>, held: &[TurnedReading]) -> Result<Self, Unusable> {
         let along = Placing { of };
         let (read, held) = (along.placed(of.rows)?, along.placed(held)?);
-        Ok(Self { of, is_refuted, curve: along.curve()?, read, held })
+        Ok(Self { of, curve: along.curve()?, read, held })
     }
 
     /// The cone and the barrel that were found, of the curve.
@@ -155,7 +149,7 @@ impl<'a> Pieces<'a> {
         let found = self.of.found;
         let said = |own: &FoundTerm| match (own.is_significant, own.term.is_geometry()) {
             (false, _) => both!("not significant, not written", "незначимо, не записано"),
-            (true, true) if self.is_refuted => both!("refuted, not written", "опровергнуто, не записано"),
+            (true, true) if self.of.is_refuted => both!("refuted, not written", "опровергнуто, не записано"),
             (true, true) => both!("for the profile", "в профиль"),
             (true, false) => both!("in the report only", "только в отчёте"),
         };
@@ -342,8 +336,8 @@ impl Found for Pieces<'_> {
     fn head(&self, out: &mut Body, facts: &Facts) {
         let (word, wrong) = self.wrong();
         out.muted(&both!("Test pieces: {}", "Образцы: {}", facts.names()));
-        out.verdict(&if self.is_refuted { both!("REFUTED", "ОПРОВЕРГНУТО") } else { word }, &wrong);
-        if self.is_refuted {
+        out.verdict(&if self.of.is_refuted { both!("REFUTED", "ОПРОВЕРГНУТО") } else { word }, &wrong);
+        if self.of.is_refuted {
             out.p(&both!(
                 "Held-out diameters get worse by it: look for a sign, or for parts of another machine or clamping. Nothing was written.",
                 "Контрольные диаметры от этого становятся хуже: ищите ошибку в знаке или детали другого станка или установки. Ничего не записано."
@@ -359,7 +353,7 @@ impl Found for Pieces<'_> {
         for open in self.of.not_told_apart().iter().map(opening) {
             out.p(&both!("{open}.", "{open:#}."));
         }
-        if !self.is_refuted {
+        if !self.of.is_refuted {
             facts.say_written(out);
         }
     }

@@ -10,7 +10,7 @@ use measurement_files::Sheet;
 use measurement_files::codes::UNIT;
 
 use super::columns::READINGS;
-use crate::diagnose::read::Books;
+use crate::diagnose::books::Books;
 use crate::message::Failure;
 
 /// Rows of different frames in one file.

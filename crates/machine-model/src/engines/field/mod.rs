@@ -6,7 +6,9 @@
 //! that the tip of another tool cannot be told from it.
 
 mod dense;
+mod error;
 mod modes;
+mod places;
 mod smooth;
 mod spline;
 mod support;
@@ -16,127 +18,18 @@ use nalgebra::Matrix3;
 
 use crate::engine::inside;
 use crate::{Command, Engine, EngineId, Move, PathModel, Solution, SolveError, Vector, Volume};
-use spline::{Basis, TensorSpline};
+pub use error::{Doubt, FieldError};
+pub use places::ErrorVector;
+use places::Places;
+use spline::TensorSpline;
 use support::Support;
 
-/// Places are one where no coordinate differs by more, mm: below every machine's resolution.
-const SAME_PLACE_MM: f64 = 1e-6;
 /// Tools are one where no component differs by more, mm: 0.1 µm where the tool leans by 100 µrad over it is 1 nm.
 const SAME_TOOL_MM: f64 = 1e-3;
-/// Repeated readings differ by so many standard uncertainties once in a million times.
-const REPEATED: f64 = 5.0;
 /// What a fit with eight ways to be straight needs at least, so that as many are left to judge the noise by.
 const LEAST_VECTORS: usize = 16;
-/// Places whose spread in one direction is less than this part of that in another lie in a plane.
-const FLAT: f64 = 1e-3;
 /// How far beyond the volume the box of a stretch may reach by rounding, mm.
 const ROUNDING_MM: f64 = 1e-9;
-
-/// A measured error vector.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ErrorVector {
-    /// Commands of X, Y, Z, mm.
-    pub place_mm: Vector,
-    /// Measured minus commanded tip, mm.
-    pub error_mm: Vector,
-    /// Standard uncertainty of each component, mm; zero: it is met exactly.
-    pub uncertainty_mm: Vector,
-    /// Number of the run that it belongs to.
-    pub run: usize,
-}
-
-/// What the residuals say of the stated noise, where that is something else.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Doubt {
-    /// Standard uncertainty of a component as stated, mm (RMS).
-    pub stated_mm: f64,
-    /// What the residuals scatter by, as much of it as the fit leaves, mm.
-    pub scatter_mm: f64,
-}
-
-/// Why vectors make no field. Numbers of vectors count from 0 in the order in which they were given.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum FieldError {
-    /// Fewer than the fit can carry.
-    #[error("{found} places with error vectors; a field with a stated noise needs at least {needed}")]
-    TooFew {
-        /// Places found.
-        found: usize,
-        /// Places needed.
-        needed: usize,
-    },
-    /// They span no volume.
-    #[error("all error vectors were measured in one {shape}: they say nothing of the volume around it")]
-    Flat {
-        /// `place`, `line` or `plane`.
-        shape: &'static str,
-    },
-    /// One place, two vectors, and the noise is too small to make that of one.
-    #[error(
-        "two vectors of one place differ by {:.2} um in {}, {}",
-        apart_mm * 1e3,
-        ['X', 'Y', 'Z'][*component],
-        if *allowed_mm > 0.0 { format!("more than their uncertainty explains ({:.2} um)", allowed_mm * 1e3) }
-        else { "and the noise is stated as 0".to_owned() }
-    )]
-    Repeated {
-        /// The earlier vector.
-        first: usize,
-        /// The later one.
-        second: usize,
-        /// 0 X, 1 Y, 2 Z.
-        component: usize,
-        /// By how much they differ, mm.
-        apart_mm: f64,
-        /// What would pass, mm.
-        allowed_mm: f64,
-    },
-    /// A lattice that lacks nodes, its vectors to be met exactly.
-    #[error(
-        "the lattice of {} x {} x {} nodes lacks {missing}, the first at X {} Y {} Z {}",
-        counts[0], counts[1], counts[2], place_mm.x, place_mm.y, place_mm.z
-    )]
-    Hole {
-        /// Nodes of X, Y, Z.
-        counts: [usize; 3],
-        /// How many it lacks.
-        missing: usize,
-        /// The first of them, mm.
-        place_mm: Vector,
-    },
-    /// Scattered vectors that are to be met exactly.
-    #[error("the noise is stated as 0, and the {places} places are no complete lattice")]
-    Scattered {
-        /// How many.
-        places: usize,
-    },
-    /// Some vectors are exact and some are not.
-    #[error("an uncertainty of 0 beside others above 0")]
-    Exact {
-        /// The exact one.
-        vector: usize,
-    },
-    /// The residuals are not those of the stated noise.
-    #[error(
-        "the vectors scatter by about {:.3} um around the field that fits them best, and a noise of {:.3} um is stated",
-        .0.scatter_mm * 1e3, .0.stated_mm * 1e3
-    )]
-    Noise(Doubt),
-    /// A run lies beside the others.
-    #[error(
-        "the run of this vector lies {:.2} {:.2} {:.2} um beside the others: it has a set-up, or a direction, of its own",
-        offset_mm.x * 1e3, offset_mm.y * 1e3, offset_mm.z * 1e3
-    )]
-    Offset {
-        /// The first vector of the run.
-        vector: usize,
-        /// By how much, mm.
-        offset_mm: Vector,
-    },
-    /// The equations have no answer.
-    #[error("the places of the vectors do not determine a field")]
-    NotDetermined,
-}
 
 /// What a field was made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -349,123 +242,6 @@ impl PathModel for Field {
 
     fn jacobian(&self, command: &Command) -> Option<Matrix3<f64>> {
         Some(self.gradient(&command.linear_mm))
-    }
-}
-
-fn same_place(a: f64, b: f64) -> bool {
-    (a - b).abs() <= SAME_PLACE_MM
-}
-
-/// The places of vectors as a lattice.
-struct Places {
-    /// Distinct coordinates of each axis, increasing.
-    nodes: [Vec<f64>; 3],
-    /// Number in the lattice (X fastest) and number of the vector, by the former.
-    groups: Vec<(usize, Vec<usize>)>,
-}
-
-impl Places {
-    fn new(vectors: &[ErrorVector]) -> Self {
-        let nodes = [0, 1, 2].map(|a| {
-            let mut all: Vec<f64> = vectors.iter().map(|vector| vector.place_mm[a]).collect();
-            all.sort_by(f64::total_cmp);
-            all.dedup_by(|b, a| same_place(*a, *b));
-            all
-        });
-        let index = |a: usize, q: f64| nodes[a].partition_point(|node| *node < q - SAME_PLACE_MM);
-        let number = |vector: &ErrorVector| {
-            let [i, j, k] = [0, 1, 2].map(|a| index(a, vector.place_mm[a]));
-            i + nodes[0].len() * (j + nodes[1].len() * k)
-        };
-        let mut all: Vec<(usize, usize)> =
-            vectors.iter().enumerate().map(|(v, one)| (number(one), v)).collect();
-        all.sort_unstable();
-        let groups = all
-            .chunk_by(|a, b| a.0 == b.0)
-            .map(|group| (group[0].0, group.iter().map(|(_, vector)| *vector).collect()));
-        Self { groups: groups.collect(), nodes }
-    }
-
-    fn counts(&self) -> [usize; 3] {
-        self.nodes.each_ref().map(Vec::len)
-    }
-
-    fn place_mm(&self, number: usize) -> Vector {
-        let [x, y, _] = self.counts();
-        Vector::new(self.nodes[0][number % x], self.nodes[1][number / x % y], self.nodes[2][number / x / y])
-    }
-
-    /// Vectors of one place say the same, as far as their uncertainty goes.
-    fn agree(&self, vectors: &[ErrorVector]) -> Result<(), FieldError> {
-        for (_, group) in &self.groups {
-            for (at, &second) in group.iter().enumerate().skip(1) {
-                for &first in &group[..at] {
-                    let (a, b) = (&vectors[first], &vectors[second]);
-                    let apart = (a.error_mm - b.error_mm).abs();
-                    let component = apart.imax();
-                    for c in [component, 0, 1, 2] {
-                        let u = units::math::hypot(a.uncertainty_mm[c], b.uncertainty_mm[c]);
-                        let (apart_mm, allowed_mm) = (apart[c], REPEATED * u);
-                        if apart_mm > allowed_mm {
-                            return Err(FieldError::Repeated {
-                                first,
-                                second,
-                                component: c,
-                                apart_mm,
-                                allowed_mm,
-                            });
-                        }
-                    }
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// They span three dimensions.
-    fn span(&self, vectors: &[ErrorVector]) -> Result<(), FieldError> {
-        let n = vectors.len() as f64;
-        let mean = vectors.iter().map(|vector| vector.place_mm).sum::<Vector>() / n;
-        let mut spread = Matrix3::zeros();
-        for vector in vectors {
-            let from = vector.place_mm - mean;
-            spread += from * from.transpose();
-        }
-        let mut sizes: [f64; 3] = spread.symmetric_eigenvalues().map(|v| v.max(0.0).sqrt()).into();
-        sizes.sort_by(f64::total_cmp);
-        let shape = match sizes {
-            [_, _, longest] if longest <= SAME_PLACE_MM => "place",
-            [_, middle, longest] if middle <= FLAT * longest => "line",
-            [thinnest, _, longest] if thinnest <= FLAT * longest => "plane",
-            _ => return Ok(()),
-        };
-        Err(FieldError::Flat { shape })
-    }
-
-    /// How many nodes a lattice lacks and the first of them, where most are there.
-    fn missing(&self) -> Option<(usize, Vector)> {
-        let all = self.counts().iter().try_fold(1_usize, |product, count| product.checked_mul(*count))?;
-        let found = self.groups.len();
-        if found == all || all > 2 * found {
-            return None;
-        }
-        let first =
-            self.groups.iter().enumerate().find(|(at, (number, _))| at != number).map_or(found, |(at, _)| at);
-        Some((all - found, self.place_mm(first)))
-    }
-
-    /// Linear in each coordinate between the nodes of a complete lattice, equation (90).
-    fn lattice(&self, vectors: &[ErrorVector]) -> Result<TensorSpline, FieldError> {
-        let counts = self.counts();
-        if let Some((missing, place_mm)) = self.missing() {
-            return Err(FieldError::Hole { counts, missing, place_mm });
-        }
-        let places = self.groups.len();
-        if counts.iter().try_fold(1_usize, |product, count| product.checked_mul(*count)) != Some(places) {
-            return Err(FieldError::Scattered { places });
-        }
-        let values = self.groups.iter().map(|(_, group)| vectors[group[0]].error_mm).collect();
-        Ok(TensorSpline::new(self.nodes.each_ref().map(|nodes| Basis::through(nodes)), values))
     }
 }
 

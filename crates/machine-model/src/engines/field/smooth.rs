@@ -10,10 +10,11 @@
 //! without joints make them. Without these such a field has to be put together of 27 classes, which takes far more vectors.
 
 use super::dense::Square;
+use super::error::{Doubt, FieldError};
 use super::modes::{Modes, SWELLS};
+use super::places::{ErrorVector, same_place};
 use super::spline::TensorSpline;
 use super::variances::{Found, Model};
-use super::{Doubt, ErrorVector, FieldError, same_place};
 use crate::{Range, Vector};
 
 /// Intervals of an axis, at most: finer than 30 no tracker's survey is.

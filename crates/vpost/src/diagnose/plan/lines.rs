@@ -4,64 +4,18 @@ use diagnostic::both;
 use machine_model::effects::Conditions;
 use machine_model::{Vector, Volume};
 
-use super::rotary::Spot;
+use super::line::{LONGER_MM, Line, MARGIN, SLOW_MM_MIN, Stop, rounded};
 use crate::message::Failure;
 
-/// Time at rest for a reading, seconds.
-pub(super) const DWELL_S: f64 = 3.0;
 /// Stops along a line, each way.
 const STOPS: usize = 15;
-/// The ends of the volume stay free, for the way to a line and for the overrun at its ends.
-pub(super) const MARGIN: f64 = 0.04;
-/// Feed to a stop and between lines, mm/min.
-pub(super) const SLOW_MM_MIN: f64 = 1000.0;
 /// Feeds of the lines that are read on the fly, mm/min.
 const FEEDS_MM_MIN: [f64; 2] = [500.0, 3000.0];
-/// The second tool is so much longer, or half as long where the first is long already, mm.
-pub(super) const LONGER_MM: f64 = 100.0;
 const LONG_MM: f64 = 150.0;
 /// The third is aside.
 const ASIDE_MM: f64 = 80.0;
 /// Axes run for so long before the lines are repeated, seconds.
 const WARM_UP_S: f64 = 1800.0;
-
-/// A place where something is read.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::diagnose) struct Stop {
-    /// Axis positions.
-    pub at_mm: Vector,
-    /// A, B, C.
-    pub rotary_deg: [f64; 3],
-    /// How each axis came there.
-    pub direction: [i8; 3],
-}
-
-/// One line, forward and back.
-#[derive(Clone, Debug, PartialEq)]
-pub(in crate::diagnose) struct Line {
-    /// Its id.
-    pub run: String,
-    /// Time before it, for the axes to run warm, seconds.
-    pub wait_s: f64,
-    /// Feed along it.
-    pub feed_mm_min: f64,
-    /// Read in passing, not at rest.
-    pub flying: bool,
-    /// From the point the tables were measured at to the target.
-    pub tool_mm: Vector,
-    /// Load, temperature and time, where the line is about them; else they are filled in.
-    pub conditions: Conditions,
-    /// How often the line was measured before, and once more.
-    pub repeat: usize,
-    /// Where the way to its first stop begins, so that the direction is known.
-    pub before_mm: Vector,
-    /// Where it turns.
-    pub turn_mm: Vector,
-    /// The stops in order.
-    pub stops: Vec<Stop>,
-    /// Where rotary axes turn and the others follow: where that begins, and what is passed on the way to each stop.
-    pub swing: Option<(Spot, Vec<Vec<Spot>>)>,
-}
 
 /// Lines through the volume that make the effects of a three-axis machine separable: every axis in three places, all
 /// diagonals, with three tools, both ways, at rest; axes and diagonals again on the fly at two feeds; some again warm.
@@ -145,11 +99,6 @@ pub(in crate::diagnose) fn lines(volume: Volume, tool_mm: Vector) -> Result<Vec<
     plan.add("XY diagonal warm", across(0, 1, false), Kind::AtRest, tool_mm, 2);
     plan.lines[first_warm].wait_s = WARM_UP_S;
     Ok(plan.lines)
-}
-
-/// To what any control resolves.
-pub(super) fn rounded(at_mm: Vector) -> Vector {
-    at_mm.map(|v| (v * 100.0).round() / 100.0)
 }
 
 #[derive(Clone, Copy)]

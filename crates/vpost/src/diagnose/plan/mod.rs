@@ -1,5 +1,6 @@
 //! `vpost diagnose --plan`: what to measure so that the causes can be told apart.
 
+mod line;
 mod lines;
 mod program;
 mod proposed;
@@ -18,7 +19,8 @@ use crate::file;
 use crate::message::{Failure, Messages};
 use jobs::diagnose::Model;
 
-use lines::{Line, lines};
+use line::Line;
+use lines::lines;
 use proposed::proposed;
 use rotary::rotary_lines;
 
@@ -97,7 +99,7 @@ fn times(plan: &[Line]) -> Vec<Vec<f64>> {
                     // A degree takes as long as a millimetre.
                     let turned = |from: [f64; 3]| Vector::from(stop.rotary_deg) - Vector::from(from);
                     let way = here.map_or(0.0, |(mm, deg)| (stop.at_mm - mm).norm().max(turned(deg).norm()));
-                    now += 60.0 * way / line.feed_mm_min + if line.flying { 0.0 } else { lines::DWELL_S };
+                    now += 60.0 * way / line.feed_mm_min + if line.flying { 0.0 } else { line::DWELL_S };
                     here = Some((stop.at_mm, stop.rotary_deg));
                     now
                 })

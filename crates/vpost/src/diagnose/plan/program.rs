@@ -6,8 +6,7 @@ use diagnostic::both;
 use machine_model::Vector;
 use nc_syntax::{Paren, Semicolon};
 
-use super::lines::{DWELL_S, Line};
-use super::rotary::Spot;
+use super::line::{DWELL_S, Line, Spot};
 use crate::message::Failure;
 use crate::settings::Settings;
 

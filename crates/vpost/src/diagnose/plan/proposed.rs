@@ -4,7 +4,7 @@ use diagnostic::both;
 use gap_diagnosis::{NextMeasurement, Row};
 use machine_model::{Vector, Volume};
 
-use super::lines::{Line, SLOW_MM_MIN, Stop, rounded};
+use super::line::{Line, SLOW_MM_MIN, Stop, rounded};
 use crate::message::Failure;
 
 /// Way before the first reading and beyond the last, share of the line: an axis comes to each from the side that is read.

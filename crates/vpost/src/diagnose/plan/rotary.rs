@@ -8,7 +8,7 @@ use machine_model::{Axis, Command, PathModel, Vector, Volume};
 use machine_profile::Profile;
 use toolpath::{TiltRule, WholeTurns};
 
-use super::lines::{LONGER_MM, Line, MARGIN, SLOW_MM_MIN, Stop, rounded};
+use super::line::{LONGER_MM, Line, MARGIN, SLOW_MM_MIN, Spot, Stop, rounded};
 
 /// Stops of one axis, each way.
 const STOPS: u32 = 13;
@@ -24,13 +24,6 @@ const STEP_DEG: f64 = 1.0;
 const CONE_DEG: [f64; 2] = [15.0, 10.0];
 /// Places of the target that are tried along X, Y and Z.
 const PLACES: [u32; 3] = [9, 9, 7];
-
-/// Axes that keep at the target.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::diagnose) struct Spot {
-    pub(super) at_mm: Vector,
-    pub(super) rotary_deg: [f64; 3],
-}
 
 /// Turns of the rotary axes from place to place, degrees.
 struct Swing {

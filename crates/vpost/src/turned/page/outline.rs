@@ -6,7 +6,7 @@ use report::chart::{Curves, curves_with};
 use report::numbers::or_dash;
 use report::scale::nice;
 
-use super::Shown;
+use super::shown::Shown;
 use jobs::turned::judged::{Outline, mm, um};
 
 /// Places that are drawn, at most: of more that lie between two, the worst.

@@ -1,0 +1,104 @@
+//! A message: its number, how bad it is, where, and what to do.
+
+use std::fmt;
+use std::ops::Range;
+
+use crate::{Entry, Text};
+
+/// The number in `error[VP0203]`.
+///
+/// Hundreds name the room: 00 command and files, 01 nc-syntax, 02 nc-program, 03 machine-profile,
+/// 04 machine-model, 05 correction, 06 nc-emit, 07 check, 08 grammar, 09 point and measurement files,
+/// 10 diagnosis, 11 calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Code(pub u16);
+
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "VP{:04}", self.0)
+    }
+}
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The work goes on.
+    Warning,
+    /// A warning that the program itself is doubtful: who wants certainty refuses it (`--strict`).
+    Doubt,
+    /// Nothing is written.
+    Error,
+}
+
+/// One message about one place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnostic {
+    /// The number to look up.
+    pub code: Code,
+    /// How bad it is.
+    pub severity: Severity,
+    /// What is wrong, in one line, with numbers.
+    pub message: Text,
+    /// Bytes of the source text the message is about, from its start.
+    pub span: Option<Range<u64>>,
+    /// What stands under the caret: what was found there, what was expected.
+    pub label: Text,
+    /// What to type.
+    pub help: Option<Text>,
+    /// What the profile lacks, where entries of one of its tables settle it.
+    pub entries: Box<[Entry]>,
+}
+
+impl Diagnostic {
+    /// An error.
+    #[must_use]
+    pub fn error(code: Code, message: Text) -> Self {
+        Self {
+            code,
+            severity: Severity::Error,
+            message,
+            span: None,
+            label: Text::EMPTY,
+            help: None,
+            entries: Box::default(),
+        }
+    }
+    /// A warning.
+    #[must_use]
+    pub fn warning(code: Code, message: Text) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(code, message) }
+    }
+    /// A warning that the program itself is doubtful.
+    #[must_use]
+    pub fn doubt(code: Code, message: Text) -> Self {
+        Self { severity: Severity::Doubt, ..Self::error(code, message) }
+    }
+    /// Says where.
+    #[must_use]
+    pub fn at(mut self, span: Range<u64>, label: Text) -> Self {
+        self.span = Some(span);
+        self.label = label;
+        self
+    }
+    /// Says which entry of the profile settles it.
+    #[must_use]
+    pub fn settled_by(mut self, entry: Entry) -> Self {
+        self.entries = Box::new([entry]);
+        self
+    }
+    /// Says what to do.
+    #[must_use]
+    pub fn help(mut self, help: Text) -> Self {
+        self.help = Some(help);
+        self
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let word = if self.severity == Severity::Error { "error" } else { "warning" };
+        write!(f, "{word}[{}]: {}", self.code, self.message)
+    }
+}
+
+impl std::error::Error for Diagnostic {}
