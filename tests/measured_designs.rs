@@ -35,6 +35,14 @@ impl Answer {
         Self::of(&format!("tests/measurements/{name}.csv"), profile, &[])
     }
 
+    /// Of what the outside judge of protocols kept; `holdout`: a file beside the rows.
+    fn of_found(name: &str, holdout: Option<&str>) -> Self {
+        let file = |file: &str| format!("tests/judges/protocols/found/{name}/{file}");
+        let unseen = holdout.map(&file);
+        let more: Vec<&str> = unseen.iter().flat_map(|path| ["--holdout", path]).collect();
+        Self::of(&file("rows.csv"), &file("machine.toml"), &more)
+    }
+
     fn verdict(&self) -> &str {
         self.json["verdict"].as_str().expect("a verdict")
     }
@@ -209,4 +217,13 @@ fn edges_of_a_cube_off_the_axes_are_squarenesses_and_scales() {
     assert!(all.writes() && !all.profile.contains("angular"), "{}", all.said);
     // By chance an angle fits these rows better, and is not so unusual that it could be left out of the risk.
     assert!(!one.writes(), "{}", one.said);
+}
+
+/// A step gauge three times up and down in one set-up: a shift of the one run looks like no play.
+#[test]
+fn one_line_in_one_run_shows_what_comes_back() {
+    let answer = Answer::of_found("14_one_run_underpowered", None);
+    assert_eq!(answer.effects(), ["backlash.Z"], "{}", answer.said);
+    let found = answer.number("backlash.Z", "half_width_um");
+    assert!((found - 12.8).abs() < 0.6 && answer.writes(), "{found}");
 }

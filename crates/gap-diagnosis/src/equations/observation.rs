@@ -173,6 +173,51 @@ impl Measurements {
         Self { rows: rows.collect(), ..self.clone() }
     }
 
+    /// True of one run alone, but for a line along an axis that comes back to its places from the same side: whatever else
+    /// one run shows may be its own shift and drift, or the shifts of what lies beside each other in it.
+    pub(crate) fn is_one_run(&self) -> bool {
+        let moves = |axis: &usize| self.places_mm(*axis).len() > 1;
+        let is_line = (0..3).filter(moves).count() == 1;
+        self.runs.len() < 2 && !(is_line && self.comes_back(|row| row.command.direction))
+    }
+
+    /// True where most places are passed more than once within each part of the file: there the order of the rows is no place.
+    pub(crate) fn comes_back<Part: Ord>(&self, part: impl Fn(&Row) -> Part) -> bool {
+        let place = |row: &Row| row.command.linear_mm.map(|q| (1e3 * q).round() as i64);
+        let mut places: Vec<(Part, [i64; 3])> =
+            self.rows.iter().map(|row| (part(row), place(row).into())).collect();
+        places.sort_unstable();
+        places.dedup();
+        2 * places.len() <= self.rows.len()
+    }
+
+    /// True where these rows have no place of their own, on any axis, beside some others: what they show of a curve is what
+    /// those show. Feeds, loads and tools that are new are new places.
+    #[must_use]
+    pub fn repeats(&self, others: &Self) -> bool {
+        type Value = fn(&Row) -> f64;
+        const SAME: f64 = 1e-3;
+        let values: [Value; 9] = [
+            |r| r.command.linear_mm.x,
+            |r| r.command.linear_mm.y,
+            |r| r.command.linear_mm.z,
+            |r| 1e3 * r.command.rotary_rad[0],
+            |r| 1e3 * r.command.rotary_rad[1],
+            |r| 1e3 * r.command.rotary_rad[2],
+            |r| r.command.tool_mm.z,
+            |r| r.conditions.feed_mm_min.unwrap_or_default(),
+            |r| r.conditions.load_kg.unwrap_or_default(),
+        ];
+        values.iter().all(|value| {
+            let mut known: Vec<f64> = others.rows.iter().map(value).collect();
+            known.sort_by(f64::total_cmp);
+            self.rows.iter().map(value).all(|own| {
+                let place = known.partition_point(|other| *other < own - SAME);
+                known.get(place).is_some_and(|other| *other <= own + SAME)
+            })
+        })
+    }
+
     /// True where any row holds only the length of its displacement.
     #[must_use]
     pub fn has_magnitudes(&self) -> bool {

@@ -214,7 +214,7 @@ impl<'a> Assembly<'a> {
         let after_um = causes.last().map_or(gap.rms_um, |c| c.rms_after_um);
         Evidence {
             degrees: model.space.degrees,
-            runs: self.data.runs.len(),
+            one_run: self.data.is_one_run(),
             visible: model.library.candidates.len(),
             causes: causes.len(),
             instrument_causes: causes.iter().filter(|c| c.is_instrument()).count(),

@@ -16,8 +16,8 @@ pub(crate) const NOISE_FACTOR: f64 = 1.6;
 pub(crate) struct Evidence {
     /// Equations minus set-up.
     pub degrees: f64,
-    /// Runs.
-    pub runs: usize,
+    /// One run alone, and no line that comes back to its places.
+    pub one_run: bool,
     /// Effects that the design can show.
     pub visible: usize,
     /// Causes named.
@@ -126,7 +126,7 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 
 /// The verdict, by the first rule that holds:
 ///
-/// 1. UNDERPOWERED: fewer than 12 equations beside the set-up, one run (set-up and machine are the same then), or a design
+/// 1. UNDERPOWERED: fewer than 12 equations beside the set-up, one run that is no line passed again (set-up and machine are the same then), or a design
 ///    that shows no effect of the library.
 /// 2. Nothing named: UNKNOWN where more than [`PHI_PARTIAL`] of the gap is structure by the lack-of-fit test, UNDERPOWERED
 ///    where nothing says how much of the scatter is noise, NOISE MODEL
@@ -168,7 +168,7 @@ pub(crate) fn verdict(e: &Evidence) -> Verdict {
 
 /// The verdict of the rows that were fitted.
 fn on_the_rows(e: &Evidence) -> Verdict {
-    if e.degrees < 12.0 || e.runs < 2 || e.visible == 0 {
+    if e.degrees < 12.0 || e.one_run || e.visible == 0 {
         return Verdict::Underpowered;
     }
     let structured = e.phi > PHI_PARTIAL && e.lack_of_fit_p < LACK_OF_FIT;
@@ -207,7 +207,7 @@ mod tests {
 
     const CLEAR: Evidence = Evidence {
         degrees: 900.0,
-        runs: 12,
+        one_run: false,
         visible: 40,
         causes: 1,
         instrument_causes: 0,
@@ -232,7 +232,7 @@ mod tests {
         let cases = [
             (CLEAR, Verdict::Named),
             (Evidence { degrees: 11.0, ..CLEAR }, Verdict::Underpowered),
-            (Evidence { runs: 1, ..CLEAR }, Verdict::Underpowered),
+            (Evidence { one_run: true, ..CLEAR }, Verdict::Underpowered),
             (Evidence { visible: 0, ..CLEAR }, Verdict::Underpowered),
             (none, Verdict::NoGap),
             (Evidence { phi: 0.2, lack_of_fit_p: 1e-6, ..none }, Verdict::Unknown),

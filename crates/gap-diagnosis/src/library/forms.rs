@@ -2,7 +2,7 @@
 
 use machine_model::effects::{EffectKind, Shape};
 
-use crate::equations::observation::{Measurements, Row};
+use crate::equations::observation::Measurements;
 use crate::equations::set_up::{Clamping, frame, instruments};
 use crate::equations::term::Term;
 use crate::library::candidates::{Candidate, Library, Variant};
@@ -118,15 +118,8 @@ impl Library {
     fn orders(&mut self, data: &Measurements) -> Vec<Variant> {
         let scalars = data.scalars(None);
         let is_read = |component: &usize| scalars.iter().any(|s| s.class == *component);
-        let passed_again = |anew: &bool| {
-            let place = |row: &Row| row.command.linear_mm.map(|q| (1e3 * q).round() as i64);
-            let within = |row: &Row| if *anew { row.run } else { 0 };
-            let mut places: Vec<(usize, [i64; 3])> =
-                data.rows.iter().map(|row| (within(row), place(row).into())).collect();
-            places.sort_unstable();
-            places.dedup();
-            2 * places.len() <= data.rows.len() && data.rows.iter().any(|row| row.order != [0.0; 2])
-        };
+        let followed = data.rows.iter().any(|row| row.order != [0.0; 2]);
+        let passed_again = |anew: &bool| followed && data.comes_back(|row| if *anew { row.run } else { 0 });
         let mut forms = Vec::new();
         for anew in [false, true].into_iter().filter(passed_again) {
             for component in (0..3).filter(is_read) {
