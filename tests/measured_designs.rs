@@ -227,3 +227,13 @@ fn one_line_in_one_run_shows_what_comes_back() {
     let found = answer.number("backlash.Z", "half_width_um");
     assert!((found - 12.8).abs() < 0.6 && answer.writes(), "{found}");
 }
+
+/// Runs that each begin cold, no `time_s`: what grows from row to row with a time constant is no play and no scale.
+#[test]
+fn runs_that_begin_cold_are_no_play() {
+    for holdout in [None, Some("other.csv"), Some("same.csv")] {
+        let answer = Answer::of_found("04_cold_runs_named_as_play", holdout);
+        assert_eq!(answer.effects(), ["instrument-drift"], "{}", answer.said);
+        assert!(!answer.writes(), "{}", answer.profile);
+    }
+}

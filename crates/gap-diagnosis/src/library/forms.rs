@@ -113,8 +113,8 @@ impl Library {
         }
     }
 
-    /// An even drift in the order of the rows, through all runs or anew in each; on places that are passed once the order is the
-    /// place, and there and back any bend of it is.
+    /// A drift in the order of the rows: even through all runs; even, or with a time constant, anew in each, as where each
+    /// begins cold. On places that are passed once the order is the place.
     fn orders(&mut self, data: &Measurements) -> Vec<Variant> {
         let scalars = data.scalars(None);
         let is_read = |component: &usize| scalars.iter().any(|s| s.class == *component);
@@ -122,9 +122,12 @@ impl Library {
         let passed_again = |anew: &bool| followed && data.comes_back(|row| if *anew { row.run } else { 0 });
         let mut forms = Vec::new();
         for anew in [false, true].into_iter().filter(passed_again) {
+            let grown = if anew { &TAU_SHARES[..] } else { &[] };
             for component in (0..3).filter(is_read) {
-                self.terms.push(Term::Order { component, anew });
-                forms.push(Variant::textbook(vec![self.terms.len() - 1]));
+                for tau in [f64::INFINITY].iter().chain(grown) {
+                    self.terms.push(Term::Order { component, anew, tau: *tau });
+                    forms.push(Variant::textbook(vec![self.terms.len() - 1]));
+                }
             }
         }
         forms
