@@ -113,6 +113,17 @@ fn an_angle_needs_two_levers() {
     assert!(answer.said.contains("angular.ECX"), "{}", answer.said);
 }
 
+/// Three lines whose levers differ little: a curve and its scale, which the angle of the carriage fits worse.
+#[test]
+fn a_curve_is_not_taken_for_an_angle() {
+    let answer = Answer::of_found("09_angle_for_positioning", None);
+    let mut effects = answer.effects();
+    effects.sort_unstable();
+    assert_eq!(effects, ["positioning.EYY", "scale.Y"], "{}", answer.said);
+    // The noise is 0.8 um.
+    assert!(answer.json["leftover"]["rms_um"].as_f64().is_some_and(|um| um < 0.9), "{}", answer.said);
+}
+
 /// Two runs and five, there and back without `time_s`: what grows from row to row is no play.
 #[test]
 fn a_drift_in_the_order_of_the_rows_is_no_play() {

@@ -124,9 +124,11 @@ impl Assembly<'_> {
             let limit = score - 2.0 * (own_prior + units::math::ln(LEAST_WEIGHT));
             let scanned = model.space.scan(library, &rest, Asked::WithRivals);
             let is_other = |(part, _): &(Part, Fit)| {
-                !parts.contains(part) && unsupported(library, *part, &self.data.rows).is_none()
+                let slopes = group.iter().any(|place| library.slopes_as(*part, library.kind(parts[*place])));
+                !slopes && !parts.contains(part) && unsupported(library, *part, &self.data.rows).is_none()
             };
-            for (part, fit) in by_effect(scanned, limit).into_iter().filter(is_other) {
+            let others = scanned.into_iter().filter(is_other).collect();
+            for (part, fit) in by_effect(others, limit) {
                 let with: Vec<Part> = rest.iter().copied().chain([part]).collect();
                 // What the rows say and what machines usually have, together: an angle that no carriage has may fit
                 // better.

@@ -5,7 +5,7 @@ use machine_model::effects::{EffectKind, Shape};
 use crate::equations::observation::Measurements;
 use crate::equations::set_up::{Clamping, frame, instruments};
 use crate::equations::term::Term;
-use crate::library::candidates::{Candidate, Library, Variant};
+use crate::library::candidates::{Candidate, Library, SLOPE, Variant};
 use crate::library::sampling::Sampling;
 use crate::library::seen::Seen;
 
@@ -17,9 +17,6 @@ const STEP_TIMES: usize = 24;
 const SPIKES_MM: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
 /// Time constants as shares of the time the measurement took.
 const TAU_SHARES: [f64; 6] = [0.03, 0.08, 0.2, 0.5, 1.2, 3.0];
-
-/// The slope among the coefficients of a curve along an axis.
-const SLOPE: usize = 6;
 
 /// Damage at a place is narrower than this share of the axis.
 pub(crate) const LOCAL_WIDEST: f64 = 0.3;
@@ -148,25 +145,20 @@ impl Library {
         forms
     }
 
-    /// A curve with its slope, on rows where rotary axes turn.
+    /// A curve with its slope.
     ///
-    /// On others a slope is a scale, a squareness or the measuring frame's. A frame turns the tool as well; where rotary axes
-    /// turn it by themselves that shows, and of what slopes across an axis only a squareness is one effect of its own: without
-    /// these forms a droop, damage or high orders take the slope for the curve it belongs to. Where it has an owner, the curve
-    /// with its slope stands for both in comparison with other effects.
+    /// A slope is a scale, a squareness or the measuring frame's; with its slope a curve stands for both in comparison with
+    /// other effects, an angle of the carriage first of all. A frame turns the tool as well; where rotary axes turn it by
+    /// themselves that shows, and of what slopes across an axis only a squareness is one effect of its own: there the others
+    /// may be named with it, for without these forms a droop, damage or high orders take the slope for the curve it belongs to.
     fn sloping(&mut self, kind: EffectKind, a: usize, seen: &Seen) -> Vec<Variant> {
-        if seen.rotary == [false; 3] {
-            return Vec::new();
-        }
         // Three numbers at least: a slope and a bow would pass for a lone squareness that noise bends a little.
         let lists: [&[usize]; 2] = [&[0, 1, SLOPE], &[0, 1, 2, 3, SLOPE]];
         let lists: Vec<&[usize]> =
             lists.into_iter().filter(|l| 10 * (l.len() + 1) <= 7 * seen.sampling[a].places).collect();
         let mut forms = self.selections(kind, seen.interval(a), &lists);
-        let owned = match kind {
-            EffectKind::Straightness { direction, axis } => direction < axis,
-            _ => true,
-        };
+        let owned = seen.rotary == [false; 3]
+            || !matches!(kind, EffectKind::Straightness { direction, axis } if direction > axis);
         forms.iter_mut().for_each(|form| (form.enriched, form.only_rival) = (true, owned));
         forms
     }
