@@ -248,3 +248,33 @@ fn runs_that_begin_cold_are_no_play() {
         assert!(!answer.writes(), "{}", answer.profile);
     }
 }
+
+/// Screws of 4 and 16 mm, with the harmonic that screws have, at even steps that their turns nearly divide; rows of the
+/// same places once more prove no curve between them.
+#[test]
+fn even_steps_hide_a_period_with_its_harmonic() {
+    let screws = [
+        ("05_even_steps_written_as_a_curve", "pitch.Y"),
+        ("06_even_steps_named_with_same_holdout", "pitch.Z"),
+    ];
+    for (name, screw) in screws {
+        for holdout in [None, Some("other.csv"), Some("same.csv")] {
+            let answer = Answer::of_found(name, holdout);
+            assert_eq!(answer.verdict(), "AMBIGUOUS", "{}", answer.said);
+            assert!(answer.said.contains(screw) && !answer.writes(), "{}", answer.said);
+        }
+    }
+}
+
+/// Forty places a run without an order, twice: any period shows.
+#[test]
+fn a_period_is_found_at_some_dozens_of_places() {
+    for (name, period_mm) in
+        [("10_screw_rows_thrown_out", 6.247), ("17_written_under_partial_with_same_holdout", 9.42)]
+    {
+        let answer = Answer::of_found(name, None);
+        assert_eq!(answer.effects(), ["pitch.X"], "{}", answer.said);
+        let found = answer.number("pitch.X", "pitch_mm");
+        assert!((found / period_mm - 1.0).abs() < 0.01 && answer.writes(), "{name}: {found}");
+    }
+}

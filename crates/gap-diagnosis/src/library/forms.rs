@@ -250,7 +250,8 @@ impl Library {
     }
 
     /// Forms of a pitch error with this period: textbook, with harmonics, with a slope of the amplitude. A harmonic that the
-    /// places are too coarse for is not asked about; where the period itself is, the forms stay rivals.
+    /// places are too coarse for is not asked about; where the period itself is, the textbook form and the one with the harmonic that
+    /// most screws have stay rivals.
     pub(crate) fn pitch(&mut self, axis: usize, pitch_mm: f64) -> Vec<Variant> {
         let sampling = self.sampling[axis];
         let (from_mm, to_mm) = sampling.range_mm;
@@ -265,10 +266,14 @@ impl Library {
         ];
         let shown = |(harmonic, list): &(f64, &[usize])| {
             list.len() == 2
-                || (!sampling.is_coarse(pitch_mm / harmonic) && 2.0 * list.len() as f64 <= sampling.effective)
+                || ((only_rival || !sampling.is_coarse(pitch_mm / harmonic))
+                    && 2.0 * list.len() as f64 <= sampling.effective)
         };
         let lists: Vec<&[usize]> = lists.into_iter().filter(shown).map(|(_, list)| list).collect();
         let mut forms = self.selections(EffectKind::Pitch(axis), shape, &lists);
+        if only_rival {
+            forms.truncate(2);
+        }
         forms.iter_mut().for_each(|form| form.only_rival = only_rival);
         forms
     }

@@ -75,12 +75,11 @@ impl State<'_, '_> {
 
     /// Forms of a screw's period that even steps show as a slow curve: never named, rivals of what is.
     fn strobe(&mut self, kind: EffectKind, axis: usize, hidden: Option<f64>) {
-        let Some(mut form) = hidden.and_then(|pitch| self.library.pitch(axis, pitch).into_iter().next())
-        else {
-            return;
-        };
-        form.only_rival = true;
-        self.library.add_variants(kind, vec![form], 0);
+        let mut forms = hidden.map(|pitch| self.library.pitch(axis, pitch)).unwrap_or_default();
+        forms.iter_mut().for_each(|form| form.only_rival = true);
+        if !forms.is_empty() {
+            self.library.add_variants(kind, forms, 0);
+        }
     }
 
     /// Refined shapes of the effects in the model.
