@@ -177,6 +177,15 @@ fn coarse_readings_are_readings() {
     assert_eq!(Answer::of_case("zero").verdict(), "NO GAP");
 }
 
+/// A height gauge that shows whole micrometres, three times up and down: some repeats coincide.
+#[test]
+fn repeats_of_a_display_with_steps_are_no_copies() {
+    let answer = Answer::of_found("13_height_gauge_vp0914", None);
+    assert_eq!(answer.effects(), ["scale.Z"], "{}", answer.said);
+    let found = answer.number("scale.Z", "scale_um_per_m");
+    assert!((found + 104.0).abs() < 8.0 && answer.writes(), "{found}");
+}
+
 /// Screws of half an inch and a quarter, at places without an order.
 #[test]
 fn a_period_is_found_freely() {
