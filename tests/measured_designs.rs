@@ -287,3 +287,16 @@ fn a_period_is_found_at_some_dozens_of_places() {
         assert!((found / period_mm - 1.0).abs() < 0.01 && answer.writes(), "{name}: {found}");
     }
 }
+
+/// The same protocol once more: it proves no shape between its places, and a run that the fault is not in, worse by a
+/// tenth of the noise, refutes nothing.
+#[test]
+fn the_same_places_prove_less_and_refute_no_trifle() {
+    let [alone, again] =
+        [None, Some("same.csv")].map(|holdout| Answer::of_found("06b_bed_named_with_same_holdout", holdout));
+    assert_eq!(alone.verdict(), again.verdict(), "{}", again.said);
+    assert!(!alone.writes() && !again.writes(), "{}", again.said);
+    let again = Answer::of_found("12_same_protocol_refuses_a_right_name", Some("same.csv"));
+    assert_eq!((again.verdict(), again.effects()), ("NAMED", vec!["straightness.EZX"]), "{}", again.said);
+    assert!(again.writes());
+}

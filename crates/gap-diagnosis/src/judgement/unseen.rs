@@ -211,7 +211,7 @@ fn worse_run(
 ) -> Option<WorseRun> {
     /// Rows of a run that say something of it.
     const ROWS: usize = 6;
-    /// Less is nothing that anyone acts on, as a share of the RMS.
+    /// Less is nothing that anyone acts on, as a share of the RMS of all rows.
     const GROWS: f64 = 0.05;
     /// So seldom any of the runs is the worst one by chance.
     const CHANCE: f64 = 0.01;
@@ -226,6 +226,7 @@ fn worse_run(
     {
         runs[data.rows[*row].run].push((before * before, after * after));
     }
+    let least_um = GROWS * rms(&row_lengths(scalars, before));
     let judged = || runs.iter().enumerate().filter(|(_, rows)| rows.len() >= ROWS);
     let level = CHANCE / judged().count().max(1) as f64;
     let worse = judged().filter_map(|(run, rows)| {
@@ -236,7 +237,7 @@ fn worse_run(
         let scatter = mean(&|r| (r.1 - r.0 - grown).powi(2)) / (count - 1.0) * as_one;
         let worse = WorseRun { run, before_um: before.sqrt(), after_um: after.sqrt() };
         let no_chance = StudentsT::new(0.0, 1.0, count - 1.0).map_or(3.5, |t| t.inverse_cdf(1.0 - level));
-        let counts = worse.after_um > (1.0 + GROWS) * worse.before_um && grown > no_chance * scatter.sqrt();
+        let counts = worse.after_um - worse.before_um > least_um && grown > no_chance * scatter.sqrt();
         counts.then_some(worse)
     });
     worse.max_by(|a, b| (a.after_um / a.before_um).total_cmp(&(b.after_um / b.before_um)))

@@ -72,8 +72,7 @@ pub(crate) struct Unseen {
 impl Evidence {
     /// Rows that no fit has seen keep the forecast of causes beside which something is left.
     pub(crate) fn confirmed(&self) -> bool {
-        on_the_rows(self) == Verdict::Partial
-            && self.unseen.is_some_and(|u| !u.refutes() && u.achieved() > SHORT)
+        on_the_rows(self) == Verdict::Partial && self.unseen.is_some_and(|u| !u.refutes() && u.keeps())
     }
 }
 
@@ -85,6 +84,11 @@ impl Unseen {
     /// The forecast does not hold, or a run speaks against the causes that the others hide.
     pub(crate) fn refutes(&self) -> bool {
         self.falls_short() || self.worse.is_some()
+    }
+
+    /// The middle of the forecast comes true but for chance: an interval that holds anything proves nothing.
+    fn keeps(&self) -> bool {
+        self.achieved() > SHORT && self.promised.1 - self.achieved() <= f64::max(SHORT, 2.0 * self.error)
     }
 
     /// The forecast does not hold: less than the low end of its interval, by more than chance, and what is left is no
