@@ -145,6 +145,18 @@ fn scattered_places_give_no_all_clear() {
     }
 }
 
+/// Waves across the volume that no axis makes, thirty and sixty places read once: what a cause leaves is no noise by guess.
+#[test]
+fn scattered_places_give_no_name_on_a_guessed_noise() {
+    for name in ["07_scattered_named", "08_scattered_forecast"] {
+        for holdout in [None, Some("other.csv"), Some("same.csv")] {
+            let answer = Answer::of_found(name, holdout);
+            assert!(["UNKNOWN", "PARTIAL", "UNDERPOWERED"].contains(&answer.verdict()), "{}", answer.said);
+            assert!(!answer.writes(), "{}", answer.said);
+        }
+    }
+}
+
 #[test]
 fn a_play_below_zero_is_asked_about() {
     let answer = Answer::of_case("swapped");

@@ -176,6 +176,8 @@ fn on_the_rows(e: &Evidence) -> Verdict {
         return Verdict::Underpowered;
     }
     let structured = e.phi > PHI_PARTIAL && e.lack_of_fit_p < LACK_OF_FIT;
+    // Where nothing says how much of what a cause leaves is noise, it is no less than all.
+    let structured = structured || (e.phi > PHI_PARTIAL && e.guessed && e.causes > 0);
     if e.causes == 0 {
         if structured {
             return Verdict::Unknown;
