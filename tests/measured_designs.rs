@@ -312,3 +312,13 @@ fn the_same_places_prove_less_and_refute_no_trifle() {
     assert_eq!((again.verdict(), again.effects()), ("NAMED", vec!["straightness.EZX"]), "{}", again.said);
     assert!(again.writes());
 }
+
+/// A ball bar on four bases, each of which has a shift of its own that is larger than a squareness of 154 µrad: it is 36
+/// standard deviations within the runs.
+#[test]
+fn a_second_fault_counts_within_the_runs() {
+    let answer = Answer::of_found("16_second_fault_below_two_percent", None);
+    assert_eq!(answer.effects(), ["scale.X", "squareness.YZ"], "{}", answer.said);
+    let found = answer.number("squareness.YZ", "angle_urad");
+    assert!((found + 154.0).abs() < 10.0 && answer.writes(), "{found}");
+}

@@ -85,7 +85,7 @@ impl State<'_, '_> {
             ]));
         }
         // A curve without its constant or its slope has wrong numbers, however little either is.
-        if gain * self.spread(part) / reducible < LEAST_SHARE
+        if self.share(&with, fit.level) < LEAST_SHARE
             && !self.library.completes(part, rest)
             && !self.was_taken_over(&with, gain, before, fit.level)
         {
@@ -98,6 +98,18 @@ impl State<'_, '_> {
             return refuse(Reason::NotElsewhere);
         }
         None
+    }
+
+    /// Share of what can be explained that the last of some parts explains beside the others: of all, or within the runs,
+    /// which may be shifted by far more than anything else.
+    fn share(&self, with: &[Part], level: usize) -> f64 {
+        let Some((part, rest)) = with.split_last() else { return 0.0 };
+        let of = |level: usize| {
+            let left = |parts: &[Part]| self.space.left(&self.library, parts, level).0;
+            let full = left(with);
+            (left(rest) - full).max(0.0) / (self.space.total(level) - full).max(1e-12)
+        };
+        of(level).max(of(FREE)) * self.spread(*part)
     }
 
     /// How many times as many equations there are as a part acts on, where its physics says which those are: at a turn of
@@ -296,13 +308,12 @@ impl State<'_, '_> {
         loop {
             let level = self.fit.level;
             let (full, _) = self.space.left(&self.library, &self.parts, level);
-            let reducible = (self.space.total(level) - full).max(1e-12);
             let weakest = (0..self.parts.len())
                 .filter_map(|place| {
                     let rest = without(&self.parts, place);
                     let left = self.space.left(&self.library, &rest, level).0;
                     let with: Vec<Part> = rest.iter().copied().chain([self.parts[place]]).collect();
-                    let share = (left - full) * self.spread(self.parts[place]) / reducible;
+                    let share = self.share(&with, level);
                     let stays = share < LEAST_SHARE
                         && (self.library.completes(self.parts[place], &rest)
                             || self.was_taken_over(&with, left - full, left, level));
