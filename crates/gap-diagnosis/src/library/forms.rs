@@ -145,20 +145,22 @@ impl Library {
         forms
     }
 
-    /// A curve with its slope.
+    /// A curve with its slope: of positions, which is a scale, and of any on rows where rotary axes turn.
     ///
-    /// A slope is a scale, a squareness or the measuring frame's; with its slope a curve stands for both in comparison with
-    /// other effects, an angle of the carriage first of all. A frame turns the tool as well; where rotary axes turn it by
-    /// themselves that shows, and of what slopes across an axis only a squareness is one effect of its own: there the others
-    /// may be named with it, for without these forms a droop, damage or high orders take the slope for the curve it belongs to.
+    /// With its slope a curve of positions stands for both in comparison with other effects, an angle of the carriage first of
+    /// all. Across an axis a slope is a squareness or the measuring frame's. A frame turns the tool as well; where rotary axes
+    /// turn it by themselves that shows, and only a squareness is one effect of its own: there the others may be named with
+    /// their slope, for without these forms a droop, damage or high orders take it for the curve it belongs to.
     fn sloping(&mut self, kind: EffectKind, a: usize, seen: &Seen) -> Vec<Variant> {
+        if seen.rotary == [false; 3] && !matches!(kind, EffectKind::Positioning(_)) {
+            return Vec::new();
+        }
         // Three numbers at least: a slope and a bow would pass for a lone squareness that noise bends a little.
         let lists: [&[usize]; 2] = [&[0, 1, SLOPE], &[0, 1, 2, 3, SLOPE]];
         let lists: Vec<&[usize]> =
             lists.into_iter().filter(|l| 10 * (l.len() + 1) <= 7 * seen.sampling[a].places).collect();
         let mut forms = self.selections(kind, seen.interval(a), &lists);
-        let owned = seen.rotary == [false; 3]
-            || !matches!(kind, EffectKind::Straightness { direction, axis } if direction > axis);
+        let owned = !matches!(kind, EffectKind::Straightness { direction, axis } if direction > axis);
         forms.iter_mut().for_each(|form| (form.enriched, form.only_rival) = (true, owned));
         forms
     }
