@@ -322,3 +322,11 @@ fn a_second_fault_counts_within_the_runs() {
     let found = answer.number("squareness.YZ", "angle_urad");
     assert!((found + 154.0).abs() < 10.0 && answer.writes(), "{found}");
 }
+
+/// An angle that needs more coefficients than a third of the places: what it leaves is no damage at one of them.
+#[test]
+fn what_a_curve_leaves_is_no_damage() {
+    let answer = Answer::of_found("15_local_for_the_ninth_coefficient", None);
+    assert_eq!((answer.verdict(), answer.effects()), ("PARTIAL", vec!["angular.EBX"]), "{}", answer.said);
+    assert!(answer.writes(), "{}", answer.said);
+}

@@ -134,12 +134,23 @@ impl State<'_, '_> {
         (self.source.scalars.len() as f64 / most).max(1.0)
     }
 
-    /// True for damage where a joint of the same rails stands: the shape of the joint leaves something there.
+    /// True for damage where a joint of the same rails stands, or along an axis with a curve in the same component: the shape
+    /// of either leaves something there.
     fn on_a_flank(&self, rest: &[Part], part: Part) -> bool {
         let Some((EffectKind::Local(axis), own)) = shape(&self.library, part) else { return false };
-        rest.iter().filter_map(|other| shape(&self.library, *other)).any(|(kind, other)| {
-            kind == EffectKind::Joint(axis)
-                && (other.centre_mm - own.centre_mm).abs() < other.width_mm + own.width_mm
+        let touches = |part: Part, component: usize| {
+            let columns = &self.library.form(part).columns;
+            columns.iter().any(|column| self.library.terms[*column].touches(component, self.source.geometry))
+        };
+        rest.iter().any(|other| match shape(&self.library, *other) {
+            Some((EffectKind::Joint(along), other)) => {
+                along == axis && (other.centre_mm - own.centre_mm).abs() < other.width_mm + own.width_mm
+            }
+            Some((kind, _)) => {
+                curve_axis(kind) == Some(axis)
+                    && (0..3).any(|component| touches(*other, component) && touches(part, component))
+            }
+            None => false,
         })
     }
 
