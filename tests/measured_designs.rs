@@ -330,3 +330,14 @@ fn what_a_curve_leaves_is_no_damage() {
     assert_eq!((answer.verdict(), answer.effects()), ("PARTIAL", vec!["angular.EBX"]), "{}", answer.said);
     assert!(answer.writes(), "{}", answer.said);
 }
+
+/// A plate of 8 by 6 points probed twice, 0.5 and 1.0 µm: its own shape, 98 % alike from one point to the next, is no
+/// noise that hangs together.
+#[test]
+fn a_signal_that_comes_back_is_no_noise() {
+    for name in ["11_plate_signal_taken_for_noise", "11b_plate_signal_taken_for_noise"] {
+        let answer = Answer::of_found(name, None);
+        assert_eq!(answer.effects(), ["angular.EAX"], "{}", answer.said);
+        assert!(answer.writes() && !answer.said.contains("hang together"), "{}", answer.said);
+    }
+}

@@ -108,6 +108,47 @@ pub struct Scalar {
     pub weight: f64,
 }
 
+/// Everything that must agree for two rows to be repeats, in steps far below what matters; their run first.
+pub(crate) type Repeat = [i64; 22];
+
+/// Repeats differ in temperature by less than this: 0.5 m of steel grows by 6 µm in one kelvin.
+const SAME_K: f64 = 1.0;
+
+impl Scalar {
+    /// What its repeats agree in; `row`: its own.
+    pub(crate) fn repeats(&self, row: &Row) -> Repeat {
+        let step = |v: f64, unit: f64| (v / unit).round() as i64;
+        let c = &row.command;
+        let optional = |v: Option<f64>, unit: f64| v.map_or(i64::MIN, |v| step(v, unit));
+        let id = |v: Option<usize>| v.map_or(-1, |v| v as i64);
+        let [tx, ty, tz] = row.conditions.temp_c.map(|t| optional(t, SAME_K));
+        [
+            row.run as i64,
+            step(c.linear_mm.x, 1e-5),
+            step(c.linear_mm.y, 1e-5),
+            step(c.linear_mm.z, 1e-5),
+            step(c.rotary_rad.x, 1e-8),
+            step(c.rotary_rad.y, 1e-8),
+            step(c.rotary_rad.z, 1e-8),
+            step(c.tool_mm.x, 1e-5),
+            step(c.tool_mm.y, 1e-5),
+            step(c.tool_mm.z, 1e-5),
+            i64::from(c.direction[0]) * 9 + i64::from(c.direction[1]) * 3 + i64::from(c.direction[2]),
+            optional(row.conditions.feed_mm_min, 1e-3),
+            optional(row.conditions.load_kg, 1e-3),
+            self.class as i64,
+            step(self.along.x, 1e-4),
+            step(self.along.y, 1e-4),
+            step(self.along.z, 1e-4),
+            id(row.instrument),
+            id(row.artefact),
+            tx,
+            ty,
+            tz,
+        ]
+    }
+}
+
 impl Measurements {
     /// The scalar equations of all rows, vectors component by component, lengths along the bar.
     ///
