@@ -341,3 +341,22 @@ fn a_signal_that_comes_back_is_no_noise() {
         assert!(answer.writes() && !answer.said.contains("hang together"), "{}", answer.said);
     }
 }
+
+/// Play of 4 µm and a collision of 60 µm in mid-run, five passes without `time_s`: runs are kept back in stretches, and
+/// rows between the two that the knock came between are not foretold.
+#[test]
+fn a_knock_is_found_by_the_order_of_the_rows() {
+    for holdout in [None, Some("other.csv"), Some("same.csv")] {
+        let answer = Answer::of_found("10b_play_beside_a_knock_unknown", holdout);
+        assert_eq!(
+            (answer.verdict(), answer.effects()),
+            ("NAMED", vec!["step.X", "backlash.X"]),
+            "{}",
+            answer.said
+        );
+        assert!(answer.said.contains("along X from line 31 on"), "{}", answer.said);
+        let found = answer.number("backlash.X", "half_width_um");
+        assert!((found - 4.0).abs() < 0.3 && answer.writes(), "{found}");
+        assert!(!answer.profile.contains("step.X"), "{}", answer.profile);
+    }
+}

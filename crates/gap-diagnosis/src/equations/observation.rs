@@ -222,6 +222,11 @@ impl Measurements {
         self.runs.len() < 2 && !(is_line && self.comes_back(|row| row.command.direction))
     }
 
+    /// True where the order of the rows was noted ([`Measurements::follow`]).
+    pub(crate) fn is_followed(&self) -> bool {
+        self.rows.iter().any(|row| row.order != [0.0; 2])
+    }
+
     /// True where most places are passed more than once within each part of the file: there the order of the rows is no place.
     pub(crate) fn comes_back<Part: Ord>(&self, part: impl Fn(&Row) -> Part) -> bool {
         let place = |row: &Row| row.command.linear_mm.map(|q| (1e3 * q).round() as i64);

@@ -152,7 +152,10 @@ impl Assembly<'_> {
     fn explained(&self, parts: &[Part], stand: Option<Stand>) -> Explained {
         let sub = self.model.space.gram.select(&self.model.library.model_columns(parts));
         let (values, covariance) = sub.estimate(self.model.solution.rho);
-        let is_corrected = |i: &usize| sub.terms[*i].kind().is_some_and(|kind| self.corrects(kind));
+        let is_corrected = |i: &usize| match sub.terms[*i] {
+            Term::Effect { kind, .. } => self.corrects(kind),
+            _ => false,
+        };
         let own: Vec<usize> = (0..sub.terms.len()).filter(is_corrected).collect();
         Explained {
             stand,

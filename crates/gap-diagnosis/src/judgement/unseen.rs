@@ -120,6 +120,8 @@ impl Assembly<'_> {
         if count == 0 {
             return None;
         }
+        let foretold = kept.rows.iter().filter(|row| !self.is_at_a_knock(row)).copied().collect();
+        let kept = &Measurements { rows: foretold, ..kept.clone() };
         let solution = &self.model.solution;
         let framing = self.model.library.framing;
         let fitted = solution.terms.iter().copied().zip(solution.coefficients.iter().copied()).take(framing);
@@ -136,6 +138,24 @@ impl Assembly<'_> {
         let promised = self.shrink(count, Some(kept));
         let worse = worse_run(kept, &scalars, &before, &after, self.model.caution.as_one());
         Some(Unseen { worse, ..self.unseen(kept, size(&before), size(&after), Some(promised)) })
+    }
+
+    /// True where a row lies between the two fitted ones between which a knock came: on which side it is nobody can foretell.
+    fn is_at_a_knock(&self, row: &Row) -> bool {
+        type Moment = fn(&Row) -> Option<f64>;
+        self.taken_off(self.ordered.len()).into_iter().any(|(term, _)| {
+            let (moment, knock): (Moment, f64) = match term {
+                Term::Knock { from, .. } => (|row| Some(row.order[0]), from),
+                Term::Effect { kind: EffectKind::Step(_), shape, .. } => {
+                    (|row| row.conditions.time_s, shape.time_s)
+                }
+                _ => return false,
+            };
+            let fitted = || self.data.rows.iter().filter_map(moment);
+            let before = fitted().filter(|at| *at < knock).fold(f64::NEG_INFINITY, f64::max);
+            let behind = fitted().filter(|at| *at >= knock).fold(f64::INFINITY, f64::min);
+            moment(row).is_some_and(|at| at > before && at < behind)
+        })
     }
 
     /// Ids of the causes in order.

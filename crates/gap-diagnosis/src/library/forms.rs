@@ -42,8 +42,10 @@ impl Library {
         for kind in EffectKind::all().into_iter().filter(|k| !without.contains(k)) {
             let mut variants = library.forms(kind, &seen);
             variants.retain(|form| seen.carry(kind, form.columns.len()));
-            if kind == EffectKind::InstrumentDrift && untimed {
-                variants = library.orders(data);
+            match kind {
+                EffectKind::InstrumentDrift if untimed => variants = library.orders(data),
+                EffectKind::Step(component) if untimed => variants = library.knocks(data, component),
+                _ => {}
             }
             if !variants.is_empty() {
                 library.candidates.push(Candidate { kind, variants, rejected: 0 });
@@ -115,8 +117,8 @@ impl Library {
     fn orders(&mut self, data: &Measurements) -> Vec<Variant> {
         let scalars = data.scalars(None);
         let is_read = |component: &usize| scalars.iter().any(|s| s.class == *component);
-        let followed = data.rows.iter().any(|row| row.order != [0.0; 2]);
-        let passed_again = |anew: &bool| followed && data.comes_back(|row| if *anew { row.run } else { 0 });
+        let passed_again =
+            |anew: &bool| data.is_followed() && data.comes_back(|row| if *anew { row.run } else { 0 });
         let mut forms = Vec::new();
         for anew in [false, true].into_iter().filter(passed_again) {
             let grown = if anew { &TAU_SHARES[..] } else { &[] };
@@ -128,6 +130,36 @@ impl Library {
             }
         }
         forms
+    }
+
+    /// A knock between two rows, where the order of the rows is no place.
+    fn knocks(&mut self, data: &Measurements, component: usize) -> Vec<Variant> {
+        let read = data.scalars(None).iter().any(|s| s.class == component);
+        if !read || !data.is_followed() || !data.comes_back(|_| 0) {
+            return Vec::new();
+        }
+        let at = |k: usize| k as f64 / (STEP_TIMES + 1) as f64;
+        let columns = (1..=STEP_TIMES).map(|k| self.knock_column(component, at(k)));
+        columns.map(|column| Variant::textbook(vec![column])).collect()
+    }
+
+    fn knock_column(&mut self, component: usize, from: f64) -> usize {
+        let knock = Term::Knock { component, from };
+        self.terms.iter().position(|term| *term == knock).unwrap_or_else(|| {
+            self.terms.push(knock);
+            self.terms.len() - 1
+        })
+    }
+
+    /// The column of a knock at a moment: a time, or a share of the file where knocks are known by the order of the rows;
+    /// `None` where there can be none.
+    pub(crate) fn knock(&mut self, axis: usize, moment: f64) -> Option<Vec<usize>> {
+        let kind = EffectKind::Step(axis);
+        let known = self.candidates.iter().find(|candidate| candidate.kind == kind)?;
+        match self.terms[*known.variants.first()?.columns.first()?] {
+            Term::Knock { .. } => Some(vec![self.knock_column(axis, moment)]),
+            _ => Some(self.add_columns(kind, Shape { time_s: moment, ..Shape::default() }, &[0])),
+        }
     }
 
     /// A curve along an axis.

@@ -5,7 +5,7 @@ use units::math;
 
 use crate::equations::columns::Source;
 use crate::equations::noise::median;
-use crate::equations::observation::Scalar;
+use crate::equations::observation::{Row, Scalar};
 use crate::library::sampling::{ENOUGH_PLACES, UNEVEN};
 
 /// Pitches that screws, racks and gears are made with, mm; five, four, two and one a turn of an inch among them.
@@ -170,14 +170,17 @@ fn power(places: &[Place], pitch_mm: f64) -> f64 {
     (cc * sy * sy - 2.0 * sc * sy * cy + ss * cy * cy) / determinant
 }
 
-/// The time at which the residual of one axis jumps most, and how many were looked at.
+/// The moment at which the residual of one axis jumps most, and how many were looked at: a time, or how far through the file
+/// where no row has one.
 pub(crate) fn knock(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> Option<(f64, usize)> {
+    let timed = source.rows.iter().any(|row| row.conditions.time_s.is_some());
+    let moment = |row: &Row| if timed { row.conditions.time_s } else { Some(row.order[0]) };
     let mut points: Vec<(f64, f64)> = source
         .scalars
         .iter()
         .zip(residuals_um)
         .filter(|(s, _)| s.along[axis].abs() > 0.3)
-        .filter_map(|(s, r)| source.rows[s.row].conditions.time_s.map(|t| (t, r * s.along[axis])))
+        .filter_map(|(s, r)| moment(&source.rows[s.row]).map(|t| (t, r * s.along[axis])))
         .collect();
     let mut jumps = Jumps { least: STEP_ROWS, ..Jumps::default() };
     jumps.look(&mut points, f64::MIN_POSITIVE);

@@ -352,16 +352,19 @@ fn shape(library: &Library, part: Part) -> Option<(EffectKind, Shape)> {
 
 /// Why a knock or a damage cannot be told: hardly a row lies on the other side of the one, hardly a place in the other.
 pub(crate) fn unsupported(library: &Library, part: Part, rows: &[Row]) -> Option<Why> {
+    let beside = |moment: &dyn Fn(&Row) -> Option<f64>, knock: f64| {
+        let moments = || rows.iter().filter_map(moment);
+        let before = moments().filter(|moment| *moment < knock).count();
+        (before.min(moments().count() - before) < STEP_ROWS).then_some([
+            "so few rows lie on one side of the knock that they could be blunders",
+            "по одну сторону скачка так мало строк, что это могут быть промахи",
+        ])
+    };
+    if let Term::Knock { from, .. } = library.terms[*library.form(part).columns.first()?] {
+        return beside(&|row| Some(row.order[0]), from);
+    }
     match shape(library, part)? {
-        (EffectKind::Step(_), shape) => {
-            let times = || rows.iter().filter_map(|row| row.conditions.time_s);
-            let before = times().filter(|time| *time < shape.time_s).count();
-            let fewest = before.min(times().count() - before);
-            (fewest < STEP_ROWS).then_some([
-                "so few rows lie on one side of the knock that they could be blunders",
-                "по одну сторону скачка так мало строк, что это могут быть промахи",
-            ])
-        }
+        (EffectKind::Step(_), shape) => beside(&|row| row.conditions.time_s, shape.time_s),
         (EffectKind::Local(axis), shape) => {
             let places = rows.iter().map(|row| row.command.linear_mm[axis]);
             let mut inside: Vec<f64> =
