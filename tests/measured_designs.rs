@@ -145,7 +145,8 @@ fn scattered_places_give_no_all_clear() {
     }
 }
 
-/// Waves across the volume that no axis makes, thirty and sixty places read once: what a cause leaves is no noise by guess.
+/// Waves across the volume that no axis makes, thirty and sixty places read once: what a cause leaves is no noise by
+/// guess.
 #[test]
 fn scattered_places_give_no_name_on_a_guessed_noise() {
     for name in ["07_scattered_named", "08_scattered_forecast"] {
@@ -313,8 +314,8 @@ fn the_same_places_prove_less_and_refute_no_trifle() {
     assert!(again.writes());
 }
 
-/// A ball bar on four bases, each of which has a shift of its own that is larger than a squareness of 154 µrad: it is 36
-/// standard deviations within the runs.
+/// A ball bar on four bases, each of which has a shift of its own that is larger than a squareness of 154 µrad: it is
+/// 36 standard deviations within the runs.
 #[test]
 fn a_second_fault_counts_within_the_runs() {
     let answer = Answer::of_found("16_second_fault_below_two_percent", None);

@@ -214,8 +214,8 @@ impl Measurements {
         Self { rows: rows.collect(), ..self.clone() }
     }
 
-    /// True of one run alone, but for a line along an axis that comes back to its places from the same side: whatever else
-    /// one run shows may be its own shift and drift, or the shifts of what lies beside each other in it.
+    /// True of one run alone, but for a line along an axis that comes back to its places from the same side: whatever
+    /// else one run shows may be its own shift and drift, or the shifts of what lies beside each other in it.
     pub(crate) fn is_one_run(&self) -> bool {
         let moves = |axis: &usize| self.places_mm(*axis).len() > 1;
         let is_line = (0..3).filter(moves).count() == 1;
@@ -227,7 +227,8 @@ impl Measurements {
         self.rows.iter().any(|row| row.order != [0.0; 2])
     }
 
-    /// True where most places are passed more than once within each part of the file: there the order of the rows is no place.
+    /// True where most places are passed more than once within each part of the file: there the order of the rows is
+    /// no place.
     pub(crate) fn comes_back<Part: Ord>(&self, part: impl Fn(&Row) -> Part) -> bool {
         let place = |row: &Row| row.command.linear_mm.map(|q| (1e3 * q).round() as i64);
         let mut places: Vec<(Part, [i64; 3])> =
@@ -237,8 +238,8 @@ impl Measurements {
         2 * places.len() <= self.rows.len()
     }
 
-    /// True where these rows have no place of their own, on any axis, beside some others: what they show of a curve is what
-    /// those show. Feeds, loads and tools that are new are new places.
+    /// True where these rows have no place of their own, on any axis, beside some others: what they show of a curve
+    /// is what those show. Feeds, loads and tools that are new are new places.
     #[must_use]
     pub fn repeats(&self, others: &Self) -> bool {
         type Value = fn(&Row) -> f64;

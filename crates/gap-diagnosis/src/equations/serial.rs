@@ -131,7 +131,8 @@ impl Serial {
     }
 }
 
-/// Residuals of runs and components in order: stretches at one place, how commands read when they come again, and whole runs.
+/// Residuals of runs and components in order: stretches at one place, how commands read when they come again, and
+/// whole runs.
 struct Series {
     standing: Vec<Vec<f64>>,
     again: Vec<Vec<f64>>,
@@ -159,8 +160,8 @@ fn series(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Series {
     Series { standing, again: again(rows, scalars, residuals_um), moving }
 }
 
-/// By how much commands read otherwise than the time before, over √2, in the order of each run and component: free of all
-/// structure that comes back. None where few commands come again, or at once.
+/// By how much commands read otherwise than the time before, over √2, in the order of each run and component: free of
+/// all structure that comes back. None where few commands come again, or at once.
 fn again(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Vec<Vec<f64>> {
     /// Share of the readings that must be repeats.
     const ENOUGH: f64 = 0.25;

@@ -56,7 +56,8 @@ pub(crate) fn rivals(model: &Explanation, place: usize) -> Vec<Rival> {
         let is_itself = |part: Part| model.library.slopes_as(part, model.library.kind(own));
         let forms = scanned.iter().filter(|(p, _)| p.candidate == candidate && !is_itself(*p));
         let Some((part, fit)) = forms.min_by(|a, b| a.1.score.total_cmp(&b.1.score)) else { continue };
-        // What no machine usually has lies further behind than its fit; no rival is likelier by that than one without a price.
+        // What no machine usually has lies further behind than its fit; no rival is likelier by that than one without
+        // a price.
         let mut behind = fit.score - own_score;
         if behind <= WITHIN {
             let with: Vec<Part> = rest.iter().copied().chain([*part]).collect();

@@ -140,7 +140,8 @@ impl Assembly<'_> {
         Some(Unseen { worse, ..self.unseen(kept, size(&before), size(&after), Some(promised)) })
     }
 
-    /// True where a row lies between the two fitted ones between which a knock came: on which side it is nobody can foretell.
+    /// True where a row lies between the two fitted ones between which a knock came: on which side it is nobody can
+    /// foretell.
     fn is_at_a_knock(&self, row: &Row) -> bool {
         type Moment = fn(&Row) -> Option<f64>;
         self.taken_off(self.ordered.len()).into_iter().any(|(term, _)| {

@@ -130,8 +130,8 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 
 /// The verdict, by the first rule that holds:
 ///
-/// 1. UNDERPOWERED: fewer than 12 equations beside the set-up, one run that is no line passed again (set-up and machine are the same then), or a design
-///    that shows no effect of the library.
+/// 1. UNDERPOWERED: fewer than 12 equations beside the set-up, one run that is no line passed again (set-up and
+///    machine are the same then), or a design that shows no effect of the library.
 /// 2. Nothing named: UNKNOWN where more than [`PHI_PARTIAL`] of the gap is structure by the lack-of-fit test, UNDERPOWERED
 ///    where nothing says how much of the scatter is noise, NOISE MODEL
 ///    SUSPECT where the scatter is not what the file states by more than [`NOISE_FACTOR`], or exceeds the noise that was found

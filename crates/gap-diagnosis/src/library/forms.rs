@@ -112,8 +112,8 @@ impl Library {
         }
     }
 
-    /// A drift in the order of the rows: even through all runs; even, or with a time constant, anew in each, as where each
-    /// begins cold. On places that are passed once the order is the place.
+    /// A drift in the order of the rows: even through all runs; even, or with a time constant, anew in each, as where
+    /// each begins cold. On places that are passed once the order is the place.
     fn orders(&mut self, data: &Measurements) -> Vec<Variant> {
         let scalars = data.scalars(None);
         let is_read = |component: &usize| scalars.iter().any(|s| s.class == *component);
@@ -151,8 +151,8 @@ impl Library {
         })
     }
 
-    /// The column of a knock at a moment: a time, or a share of the file where knocks are known by the order of the rows;
-    /// `None` where there can be none.
+    /// The column of a knock at a moment: a time, or a share of the file where knocks are known by the order of the
+    /// rows; `None` where there can be none.
     pub(crate) fn knock(&mut self, axis: usize, moment: f64) -> Option<Vec<usize>> {
         let kind = EffectKind::Step(axis);
         let known = self.candidates.iter().find(|candidate| candidate.kind == kind)?;
@@ -179,10 +179,11 @@ impl Library {
 
     /// A curve with its slope: of positions, which is a scale, and of any on rows where rotary axes turn.
     ///
-    /// With its slope a curve of positions stands for both in comparison with other effects, an angle of the carriage first of
-    /// all. Across an axis a slope is a squareness or the measuring frame's. A frame turns the tool as well; where rotary axes
-    /// turn it by themselves that shows, and only a squareness is one effect of its own: there the others may be named with
-    /// their slope, for without these forms a droop, damage or high orders take it for the curve it belongs to.
+    /// With its slope a curve of positions stands for both in comparison with other effects, an angle of the carriage
+    /// first of all. Across an axis a slope is a squareness or the measuring frame's. A frame turns the tool as well;
+    /// where rotary axes turn it by themselves that shows, and only a squareness is one effect of its own: there the
+    /// others may be named with their slope, for without these forms a droop, damage or high orders take it for the
+    /// curve it belongs to.
     fn sloping(&mut self, kind: EffectKind, a: usize, seen: &Seen) -> Vec<Variant> {
         if seen.rotary == [false; 3] && !matches!(kind, EffectKind::Positioning(_)) {
             return Vec::new();
@@ -283,9 +284,9 @@ impl Library {
         Variant::each_and_all(self.add_columns(kind, shape, &[0, 1, 2]))
     }
 
-    /// Forms of a pitch error with this period: textbook, with harmonics, with a slope of the amplitude. A harmonic that the
-    /// places are too coarse for is not asked about; where the period itself is, the textbook form and the one with the harmonic that
-    /// most screws have stay rivals.
+    /// Forms of a pitch error with this period: textbook, with harmonics, with a slope of the amplitude. A harmonic
+    /// that the places are too coarse for is not asked about; where the period itself is, the textbook form and the
+    /// one with the harmonic that most screws have stay rivals.
     pub(crate) fn pitch(&mut self, axis: usize, pitch_mm: f64) -> Vec<Variant> {
         let sampling = self.sampling[axis];
         let (from_mm, to_mm) = sampling.range_mm;

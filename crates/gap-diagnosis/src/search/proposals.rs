@@ -170,8 +170,8 @@ fn power(places: &[Place], pitch_mm: f64) -> f64 {
     (cc * sy * sy - 2.0 * sc * sy * cy + ss * cy * cy) / determinant
 }
 
-/// The moment at which the residual of one axis jumps most, and how many were looked at: a time, or how far through the file
-/// where no row has one.
+/// The moment at which the residual of one axis jumps most, and how many were looked at: a time, or how far through
+/// the file where no row has one.
 pub(crate) fn knock(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> Option<(f64, usize)> {
     let timed = source.rows.iter().any(|row| row.conditions.time_s.is_some());
     let moment = |row: &Row| if timed { row.conditions.time_s } else { Some(row.order[0]) };

@@ -15,8 +15,8 @@ impl State<'_, '_> {
     /// where that is likelier: by what the rows say together with what carriages do ([`log_prior`]).
     ///
     /// Where all lines pass near one corner the levers of angles are small, and one that is large enough stands for a
-    /// squareness, or for one and a scale; so does one for a scale and a curve where the levers differ little. One after the
-    /// other they cannot be changed for the better.
+    /// squareness, or for one and a scale; so does one for a scale and a curve where the levers differ little. One
+    /// after the other they cannot be changed for the better.
     ///
     /// False where they are not.
     pub(super) fn straighten(&mut self) -> bool {
@@ -36,7 +36,8 @@ impl State<'_, '_> {
         matches!(self.library.kind(part), EffectKind::Angular { .. })
     }
 
-    /// The likeliest model that has straight axes, or curves, in the place of angles; `None` where the one there is likelier.
+    /// The likeliest model that has straight axes, or curves, in the place of angles; `None` where the one there is
+    /// likelier.
     fn straightened(&mut self) -> Option<(Vec<Part>, Fit)> {
         let angles: Vec<usize> = (0..self.parts.len()).filter(|k| self.bends(self.parts[*k])).collect();
         let pairs =

@@ -100,8 +100,8 @@ impl State<'_, '_> {
         None
     }
 
-    /// Share of what can be explained that the last of some parts explains beside the others: of all, or within the runs,
-    /// which may be shifted by far more than anything else.
+    /// Share of what can be explained that the last of some parts explains beside the others: of all, or within the
+    /// runs, which may be shifted by far more than anything else.
     fn share(&self, with: &[Part], level: usize) -> f64 {
         let Some((part, rest)) = with.split_last() else { return 0.0 };
         let of = |level: usize| {
@@ -134,8 +134,8 @@ impl State<'_, '_> {
         (self.source.scalars.len() as f64 / most).max(1.0)
     }
 
-    /// True for damage where a joint of the same rails stands, or along an axis with a curve in the same component: the shape
-    /// of either leaves something there.
+    /// True for damage where a joint of the same rails stands, or along an axis with a curve in the same component:
+    /// the shape of either leaves something there.
     fn on_a_flank(&self, rest: &[Part], part: Part) -> bool {
         let Some((EffectKind::Local(axis), own)) = shape(&self.library, part) else { return false };
         let touches = |part: Part, component: usize| {

@@ -163,8 +163,8 @@ fn is_coarse(sheet: &Sheet) -> bool {
     readings(sheet).into_iter().all(|(read, all)| (read.len() as f64) < FEW * all as f64)
 }
 
-/// True where from the smallest reading to the largest a display has fewer steps than there are rows, so that some repeats
-/// coincide: most that have the same command do not. Of a part that was pasted twice all do.
+/// True where from the smallest reading to the largest a display has fewer steps than there are rows, so that some
+/// repeats coincide: most that have the same command do not. Of a part that was pasted twice all do.
 fn coincide(sheet: &Sheet, copies: usize) -> bool {
     const COMMAND: [&str; 7] = ["run", "x_mm", "y_mm", "z_mm", "dir_x", "dir_y", "dir_z"];
     let mut commands: Vec<[Cow<'_, str>; 7]> =
