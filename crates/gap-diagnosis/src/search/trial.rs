@@ -56,9 +56,16 @@ impl State<'_, '_> {
         let ratio = (tested - residual).max(0.0) / columns / (residual / degrees).max(self.floor) / inflation;
         // Once with everything, once with the runs' offsets left free: within the runs no drift between
         // them can deceive, and the better of two tests costs a factor of two.
-        let p = 2.0
-            * self.library.questions(part.candidate)
-            * f_tail(ratio, columns, effective).min(self.within_runs(&with, inflation));
+        // A knock that the order of the rows alone shows must be one within a run: what lies between runs is their shift.
+        let by_order = self
+            .library
+            .form(part)
+            .columns
+            .iter()
+            .any(|c| matches!(self.library.terms[*c], Term::Knock { .. }));
+        let everywhere = if by_order { 1.0 } else { f_tail(ratio, columns, effective) };
+        let p =
+            2.0 * self.library.questions(part.candidate) * everywhere.min(self.within_runs(&with, inflation));
         let gain = (before - fit.residual).max(0.0);
         let share = gain / before.max(1e-12);
         let refuse = |reason| Some(Refused { kind, share, p: p.min(1.0), reason });
