@@ -35,6 +35,14 @@ impl Answer {
         Self::of(&format!("tests/measurements/{name}.csv"), profile, &[])
     }
 
+    /// Of what the outside judge of protocols kept; `holdout`: a file beside the rows.
+    fn of_found(name: &str, holdout: Option<&str>) -> Self {
+        let file = |file: &str| format!("tests/judges/protocols/found/{name}/{file}");
+        let unseen = holdout.map(&file);
+        let more: Vec<&str> = unseen.iter().flat_map(|path| ["--holdout", path]).collect();
+        Self::of(&file("rows.csv"), &file("machine.toml"), &more)
+    }
+
     fn verdict(&self) -> &str {
         self.json["verdict"].as_str().expect("a verdict")
     }
@@ -105,6 +113,17 @@ fn an_angle_needs_two_levers() {
     assert!(answer.said.contains("angular.ECX"), "{}", answer.said);
 }
 
+/// Three lines whose levers differ little: a curve and its scale, which the angle of the carriage fits worse.
+#[test]
+fn a_curve_is_not_taken_for_an_angle() {
+    let answer = Answer::of_found("09_angle_for_positioning", None);
+    let mut effects = answer.effects();
+    effects.sort_unstable();
+    assert_eq!(effects, ["positioning.EYY", "scale.Y"], "{}", answer.said);
+    // The noise is 0.8 um.
+    assert!(answer.json["leftover"]["rms_um"].as_f64().is_some_and(|um| um < 0.9), "{}", answer.said);
+}
+
 /// Two runs and five, there and back without `time_s`: what grows from row to row is no play.
 #[test]
 fn a_drift_in_the_order_of_the_rows_is_no_play() {
@@ -123,6 +142,19 @@ fn scattered_places_give_no_all_clear() {
         let answer = Answer::of("tests/measurements/scattered.csv", PERFECT, more);
         assert_eq!(answer.verdict(), "UNDERPOWERED", "{}", answer.said);
         assert!(answer.said.contains("Read twelve of the commands once more"), "{}", answer.said);
+    }
+}
+
+/// Waves across the volume that no axis makes, thirty and sixty places read once: what a cause leaves is no noise by
+/// guess.
+#[test]
+fn scattered_places_give_no_name_on_a_guessed_noise() {
+    for name in ["07_scattered_named", "08_scattered_forecast"] {
+        for holdout in [None, Some("other.csv"), Some("same.csv")] {
+            let answer = Answer::of_found(name, holdout);
+            assert!(["UNKNOWN", "PARTIAL", "UNDERPOWERED"].contains(&answer.verdict()), "{}", answer.said);
+            assert!(!answer.writes(), "{}", answer.said);
+        }
     }
 }
 
@@ -156,6 +188,15 @@ fn coarse_readings_are_readings() {
     let play = Answer::of_case("copies");
     assert_eq!(play.effects(), ["backlash.X"], "{}", play.said);
     assert_eq!(Answer::of_case("zero").verdict(), "NO GAP");
+}
+
+/// A height gauge that shows whole micrometres, three times up and down: some repeats coincide.
+#[test]
+fn repeats_of_a_display_with_steps_are_no_copies() {
+    let answer = Answer::of_found("13_height_gauge_vp0914", None);
+    assert_eq!(answer.effects(), ["scale.Z"], "{}", answer.said);
+    let found = answer.number("scale.Z", "scale_um_per_m");
+    assert!((found + 104.0).abs() < 8.0 && answer.writes(), "{found}");
 }
 
 /// Screws of half an inch and a quarter, at places without an order.
@@ -209,4 +250,114 @@ fn edges_of_a_cube_off_the_axes_are_squarenesses_and_scales() {
     assert!(all.writes() && !all.profile.contains("angular"), "{}", all.said);
     // By chance an angle fits these rows better, and is not so unusual that it could be left out of the risk.
     assert!(!one.writes(), "{}", one.said);
+}
+
+/// A step gauge three times up and down in one set-up: a shift of the one run looks like no play.
+#[test]
+fn one_line_in_one_run_shows_what_comes_back() {
+    let answer = Answer::of_found("14_one_run_underpowered", None);
+    assert_eq!(answer.effects(), ["backlash.Z"], "{}", answer.said);
+    let found = answer.number("backlash.Z", "half_width_um");
+    assert!((found - 12.8).abs() < 0.6 && answer.writes(), "{found}");
+}
+
+/// Runs that each begin cold, no `time_s`: what grows from row to row with a time constant is no play and no scale.
+#[test]
+fn runs_that_begin_cold_are_no_play() {
+    for holdout in [None, Some("other.csv"), Some("same.csv")] {
+        let answer = Answer::of_found("04_cold_runs_named_as_play", holdout);
+        assert_eq!(answer.effects(), ["instrument-drift"], "{}", answer.said);
+        assert!(!answer.writes(), "{}", answer.profile);
+    }
+}
+
+/// Screws of 4 and 16 mm, with the harmonic that screws have, at even steps that their turns nearly divide; rows of the
+/// same places once more prove no curve between them.
+#[test]
+fn even_steps_hide_a_period_with_its_harmonic() {
+    let screws = [
+        ("05_even_steps_written_as_a_curve", "pitch.Y"),
+        ("06_even_steps_named_with_same_holdout", "pitch.Z"),
+    ];
+    for (name, screw) in screws {
+        for holdout in [None, Some("other.csv"), Some("same.csv")] {
+            let answer = Answer::of_found(name, holdout);
+            assert_eq!(answer.verdict(), "AMBIGUOUS", "{}", answer.said);
+            assert!(answer.said.contains(screw) && !answer.writes(), "{}", answer.said);
+        }
+    }
+}
+
+/// Forty places a run without an order, twice: any period shows.
+#[test]
+fn a_period_is_found_at_some_dozens_of_places() {
+    for (name, period_mm) in
+        [("10_screw_rows_thrown_out", 6.247), ("17_written_under_partial_with_same_holdout", 9.42)]
+    {
+        let answer = Answer::of_found(name, None);
+        assert_eq!(answer.effects(), ["pitch.X"], "{}", answer.said);
+        let found = answer.number("pitch.X", "pitch_mm");
+        assert!((found / period_mm - 1.0).abs() < 0.01 && answer.writes(), "{name}: {found}");
+    }
+}
+
+/// The same protocol once more: it proves no shape between its places, and a run that the fault is not in, worse by a
+/// tenth of the noise, refutes nothing.
+#[test]
+fn the_same_places_prove_less_and_refute_no_trifle() {
+    let [alone, again] =
+        [None, Some("same.csv")].map(|holdout| Answer::of_found("06b_bed_named_with_same_holdout", holdout));
+    assert_eq!(alone.verdict(), again.verdict(), "{}", again.said);
+    assert!(!alone.writes() && !again.writes(), "{}", again.said);
+    let again = Answer::of_found("12_same_protocol_refuses_a_right_name", Some("same.csv"));
+    assert_eq!((again.verdict(), again.effects()), ("NAMED", vec!["straightness.EZX"]), "{}", again.said);
+    assert!(again.writes());
+}
+
+/// A ball bar on four bases, each of which has a shift of its own that is larger than a squareness of 154 µrad: it is
+/// 36 standard deviations within the runs.
+#[test]
+fn a_second_fault_counts_within_the_runs() {
+    let answer = Answer::of_found("16_second_fault_below_two_percent", None);
+    assert_eq!(answer.effects(), ["scale.X", "squareness.YZ"], "{}", answer.said);
+    let found = answer.number("squareness.YZ", "angle_urad");
+    assert!((found + 154.0).abs() < 10.0 && answer.writes(), "{found}");
+}
+
+/// An angle that needs more coefficients than a third of the places: what it leaves is no damage at one of them.
+#[test]
+fn what_a_curve_leaves_is_no_damage() {
+    let answer = Answer::of_found("15_local_for_the_ninth_coefficient", None);
+    assert_eq!((answer.verdict(), answer.effects()), ("PARTIAL", vec!["angular.EBX"]), "{}", answer.said);
+    assert!(answer.writes(), "{}", answer.said);
+}
+
+/// A plate of 8 by 6 points probed twice, 0.5 and 1.0 µm: its own shape, 98 % alike from one point to the next, is no
+/// noise that hangs together.
+#[test]
+fn a_signal_that_comes_back_is_no_noise() {
+    for name in ["11_plate_signal_taken_for_noise", "11b_plate_signal_taken_for_noise"] {
+        let answer = Answer::of_found(name, None);
+        assert_eq!(answer.effects(), ["angular.EAX"], "{}", answer.said);
+        assert!(answer.writes() && !answer.said.contains("hang together"), "{}", answer.said);
+    }
+}
+
+/// Play of 4 µm and a collision of 60 µm in mid-run, five passes without `time_s`: runs are kept back in stretches, and
+/// rows between the two that the knock came between are not foretold.
+#[test]
+fn a_knock_is_found_by_the_order_of_the_rows() {
+    for holdout in [None, Some("other.csv"), Some("same.csv")] {
+        let answer = Answer::of_found("10b_play_beside_a_knock_unknown", holdout);
+        assert_eq!(
+            (answer.verdict(), answer.effects()),
+            ("NAMED", vec!["step.X", "backlash.X"]),
+            "{}",
+            answer.said
+        );
+        assert!(answer.said.contains("along X from line 31 on"), "{}", answer.said);
+        let found = answer.number("backlash.X", "half_width_um");
+        assert!((found - 4.0).abs() < 0.3 && answer.writes(), "{found}");
+        assert!(!answer.profile.contains("step.X"), "{}", answer.profile);
+    }
 }

@@ -24,7 +24,6 @@ pub fn diagnose(data: &Measurements, holdout: Option<&Measurements>, options: &O
 /// Files that cannot carry any statement.
 fn too_little(data: &Measurements, scalars: &[Scalar]) -> Option<Diagnosis> {
     let mut missing = Vec::new();
-    let runs = data.runs.len();
     if scalars.len() < 24 {
         missing.push(both!(
             "{} readings, at least 24 are needed beside the six set-up parameters",
@@ -32,10 +31,10 @@ fn too_little(data: &Measurements, scalars: &[Scalar]) -> Option<Diagnosis> {
             scalars.len()
         ));
     }
-    if runs < 2 {
-        missing.push(both!(
-            "{runs} run: what is set-up and what is machine cannot be told; measure at least two lines with a run id each",
-            "серий {runs}: установку не отличить от станка; измерьте хотя бы две линии, каждую со своим именем серии"
+    if data.is_one_run() {
+        missing.push(Text::pair(
+            "1 run: what is set-up, drift and machine cannot be told; measure at least two lines with a run id each, or one line twice from each side",
+            "одна серия: установку и уход не отличить от станка; измерьте хотя бы две линии, каждую со своим именем серии, или одну дважды с каждой стороны",
         ));
     }
     if (0..3).all(|a| data.range_mm(a).1 - data.range_mm(a).0 < 1e-6) && !moves_rotary(data) {

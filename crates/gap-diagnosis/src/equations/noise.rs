@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::equations::observation::{Row, Scalar};
+use crate::equations::observation::{Repeat, Row, Scalar};
 use crate::equations::serial::Serial;
 
 /// Where the noise figure comes from.
@@ -40,8 +40,6 @@ impl Noise {
     }
 }
 
-/// Repeats differ in temperature by less than this: 0.5 m of steel grows by 6 µm in one kelvin.
-const SAME_K: f64 = 1.0;
 /// Repeats must give at least this many degrees of freedom to be believed.
 const ENOUGH_REPEATS: f64 = 12.0;
 
@@ -124,39 +122,6 @@ pub(crate) fn quantum_um(scalars: &[Scalar]) -> f64 {
     if (steps.len() as f64) < FEW * values.len() as f64 { median(&mut steps).unwrap_or(0.0) } else { 0.0 }
 }
 
-/// Everything that must agree for two rows to be repeats, in steps far below what matters.
-fn key(row: &Row, scalar: &Scalar) -> [i64; 22] {
-    let step = |v: f64, unit: f64| (v / unit).round() as i64;
-    let c = &row.command;
-    let optional = |v: Option<f64>, unit: f64| v.map_or(i64::MIN, |v| step(v, unit));
-    let id = |v: Option<usize>| v.map_or(-1, |v| v as i64);
-    let [tx, ty, tz] = row.conditions.temp_c.map(|t| optional(t, SAME_K));
-    [
-        row.run as i64,
-        step(c.linear_mm.x, 1e-5),
-        step(c.linear_mm.y, 1e-5),
-        step(c.linear_mm.z, 1e-5),
-        step(c.rotary_rad.x, 1e-8),
-        step(c.rotary_rad.y, 1e-8),
-        step(c.rotary_rad.z, 1e-8),
-        step(c.tool_mm.x, 1e-5),
-        step(c.tool_mm.y, 1e-5),
-        step(c.tool_mm.z, 1e-5),
-        i64::from(c.direction[0]) * 9 + i64::from(c.direction[1]) * 3 + i64::from(c.direction[2]),
-        optional(row.conditions.feed_mm_min, 1e-3),
-        optional(row.conditions.load_kg, 1e-3),
-        scalar.class as i64,
-        step(scalar.along.x, 1e-4),
-        step(scalar.along.y, 1e-4),
-        step(scalar.along.z, 1e-4),
-        id(row.instrument),
-        id(row.artefact),
-        tx,
-        ty,
-        tz,
-    ]
-}
-
 /// Scatter about the mean of repeats. The same command in another run, with another artefact or instrument or at another
 /// temperature is no repeat: what differs then is set-up, workpiece or machine.
 ///
@@ -165,9 +130,9 @@ fn key(row: &Row, scalar: &Scalar) -> [i64; 22] {
 fn from_repeats(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
     /// Far beyond the tail of what is left when outliers have gone.
     const BLUNDER: f64 = 8.0;
-    let mut groups: BTreeMap<[i64; 22], Vec<f64>> = BTreeMap::new();
+    let mut groups: BTreeMap<Repeat, Vec<f64>> = BTreeMap::new();
     for (scalar, r) in scalars.iter().zip(residuals_um) {
-        groups.entry(key(&rows[scalar.row], scalar)).or_default().push(r * scalar.weight.sqrt());
+        groups.entry(scalar.repeats(&rows[scalar.row])).or_default().push(r * scalar.weight.sqrt());
     }
     groups.retain(|_, group| group.len() > 1);
     let differences = groups.values().flat_map(|g| g.windows(2).map(|w| (w[1] - w[0]).abs()));
@@ -196,9 +161,9 @@ fn from_returns(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Optio
     }
     let offsets: BTreeMap<(usize, usize), f64> =
         runs.into_iter().map(|(run, mut values)| (run, median(&mut values).unwrap_or(0.0))).collect();
-    let mut groups: BTreeMap<[i64; 22], Vec<f64>> = BTreeMap::new();
+    let mut groups: BTreeMap<Repeat, Vec<f64>> = BTreeMap::new();
     for (scalar, value) in scalars.iter().zip(&weighted) {
-        let mut key = key(&rows[scalar.row], scalar);
+        let mut key = scalar.repeats(&rows[scalar.row]);
         key[0] = 0;
         groups.entry(key).or_default().push(value - offsets[&(rows[scalar.row].run, scalar.class)]);
     }

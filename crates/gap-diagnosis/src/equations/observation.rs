@@ -108,6 +108,47 @@ pub struct Scalar {
     pub weight: f64,
 }
 
+/// Everything that must agree for two rows to be repeats, in steps far below what matters; their run first.
+pub(crate) type Repeat = [i64; 22];
+
+/// Repeats differ in temperature by less than this: 0.5 m of steel grows by 6 µm in one kelvin.
+const SAME_K: f64 = 1.0;
+
+impl Scalar {
+    /// What its repeats agree in; `row`: its own.
+    pub(crate) fn repeats(&self, row: &Row) -> Repeat {
+        let step = |v: f64, unit: f64| (v / unit).round() as i64;
+        let c = &row.command;
+        let optional = |v: Option<f64>, unit: f64| v.map_or(i64::MIN, |v| step(v, unit));
+        let id = |v: Option<usize>| v.map_or(-1, |v| v as i64);
+        let [tx, ty, tz] = row.conditions.temp_c.map(|t| optional(t, SAME_K));
+        [
+            row.run as i64,
+            step(c.linear_mm.x, 1e-5),
+            step(c.linear_mm.y, 1e-5),
+            step(c.linear_mm.z, 1e-5),
+            step(c.rotary_rad.x, 1e-8),
+            step(c.rotary_rad.y, 1e-8),
+            step(c.rotary_rad.z, 1e-8),
+            step(c.tool_mm.x, 1e-5),
+            step(c.tool_mm.y, 1e-5),
+            step(c.tool_mm.z, 1e-5),
+            i64::from(c.direction[0]) * 9 + i64::from(c.direction[1]) * 3 + i64::from(c.direction[2]),
+            optional(row.conditions.feed_mm_min, 1e-3),
+            optional(row.conditions.load_kg, 1e-3),
+            self.class as i64,
+            step(self.along.x, 1e-4),
+            step(self.along.y, 1e-4),
+            step(self.along.z, 1e-4),
+            id(row.instrument),
+            id(row.artefact),
+            tx,
+            ty,
+            tz,
+        ]
+    }
+}
+
 impl Measurements {
     /// The scalar equations of all rows, vectors component by component, lengths along the bar.
     ///
@@ -171,6 +212,57 @@ impl Measurements {
         let taken = |index: usize| (GOLDEN * index as f64).fract() < share;
         let rows = self.rows.iter().enumerate().filter(|(index, _)| taken(*index)).map(|(_, row)| *row);
         Self { rows: rows.collect(), ..self.clone() }
+    }
+
+    /// True of one run alone, but for a line along an axis that comes back to its places from the same side: whatever
+    /// else one run shows may be its own shift and drift, or the shifts of what lies beside each other in it.
+    pub(crate) fn is_one_run(&self) -> bool {
+        let moves = |axis: &usize| self.places_mm(*axis).len() > 1;
+        let is_line = (0..3).filter(moves).count() == 1;
+        self.runs.len() < 2 && !(is_line && self.comes_back(|row| row.command.direction))
+    }
+
+    /// True where the order of the rows was noted ([`Measurements::follow`]).
+    pub(crate) fn is_followed(&self) -> bool {
+        self.rows.iter().any(|row| row.order != [0.0; 2])
+    }
+
+    /// True where most places are passed more than once within each part of the file: there the order of the rows is
+    /// no place.
+    pub(crate) fn comes_back<Part: Ord>(&self, part: impl Fn(&Row) -> Part) -> bool {
+        let place = |row: &Row| row.command.linear_mm.map(|q| (1e3 * q).round() as i64);
+        let mut places: Vec<(Part, [i64; 3])> =
+            self.rows.iter().map(|row| (part(row), place(row).into())).collect();
+        places.sort_unstable();
+        places.dedup();
+        2 * places.len() <= self.rows.len()
+    }
+
+    /// True where these rows have no place of their own, on any axis, beside some others: what they show of a curve
+    /// is what those show. Feeds, loads and tools that are new are new places.
+    #[must_use]
+    pub fn repeats(&self, others: &Self) -> bool {
+        type Value = fn(&Row) -> f64;
+        const SAME: f64 = 1e-3;
+        let values: [Value; 9] = [
+            |r| r.command.linear_mm.x,
+            |r| r.command.linear_mm.y,
+            |r| r.command.linear_mm.z,
+            |r| 1e3 * r.command.rotary_rad[0],
+            |r| 1e3 * r.command.rotary_rad[1],
+            |r| 1e3 * r.command.rotary_rad[2],
+            |r| r.command.tool_mm.z,
+            |r| r.conditions.feed_mm_min.unwrap_or_default(),
+            |r| r.conditions.load_kg.unwrap_or_default(),
+        ];
+        values.iter().all(|value| {
+            let mut known: Vec<f64> = others.rows.iter().map(value).collect();
+            known.sort_by(f64::total_cmp);
+            self.rows.iter().map(value).all(|own| {
+                let place = known.partition_point(|other| *other < own - SAME);
+                known.get(place).is_some_and(|other| *other <= own + SAME)
+            })
+        })
     }
 
     /// True where any row holds only the length of its displacement.

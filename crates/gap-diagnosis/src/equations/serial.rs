@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::equations::observation::{Row, Scalar};
+use crate::equations::observation::{Repeat, Row, Scalar};
 
 /// Correlation of a reading with the k-th next one of its run: `share φ^k`.
 ///
@@ -66,11 +66,12 @@ impl Serial {
 
     /// How readings hang together; not at all where runs are not long enough to tell it from structure.
     ///
-    /// Readings taken one after the other at one place show it free of all structure. Elsewhere what is left of the model
-    /// shows it, structure without a name included: either way it is no independent evidence for a name.
+    /// Readings taken one after the other at one place show it free of all structure, and so does what commands read
+    /// otherwise when they come again. Elsewhere what is left of the model shows it, structure without a name included:
+    /// either way it is no independent evidence for a name.
     pub(crate) fn of_noise(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Self {
-        let Series { standing, moving } = series(rows, scalars, residuals_um);
-        if let Some(found) = estimated(&standing) {
+        let Series { standing, again, moving } = series(rows, scalars, residuals_um);
+        if let Some(found) = estimated(&standing).or_else(|| estimated(&again)) {
             return found;
         }
         // Readings that hang together for as long as a run cannot be told from structure: it stays what it is called.
@@ -81,8 +82,9 @@ impl Serial {
     /// The same for runs of any length: what tests and intervals must count with, for noise that hangs together over a run
     /// is as smooth as an effect and no evidence for one.
     pub(crate) fn at_most(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Self {
-        let Series { standing, moving } = series(rows, scalars, residuals_um);
-        estimated(&standing).or_else(|| estimated(&moving)).unwrap_or_default()
+        let Series { standing, again, moving } = series(rows, scalars, residuals_um);
+        let found = estimated(&standing).or_else(|| estimated(&again)).or_else(|| estimated(&moving));
+        found.unwrap_or_default()
     }
 
     /// Variance of a weighted sum of readings that hang together, over that of independent ones: `Σ ρ_|s-t| x_s x_t / Σ x²`
@@ -129,9 +131,11 @@ impl Serial {
     }
 }
 
-/// Residuals of runs and components in order: stretches at one place, and whole runs.
+/// Residuals of runs and components in order: stretches at one place, how commands read when they come again, and
+/// whole runs.
 struct Series {
     standing: Vec<Vec<f64>>,
+    again: Vec<Vec<f64>>,
     moving: Vec<Vec<f64>>,
 }
 
@@ -153,7 +157,32 @@ fn series(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Series {
         .collect();
     let moving: Vec<Vec<f64>> =
         runs.values().filter(|l| l.len() > 3).map(|l| l.iter().map(|(_, v)| *v).collect()).collect();
-    Series { standing, moving }
+    Series { standing, again: again(rows, scalars, residuals_um), moving }
+}
+
+/// By how much commands read otherwise than the time before, over √2, in the order of each run and component: free of
+/// all structure that comes back. None where few commands come again, or at once.
+fn again(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Vec<Vec<f64>> {
+    /// Share of the readings that must be repeats.
+    const ENOUGH: f64 = 0.25;
+    let mut last: BTreeMap<Repeat, (usize, f64)> = BTreeMap::new();
+    let mut runs: BTreeMap<(usize, usize), Vec<f64>> = BTreeMap::new();
+    for (scalar, r) in scalars.iter().zip(residuals_um) {
+        let row = &rows[scalar.row];
+        let mut command = scalar.repeats(row);
+        command[0] = 0;
+        let now = r * scalar.weight.sqrt();
+        match last.insert(command, (scalar.row, now)) {
+            Some((before, read)) if before + 1 < scalar.row => {
+                let line = runs.entry((row.run, scalar.class)).or_default();
+                line.push((now - read) / std::f64::consts::SQRT_2);
+            }
+            _ => {}
+        }
+    }
+    let lines: Vec<Vec<f64>> = runs.into_values().filter(|line| line.len() > 3).collect();
+    let repeats = lines.iter().map(Vec::len).sum::<usize>() as f64;
+    if repeats < ENOUGH * scalars.len() as f64 { Vec::new() } else { lines }
 }
 
 /// Correlation of readings with the `k`-th next ones, pooled.

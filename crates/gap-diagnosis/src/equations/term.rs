@@ -2,6 +2,7 @@
 
 use machine_model::Vector;
 use machine_model::effects::{EffectGeometry, EffectKind, Shape};
+use units::math;
 
 use crate::equations::observation::{Reading, Row, Scalar};
 
@@ -46,6 +47,15 @@ pub(crate) enum Term {
         component: usize,
         /// Anew in every run, or through all of them.
         anew: bool,
+        /// Time constant as a share of the file or of the longest run; infinite for an even drift.
+        tau: f64,
+    },
+    /// Readings jump from one row on, where no time is given; coefficient in µm.
+    Knock {
+        /// Component.
+        component: usize,
+        /// How far through the file that row stands.
+        from: f64,
     },
     /// One coefficient of an effect, in the unit of its name.
     Effect {
@@ -79,7 +89,11 @@ impl Term {
                 (true, 0..=2) => unit(*component),
                 (true, _) => unit(component - 3).cross(&geometry.nominal_tip_mm(&row.command)) * 1e-3,
             },
-            Self::Order { component, anew } => unit(*component) * row.order[usize::from(*anew)],
+            Self::Order { component, anew, tau } => {
+                let (passed, grown) = (row.order[usize::from(*anew)], |way: f64| 1.0 - math::exp(-way / tau));
+                unit(*component) * if tau.is_finite() { grown(passed) / grown(1.0) } else { passed }
+            }
+            Self::Knock { component, from } => unit(*component) * f64::from(u8::from(row.order[0] >= *from)),
             Self::Effect { kind, index, shape } => kind
                 .unit_displacement_mm(*index, shape, &row.command, &row.conditions, geometry)
                 .map_or_else(|_| Vector::zeros(), |v| v * 1e3),
@@ -102,6 +116,7 @@ impl Term {
         match self {
             Self::Effect { kind, .. } => Some(*kind),
             Self::Order { .. } => Some(EffectKind::InstrumentDrift),
+            Self::Knock { component, .. } => Some(EffectKind::Step(*component)),
             _ => None,
         }
     }
@@ -140,7 +155,7 @@ impl Term {
             Self::InstrumentShift { axis, .. } => axis == component,
             Self::StationFrame { component: shift @ 0..=2, .. } => shift == component,
             Self::StationFrame { component: turn, .. } => turn - 3 != component,
-            Self::Order { component: own, .. } => own == component,
+            Self::Order { component: own, .. } | Self::Knock { component: own, .. } => own == component,
             Self::BarLength => false,
             Self::Effect { kind, index, .. } => match kind {
                 EffectKind::Scale(a)

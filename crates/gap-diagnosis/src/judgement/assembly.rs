@@ -214,7 +214,7 @@ impl<'a> Assembly<'a> {
         let after_um = causes.last().map_or(gap.rms_um, |c| c.rms_after_um);
         Evidence {
             degrees: model.space.degrees,
-            runs: self.data.runs.len(),
+            one_run: self.data.is_one_run(),
             visible: model.library.candidates.len(),
             causes: causes.len(),
             instrument_causes: causes.iter().filter(|c| c.is_instrument()).count(),
@@ -284,7 +284,7 @@ impl<'a> Assembly<'a> {
 
     pub(crate) fn leftover(&self) -> Leftover {
         let model = self.model;
-        let noise = self.noise_variance();
+        let noise = if self.noise_is_guessed() { 0.0 } else { self.noise_variance() };
         let total = model.space.total(model.fit.level) / model.space.degrees;
         let phi = ((self.variance() - noise) / (total - noise).max(1e-12)).clamp(0.0, 1.0);
         let lack_of_fit_p = lack_of_fit(

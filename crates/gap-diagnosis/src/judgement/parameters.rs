@@ -77,6 +77,7 @@ impl Assembly<'_> {
         for i in positions.clone() {
             let name = match solution.terms[i] {
                 Term::Effect { index, .. } => names[index].to_owned(),
+                Term::Knock { .. } => names[0].to_owned(),
                 Term::Order { component, .. } => format!("{}_um", ["x", "y", "z"][component]),
                 _ => continue,
             };

@@ -124,9 +124,11 @@ impl Assembly<'_> {
             let limit = score - 2.0 * (own_prior + units::math::ln(LEAST_WEIGHT));
             let scanned = model.space.scan(library, &rest, Asked::WithRivals);
             let is_other = |(part, _): &(Part, Fit)| {
-                !parts.contains(part) && unsupported(library, *part, &self.data.rows).is_none()
+                let slopes = group.iter().any(|place| library.slopes_as(*part, library.kind(parts[*place])));
+                !slopes && !parts.contains(part) && unsupported(library, *part, &self.data.rows).is_none()
             };
-            for (part, fit) in by_effect(scanned, limit).into_iter().filter(is_other) {
+            let others = scanned.into_iter().filter(is_other).collect();
+            for (part, fit) in by_effect(others, limit) {
                 let with: Vec<Part> = rest.iter().copied().chain([part]).collect();
                 // What the rows say and what machines usually have, together: an angle that no carriage has may fit
                 // better.
@@ -150,7 +152,10 @@ impl Assembly<'_> {
     fn explained(&self, parts: &[Part], stand: Option<Stand>) -> Explained {
         let sub = self.model.space.gram.select(&self.model.library.model_columns(parts));
         let (values, covariance) = sub.estimate(self.model.solution.rho);
-        let is_corrected = |i: &usize| sub.terms[*i].kind().is_some_and(|kind| self.corrects(kind));
+        let is_corrected = |i: &usize| match sub.terms[*i] {
+            Term::Effect { kind, .. } => self.corrects(kind),
+            _ => false,
+        };
         let own: Vec<usize> = (0..sub.terms.len()).filter(is_corrected).collect();
         Explained {
             stand,

@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 
 use crate::equations::linear::{Factor, Products, explained};
 use crate::library::candidates::Part;
+use crate::search::bounds::log_prior;
 use crate::search::explanation::Explanation;
 use crate::search::moves::without;
 use crate::search::space::{Asked, Sweep, WITHIN};
@@ -43,6 +44,8 @@ pub(crate) fn rivals(model: &Explanation, place: usize) -> Vec<Rival> {
         .filter(|(p, _)| p.candidate == own.candidate)
         .map(|(_, f)| f.score)
         .fold(f64::INFINITY, f64::min);
+    let prior = |parts: &[Part]| log_prior(&model.space.values(&model.library, parts, model.solution.rho));
+    let own_prior = prior(&model.parts);
     let left = left_over(model, &rest);
     let contribution = contribution(model, &left, own);
     let mut found: Vec<Rival> = Vec::new();
@@ -50,9 +53,16 @@ pub(crate) fn rivals(model: &Explanation, place: usize) -> Vec<Rival> {
         if candidate == own.candidate {
             continue;
         }
-        let forms = scanned.iter().filter(|(p, _)| p.candidate == candidate);
+        let is_itself = |part: Part| model.library.slopes_as(part, model.library.kind(own));
+        let forms = scanned.iter().filter(|(p, _)| p.candidate == candidate && !is_itself(*p));
         let Some((part, fit)) = forms.min_by(|a, b| a.1.score.total_cmp(&b.1.score)) else { continue };
-        let behind = fit.score - own_score;
+        // What no machine usually has lies further behind than its fit; no rival is likelier by that than one without
+        // a price.
+        let mut behind = fit.score - own_score;
+        if behind <= WITHIN {
+            let with: Vec<Part> = rest.iter().copied().chain([*part]).collect();
+            behind += 2.0 * (own_prior - prior(&with)).max(0.0);
+        }
         // A rival that must be bent to look alike is judged by its score; one that looks alike as it stands
         // in textbooks is a rival whatever the score says: the true shape is neither.
         let correlation = (0..model.library.candidates[candidate].variants.len())

@@ -120,6 +120,8 @@ impl Assembly<'_> {
         if count == 0 {
             return None;
         }
+        let foretold = kept.rows.iter().filter(|row| !self.is_at_a_knock(row)).copied().collect();
+        let kept = &Measurements { rows: foretold, ..kept.clone() };
         let solution = &self.model.solution;
         let framing = self.model.library.framing;
         let fitted = solution.terms.iter().copied().zip(solution.coefficients.iter().copied()).take(framing);
@@ -136,6 +138,25 @@ impl Assembly<'_> {
         let promised = self.shrink(count, Some(kept));
         let worse = worse_run(kept, &scalars, &before, &after, self.model.caution.as_one());
         Some(Unseen { worse, ..self.unseen(kept, size(&before), size(&after), Some(promised)) })
+    }
+
+    /// True where a row lies between the two fitted ones between which a knock came: on which side it is nobody can
+    /// foretell.
+    fn is_at_a_knock(&self, row: &Row) -> bool {
+        type Moment = fn(&Row) -> Option<f64>;
+        self.taken_off(self.ordered.len()).into_iter().any(|(term, _)| {
+            let (moment, knock): (Moment, f64) = match term {
+                Term::Knock { from, .. } => (|row| Some(row.order[0]), from),
+                Term::Effect { kind: EffectKind::Step(_), shape, .. } => {
+                    (|row| row.conditions.time_s, shape.time_s)
+                }
+                _ => return false,
+            };
+            let fitted = || self.data.rows.iter().filter_map(moment);
+            let before = fitted().filter(|at| *at < knock).fold(f64::NEG_INFINITY, f64::max);
+            let behind = fitted().filter(|at| *at >= knock).fold(f64::INFINITY, f64::min);
+            moment(row).is_some_and(|at| at > before && at < behind)
+        })
     }
 
     /// Ids of the causes in order.
@@ -211,7 +232,7 @@ fn worse_run(
 ) -> Option<WorseRun> {
     /// Rows of a run that say something of it.
     const ROWS: usize = 6;
-    /// Less is nothing that anyone acts on, as a share of the RMS.
+    /// Less is nothing that anyone acts on, as a share of the RMS of all rows.
     const GROWS: f64 = 0.05;
     /// So seldom any of the runs is the worst one by chance.
     const CHANCE: f64 = 0.01;
@@ -226,6 +247,7 @@ fn worse_run(
     {
         runs[data.rows[*row].run].push((before * before, after * after));
     }
+    let least_um = GROWS * rms(&row_lengths(scalars, before));
     let judged = || runs.iter().enumerate().filter(|(_, rows)| rows.len() >= ROWS);
     let level = CHANCE / judged().count().max(1) as f64;
     let worse = judged().filter_map(|(run, rows)| {
@@ -236,7 +258,7 @@ fn worse_run(
         let scatter = mean(&|r| (r.1 - r.0 - grown).powi(2)) / (count - 1.0) * as_one;
         let worse = WorseRun { run, before_um: before.sqrt(), after_um: after.sqrt() };
         let no_chance = StudentsT::new(0.0, 1.0, count - 1.0).map_or(3.5, |t| t.inverse_cdf(1.0 - level));
-        let counts = worse.after_um > (1.0 + GROWS) * worse.before_um && grown > no_chance * scatter.sqrt();
+        let counts = worse.after_um - worse.before_um > least_um && grown > no_chance * scatter.sqrt();
         counts.then_some(worse)
     });
     worse.max_by(|a, b| (a.after_um / a.before_um).total_cmp(&(b.after_um / b.before_um)))

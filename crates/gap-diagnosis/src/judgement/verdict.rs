@@ -16,8 +16,8 @@ pub(crate) const NOISE_FACTOR: f64 = 1.6;
 pub(crate) struct Evidence {
     /// Equations minus set-up.
     pub degrees: f64,
-    /// Runs.
-    pub runs: usize,
+    /// One run alone, and no line that comes back to its places.
+    pub one_run: bool,
     /// Effects that the design can show.
     pub visible: usize,
     /// Causes named.
@@ -72,8 +72,7 @@ pub(crate) struct Unseen {
 impl Evidence {
     /// Rows that no fit has seen keep the forecast of causes beside which something is left.
     pub(crate) fn confirmed(&self) -> bool {
-        on_the_rows(self) == Verdict::Partial
-            && self.unseen.is_some_and(|u| !u.refutes() && u.achieved() > SHORT)
+        on_the_rows(self) == Verdict::Partial && self.unseen.is_some_and(|u| !u.refutes() && u.keeps())
     }
 }
 
@@ -85,6 +84,11 @@ impl Unseen {
     /// The forecast does not hold, or a run speaks against the causes that the others hide.
     pub(crate) fn refutes(&self) -> bool {
         self.falls_short() || self.worse.is_some()
+    }
+
+    /// The middle of the forecast comes true but for chance: an interval that holds anything proves nothing.
+    fn keeps(&self) -> bool {
+        self.achieved() > SHORT && self.promised.1 - self.achieved() <= f64::max(SHORT, 2.0 * self.error)
     }
 
     /// The forecast does not hold: less than the low end of its interval, by more than chance, and what is left is no
@@ -126,8 +130,8 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 
 /// The verdict, by the first rule that holds:
 ///
-/// 1. UNDERPOWERED: fewer than 12 equations beside the set-up, one run (set-up and machine are the same then), or a design
-///    that shows no effect of the library.
+/// 1. UNDERPOWERED: fewer than 12 equations beside the set-up, one run that is no line passed again (set-up and
+///    machine are the same then), or a design that shows no effect of the library.
 /// 2. Nothing named: UNKNOWN where more than [`PHI_PARTIAL`] of the gap is structure by the lack-of-fit test, UNDERPOWERED
 ///    where nothing says how much of the scatter is noise, NOISE MODEL
 ///    SUSPECT where the scatter is not what the file states by more than [`NOISE_FACTOR`], or exceeds the noise that was found
@@ -168,10 +172,12 @@ pub(crate) fn verdict(e: &Evidence) -> Verdict {
 
 /// The verdict of the rows that were fitted.
 fn on_the_rows(e: &Evidence) -> Verdict {
-    if e.degrees < 12.0 || e.runs < 2 || e.visible == 0 {
+    if e.degrees < 12.0 || e.one_run || e.visible == 0 {
         return Verdict::Underpowered;
     }
     let structured = e.phi > PHI_PARTIAL && e.lack_of_fit_p < LACK_OF_FIT;
+    // Where nothing says how much of what a cause leaves is noise, it is no less than all.
+    let structured = structured || (e.phi > PHI_PARTIAL && e.guessed && e.causes > 0);
     if e.causes == 0 {
         if structured {
             return Verdict::Unknown;
@@ -207,7 +213,7 @@ mod tests {
 
     const CLEAR: Evidence = Evidence {
         degrees: 900.0,
-        runs: 12,
+        one_run: false,
         visible: 40,
         causes: 1,
         instrument_causes: 0,
@@ -232,7 +238,7 @@ mod tests {
         let cases = [
             (CLEAR, Verdict::Named),
             (Evidence { degrees: 11.0, ..CLEAR }, Verdict::Underpowered),
-            (Evidence { runs: 1, ..CLEAR }, Verdict::Underpowered),
+            (Evidence { one_run: true, ..CLEAR }, Verdict::Underpowered),
             (Evidence { visible: 0, ..CLEAR }, Verdict::Underpowered),
             (none, Verdict::NoGap),
             (Evidence { phi: 0.2, lack_of_fit_p: 1e-6, ..none }, Verdict::Unknown),

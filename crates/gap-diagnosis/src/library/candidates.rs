@@ -7,6 +7,9 @@ use machine_model::effects::{EffectKind, Shape};
 use crate::equations::term::Term;
 use crate::library::sampling::Sampling;
 
+/// The slope among the coefficients of a curve along an axis.
+pub(crate) const SLOPE: usize = 6;
+
 /// One form of an effect: columns of the design.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Variant {
@@ -46,9 +49,10 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
-    /// Number of forms the data were asked about.
+    /// Number of forms the data were asked about; bent ones that are rivals alone are never named and cost nothing.
     pub(crate) fn asked(&self) -> usize {
-        self.variants.len() + self.rejected
+        let plain = self.variants.iter().filter(|form| !form.enriched || !form.only_rival).count();
+        plain.max(1) + self.rejected
     }
 }
 
@@ -144,23 +148,25 @@ impl Library {
             return Vec::new();
         }
         let owns = |kind: EffectKind| match (self.kind(curve), kind) {
-            (EffectKind::Positioning(along), EffectKind::Scale(axis)) => along == axis,
-            (EffectKind::Straightness { direction, axis }, EffectKind::Squareness(first, second)) => {
-                [direction.min(axis), direction.max(axis)] == [first, second]
-            }
             (
                 EffectKind::Positioning(direction) | EffectKind::Straightness { direction, .. },
                 EffectKind::Rotary { component, .. },
             ) => direction == component,
-            _ => false,
+            (curve, kind) => is_slope_of(curve, kind),
         };
         self.named(owns)
     }
 
-    /// The first form that may be named of every effect of some kinds.
+    /// True where a form is a curve with its slope, and that slope is an effect of this kind.
+    pub(crate) fn slopes_as(&self, curve: Part, kind: EffectKind) -> bool {
+        let is_slope = |column: &usize| matches!(self.terms[*column], Term::Effect { index: SLOPE, .. });
+        is_slope_of(self.kind(curve), kind) && self.form(curve).columns.iter().any(is_slope)
+    }
+
+    /// The fullest form, not bent, that may be named of every effect of some kinds.
     pub(crate) fn named(&self, is_one: impl Fn(EffectKind) -> bool) -> Vec<Part> {
         let of = |(candidate, own): (usize, &Candidate)| {
-            let variant = own.variants.iter().position(|form| !form.only_rival)?;
+            let variant = own.variants.iter().rposition(|form| !form.only_rival && !form.enriched)?;
             is_one(own.kind).then_some(Part { candidate, variant })
         };
         self.candidates.iter().enumerate().filter_map(of).collect()
@@ -188,5 +194,16 @@ impl Library {
     /// effect has the same share of the level, and its forms divide it.
     pub(crate) fn questions(&self, candidate: usize) -> f64 {
         (self.candidates.len() * self.candidates[candidate].asked()) as f64
+    }
+}
+
+/// True where the slope of a curve along an axis counts as an effect of another kind.
+const fn is_slope_of(curve: EffectKind, kind: EffectKind) -> bool {
+    match (curve, kind) {
+        (EffectKind::Positioning(along), EffectKind::Scale(axis)) => along == axis,
+        (EffectKind::Straightness { direction, axis }, EffectKind::Squareness(first, second)) => {
+            (direction == first && axis == second) || (direction == second && axis == first)
+        }
+        _ => false,
     }
 }

@@ -2,10 +2,10 @@
 
 use machine_model::effects::{EffectKind, Shape};
 
-use crate::equations::observation::{Measurements, Row};
+use crate::equations::observation::Measurements;
 use crate::equations::set_up::{Clamping, frame, instruments};
 use crate::equations::term::Term;
-use crate::library::candidates::{Candidate, Library, Variant};
+use crate::library::candidates::{Candidate, Library, SLOPE, Variant};
 use crate::library::sampling::Sampling;
 use crate::library::seen::Seen;
 
@@ -17,9 +17,6 @@ const STEP_TIMES: usize = 24;
 const SPIKES_MM: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
 /// Time constants as shares of the time the measurement took.
 const TAU_SHARES: [f64; 6] = [0.03, 0.08, 0.2, 0.5, 1.2, 3.0];
-
-/// The slope among the coefficients of a curve along an axis.
-const SLOPE: usize = 6;
 
 /// Damage at a place is narrower than this share of the axis.
 pub(crate) const LOCAL_WIDEST: f64 = 0.3;
@@ -45,8 +42,10 @@ impl Library {
         for kind in EffectKind::all().into_iter().filter(|k| !without.contains(k)) {
             let mut variants = library.forms(kind, &seen);
             variants.retain(|form| seen.carry(kind, form.columns.len()));
-            if kind == EffectKind::InstrumentDrift && untimed {
-                variants = library.orders(data);
+            match kind {
+                EffectKind::InstrumentDrift if untimed => variants = library.orders(data),
+                EffectKind::Step(component) if untimed => variants = library.knocks(data, component),
+                _ => {}
             }
             if !variants.is_empty() {
                 library.candidates.push(Candidate { kind, variants, rejected: 0 });
@@ -113,28 +112,54 @@ impl Library {
         }
     }
 
-    /// An even drift in the order of the rows, through all runs or anew in each; on places that are passed once the order is the
-    /// place, and there and back any bend of it is.
+    /// A drift in the order of the rows: even through all runs; even, or with a time constant, anew in each, as where
+    /// each begins cold. On places that are passed once the order is the place.
     fn orders(&mut self, data: &Measurements) -> Vec<Variant> {
         let scalars = data.scalars(None);
         let is_read = |component: &usize| scalars.iter().any(|s| s.class == *component);
-        let passed_again = |anew: &bool| {
-            let place = |row: &Row| row.command.linear_mm.map(|q| (1e3 * q).round() as i64);
-            let within = |row: &Row| if *anew { row.run } else { 0 };
-            let mut places: Vec<(usize, [i64; 3])> =
-                data.rows.iter().map(|row| (within(row), place(row).into())).collect();
-            places.sort_unstable();
-            places.dedup();
-            2 * places.len() <= data.rows.len() && data.rows.iter().any(|row| row.order != [0.0; 2])
-        };
+        let passed_again =
+            |anew: &bool| data.is_followed() && data.comes_back(|row| if *anew { row.run } else { 0 });
         let mut forms = Vec::new();
         for anew in [false, true].into_iter().filter(passed_again) {
+            let grown = if anew { &TAU_SHARES[..] } else { &[] };
             for component in (0..3).filter(is_read) {
-                self.terms.push(Term::Order { component, anew });
-                forms.push(Variant::textbook(vec![self.terms.len() - 1]));
+                for tau in [f64::INFINITY].iter().chain(grown) {
+                    self.terms.push(Term::Order { component, anew, tau: *tau });
+                    forms.push(Variant::textbook(vec![self.terms.len() - 1]));
+                }
             }
         }
         forms
+    }
+
+    /// A knock between two rows, where the order of the rows is no place.
+    fn knocks(&mut self, data: &Measurements, component: usize) -> Vec<Variant> {
+        let read = data.scalars(None).iter().any(|s| s.class == component);
+        if !read || !data.is_followed() || !data.comes_back(|_| 0) {
+            return Vec::new();
+        }
+        let at = |k: usize| k as f64 / (STEP_TIMES + 1) as f64;
+        let columns = (1..=STEP_TIMES).map(|k| self.knock_column(component, at(k)));
+        columns.map(|column| Variant::textbook(vec![column])).collect()
+    }
+
+    fn knock_column(&mut self, component: usize, from: f64) -> usize {
+        let knock = Term::Knock { component, from };
+        self.terms.iter().position(|term| *term == knock).unwrap_or_else(|| {
+            self.terms.push(knock);
+            self.terms.len() - 1
+        })
+    }
+
+    /// The column of a knock at a moment: a time, or a share of the file where knocks are known by the order of the
+    /// rows; `None` where there can be none.
+    pub(crate) fn knock(&mut self, axis: usize, moment: f64) -> Option<Vec<usize>> {
+        let kind = EffectKind::Step(axis);
+        let known = self.candidates.iter().find(|candidate| candidate.kind == kind)?;
+        match self.terms[*known.variants.first()?.columns.first()?] {
+            Term::Knock { .. } => Some(vec![self.knock_column(axis, moment)]),
+            _ => Some(self.add_columns(kind, Shape { time_s: moment, ..Shape::default() }, &[0])),
+        }
     }
 
     /// A curve along an axis.
@@ -152,14 +177,15 @@ impl Library {
         forms
     }
 
-    /// A curve with its slope, on rows where rotary axes turn.
+    /// A curve with its slope: of positions, which is a scale, and of any on rows where rotary axes turn.
     ///
-    /// On others a slope is a scale, a squareness or the measuring frame's. A frame turns the tool as well; where rotary axes
-    /// turn it by themselves that shows, and of what slopes across an axis only a squareness is one effect of its own: without
-    /// these forms a droop, damage or high orders take the slope for the curve it belongs to. Where it has an owner, the curve
-    /// with its slope stands for both in comparison with other effects.
+    /// With its slope a curve of positions stands for both in comparison with other effects, an angle of the carriage
+    /// first of all. Across an axis a slope is a squareness or the measuring frame's. A frame turns the tool as well;
+    /// where rotary axes turn it by themselves that shows, and only a squareness is one effect of its own: there the
+    /// others may be named with their slope, for without these forms a droop, damage or high orders take it for the
+    /// curve it belongs to.
     fn sloping(&mut self, kind: EffectKind, a: usize, seen: &Seen) -> Vec<Variant> {
-        if seen.rotary == [false; 3] {
+        if seen.rotary == [false; 3] && !matches!(kind, EffectKind::Positioning(_)) {
             return Vec::new();
         }
         // Three numbers at least: a slope and a bow would pass for a lone squareness that noise bends a little.
@@ -167,10 +193,7 @@ impl Library {
         let lists: Vec<&[usize]> =
             lists.into_iter().filter(|l| 10 * (l.len() + 1) <= 7 * seen.sampling[a].places).collect();
         let mut forms = self.selections(kind, seen.interval(a), &lists);
-        let owned = match kind {
-            EffectKind::Straightness { direction, axis } => direction < axis,
-            _ => true,
-        };
+        let owned = !matches!(kind, EffectKind::Straightness { direction, axis } if direction > axis);
         forms.iter_mut().for_each(|form| (form.enriched, form.only_rival) = (true, owned));
         forms
     }
@@ -261,8 +284,9 @@ impl Library {
         Variant::each_and_all(self.add_columns(kind, shape, &[0, 1, 2]))
     }
 
-    /// Forms of a pitch error with this period: textbook, with harmonics, with a slope of the amplitude. A harmonic that the
-    /// places are too coarse for is not asked about; where the period itself is, the forms stay rivals.
+    /// Forms of a pitch error with this period: textbook, with harmonics, with a slope of the amplitude. A harmonic
+    /// that the places are too coarse for is not asked about; where the period itself is, the textbook form and the
+    /// one with the harmonic that most screws have stay rivals.
     pub(crate) fn pitch(&mut self, axis: usize, pitch_mm: f64) -> Vec<Variant> {
         let sampling = self.sampling[axis];
         let (from_mm, to_mm) = sampling.range_mm;
@@ -277,10 +301,14 @@ impl Library {
         ];
         let shown = |(harmonic, list): &(f64, &[usize])| {
             list.len() == 2
-                || (!sampling.is_coarse(pitch_mm / harmonic) && 2.0 * list.len() as f64 <= sampling.effective)
+                || ((only_rival || !sampling.is_coarse(pitch_mm / harmonic))
+                    && 2.0 * list.len() as f64 <= sampling.effective)
         };
         let lists: Vec<&[usize]> = lists.into_iter().filter(shown).map(|(_, list)| list).collect();
         let mut forms = self.selections(EffectKind::Pitch(axis), shape, &lists);
+        if only_rival {
+            forms.truncate(2);
+        }
         forms.iter_mut().for_each(|form| form.only_rival = only_rival);
         forms
     }

@@ -4,7 +4,7 @@ use crate::equations::noise::median;
 use crate::equations::observation::Measurements;
 
 /// So many places at uneven distances show a wave even where they lie further apart than half its period.
-const ENOUGH_PLACES: usize = 24;
+pub(crate) const ENOUGH_PLACES: usize = 24;
 /// A step that differs from the typical one by more than this share is uneven.
 pub(crate) const UNEVEN: f64 = 0.15;
 

@@ -5,16 +5,17 @@ use units::math;
 
 use crate::equations::columns::Source;
 use crate::equations::noise::median;
-use crate::equations::observation::Scalar;
-use crate::library::sampling::UNEVEN;
+use crate::equations::observation::{Row, Scalar};
+use crate::library::sampling::{ENOUGH_PLACES, UNEVEN};
 
-/// Pitches that screws, racks and gears are made with, mm.
-const NOMINAL_PITCHES_MM: [f64; 17] =
-    [2.0, 2.5, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 16.0, 20.0, 24.0, 25.0, 30.0, 32.0, 40.0, 50.0];
+/// Pitches that screws, racks and gears are made with, mm; five, four, two and one a turn of an inch among them.
+const NOMINAL_PITCHES_MM: [f64; 21] = [
+    2.0, 2.5, 4.0, 5.0, 5.08, 6.0, 6.35, 8.0, 10.0, 12.0, 12.7, 15.0, 16.0, 20.0, 24.0, 25.0, 25.4, 30.0,
+    32.0, 40.0, 50.0,
+];
 /// How far from a nominal pitch is still a neighbour.
 const NEIGHBOURHOOD: f64 = 0.025;
-/// Free periods are looked for where an axis was read at so many places, from so many of them per period on …
-const MANY: usize = 100;
+/// Free periods are looked for where an axis was read at enough places, even ones from so many of them per period on …
 const FINE: f64 = 3.0;
 /// … and within these, mm.
 const SHORTEST_MM: f64 = 1.0;
@@ -80,7 +81,7 @@ impl Pitches {
         distinct.sort_by(f64::total_cmp);
         let square: f64 = distinct.windows(2).map(|w| (w[1] - w[0]) * (w[1] - w[0])).sum();
         distinct.dedup();
-        if distinct.len() < MANY {
+        if distinct.len() <= ENOUGH_PLACES {
             return found;
         }
         // Places without an order show any wave, even ones only what is far longer than their step.
@@ -169,14 +170,17 @@ fn power(places: &[Place], pitch_mm: f64) -> f64 {
     (cc * sy * sy - 2.0 * sc * sy * cy + ss * cy * cy) / determinant
 }
 
-/// The time at which the residual of one axis jumps most, and how many were looked at.
+/// The moment at which the residual of one axis jumps most, and how many were looked at: a time, or how far through
+/// the file where no row has one.
 pub(crate) fn knock(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> Option<(f64, usize)> {
+    let timed = source.rows.iter().any(|row| row.conditions.time_s.is_some());
+    let moment = |row: &Row| if timed { row.conditions.time_s } else { Some(row.order[0]) };
     let mut points: Vec<(f64, f64)> = source
         .scalars
         .iter()
         .zip(residuals_um)
         .filter(|(s, _)| s.along[axis].abs() > 0.3)
-        .filter_map(|(s, r)| source.rows[s.row].conditions.time_s.map(|t| (t, r * s.along[axis])))
+        .filter_map(|(s, r)| moment(&source.rows[s.row]).map(|t| (t, r * s.along[axis])))
         .collect();
     let mut jumps = Jumps { least: STEP_ROWS, ..Jumps::default() };
     jumps.look(&mut points, f64::MIN_POSITIVE);

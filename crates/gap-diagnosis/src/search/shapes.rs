@@ -36,9 +36,9 @@ impl State<'_, '_> {
                 continue;
             }
             for residuals in [&solution.residuals_um, &marginal] {
-                if let Some((time_s, asked)) = proposals::knock(self.source, residuals, axis) {
-                    let shape = Shape { time_s, ..Shape::default() };
-                    let columns = self.library.add_columns(kind, shape, &[0]);
+                if let Some((moment, asked)) = proposals::knock(self.source, residuals, axis)
+                    && let Some(columns) = self.library.knock(axis, moment)
+                {
                     // The grid of the library asked already; a finer one asks at most that often again.
                     self.library.add_variants(kind, vec![Variant::textbook(columns)], asked.min(48));
                 }
@@ -75,12 +75,11 @@ impl State<'_, '_> {
 
     /// Forms of a screw's period that even steps show as a slow curve: never named, rivals of what is.
     fn strobe(&mut self, kind: EffectKind, axis: usize, hidden: Option<f64>) {
-        let Some(mut form) = hidden.and_then(|pitch| self.library.pitch(axis, pitch).into_iter().next())
-        else {
-            return;
-        };
-        form.only_rival = true;
-        self.library.add_variants(kind, vec![form], 0);
+        let mut forms = hidden.map(|pitch| self.library.pitch(axis, pitch)).unwrap_or_default();
+        forms.iter_mut().for_each(|form| form.only_rival = true);
+        if !forms.is_empty() {
+            self.library.add_variants(kind, forms, 0);
+        }
     }
 
     /// Refined shapes of the effects in the model.
@@ -152,10 +151,10 @@ impl State<'_, '_> {
                 }
                 let allowed = |kind: EffectKind| kind != own && !self.without.contains(&kind);
                 let kind = EffectKind::Step(axis);
-                if let Some((time_s, _)) =
+                if let Some((moment, _)) =
                     proposals::knock(self.source, &displaced, axis).filter(|_| allowed(kind))
+                    && let Some(columns) = self.library.knock(axis, moment)
                 {
-                    let columns = self.library.add_columns(kind, Shape { time_s, ..Shape::default() }, &[0]);
                     let form = Variant { only_rival: true, ..Variant::textbook(columns) };
                     self.library.add_variants(kind, vec![form], 0);
                 }

@@ -1,8 +1,9 @@
-//! Angles that no carriage has give way to axes that lean or stretch.
+//! Angles that no carriage has give way to axes that lean, stretch or bend.
 
 use machine_model::effects::EffectKind;
 
 use crate::library::candidates::Part;
+use crate::library::seen::curve_axis;
 use crate::search::bounds::{is_straight, log_prior};
 use crate::search::climb::MOST_CAUSES;
 use crate::search::moves::without;
@@ -10,12 +11,12 @@ use crate::search::space::Fit;
 use crate::search::state::State;
 
 impl State<'_, '_> {
-    /// Takes squarenesses and scales for the angles of carriages, all of them, two or one, where that is likelier: by
-    /// what the rows say together with what carriages do ([`log_prior`]).
+    /// Takes squarenesses, scales and curves along the same axes for the angles of carriages, all of them, two or one,
+    /// where that is likelier: by what the rows say together with what carriages do ([`log_prior`]).
     ///
     /// Where all lines pass near one corner the levers of angles are small, and one that is large enough stands for a
-    /// squareness, or for one and a scale: the fit hardly tells them apart, and one after the other they cannot be
-    /// changed for the better.
+    /// squareness, or for one and a scale; so does one for a scale and a curve where the levers differ little. One
+    /// after the other they cannot be changed for the better.
     ///
     /// False where they are not.
     pub(super) fn straighten(&mut self) -> bool {
@@ -35,14 +36,20 @@ impl State<'_, '_> {
         matches!(self.library.kind(part), EffectKind::Angular { .. })
     }
 
-    /// The likeliest model that has straight axes in the place of angles; `None` where the one there is likelier.
+    /// The likeliest model that has straight axes, or curves, in the place of angles; `None` where the one there is
+    /// likelier.
     fn straightened(&mut self) -> Option<(Vec<Part>, Fit)> {
         let angles: Vec<usize> = (0..self.parts.len()).filter(|k| self.bends(self.parts[*k])).collect();
         let pairs =
             angles.iter().flat_map(|b| angles.iter().filter(move |a| *a < b).map(move |a| vec![*a, *b]));
         let all = (angles.len() > 2).then(|| angles.clone());
         let groups = all.into_iter().chain(pairs).chain(angles.iter().map(|place| vec![*place]));
-        let straight = self.library.named(is_straight);
+        let axes = angles.iter().filter_map(|place| curve_axis(self.library.kind(self.parts[*place])));
+        let axes: Vec<usize> = axes.collect();
+        let straight = self.library.named(|kind| {
+            is_straight(kind)
+                || matches!(kind, EffectKind::Positioning(axis) | EffectKind::Straightness { axis, .. } if axes.contains(&axis))
+        });
         let own = self.unlikely(&self.parts, &self.fit);
         let mut best: Option<(f64, Vec<Part>, Fit)> = None;
         for group in groups {

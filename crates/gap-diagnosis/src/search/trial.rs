@@ -56,9 +56,16 @@ impl State<'_, '_> {
         let ratio = (tested - residual).max(0.0) / columns / (residual / degrees).max(self.floor) / inflation;
         // Once with everything, once with the runs' offsets left free: within the runs no drift between
         // them can deceive, and the better of two tests costs a factor of two.
-        let p = 2.0
-            * self.library.questions(part.candidate)
-            * f_tail(ratio, columns, effective).min(self.within_runs(&with, inflation));
+        // A knock that the order of the rows alone shows must be one within a run: what lies between runs is their shift.
+        let by_order = self
+            .library
+            .form(part)
+            .columns
+            .iter()
+            .any(|c| matches!(self.library.terms[*c], Term::Knock { .. }));
+        let everywhere = if by_order { 1.0 } else { f_tail(ratio, columns, effective) };
+        let p =
+            2.0 * self.library.questions(part.candidate) * everywhere.min(self.within_runs(&with, inflation));
         let gain = (before - fit.residual).max(0.0);
         let share = gain / before.max(1e-12);
         let refuse = |reason| Some(Refused { kind, share, p: p.min(1.0), reason });
@@ -85,7 +92,7 @@ impl State<'_, '_> {
             ]));
         }
         // A curve without its constant or its slope has wrong numbers, however little either is.
-        if gain * self.spread(part) / reducible < LEAST_SHARE
+        if self.share(&with, fit.level) < LEAST_SHARE
             && !self.library.completes(part, rest)
             && !self.was_taken_over(&with, gain, before, fit.level)
         {
@@ -98,6 +105,18 @@ impl State<'_, '_> {
             return refuse(Reason::NotElsewhere);
         }
         None
+    }
+
+    /// Share of what can be explained that the last of some parts explains beside the others: of all, or within the
+    /// runs, which may be shifted by far more than anything else.
+    fn share(&self, with: &[Part], level: usize) -> f64 {
+        let Some((part, rest)) = with.split_last() else { return 0.0 };
+        let of = |level: usize| {
+            let left = |parts: &[Part]| self.space.left(&self.library, parts, level).0;
+            let full = left(with);
+            (left(rest) - full).max(0.0) / (self.space.total(level) - full).max(1e-12)
+        };
+        of(level).max(of(FREE)) * self.spread(*part)
     }
 
     /// How many times as many equations there are as a part acts on, where its physics says which those are: at a turn of
@@ -122,12 +141,23 @@ impl State<'_, '_> {
         (self.source.scalars.len() as f64 / most).max(1.0)
     }
 
-    /// True for damage where a joint of the same rails stands: the shape of the joint leaves something there.
+    /// True for damage where a joint of the same rails stands, or along an axis with a curve in the same component:
+    /// the shape of either leaves something there.
     fn on_a_flank(&self, rest: &[Part], part: Part) -> bool {
         let Some((EffectKind::Local(axis), own)) = shape(&self.library, part) else { return false };
-        rest.iter().filter_map(|other| shape(&self.library, *other)).any(|(kind, other)| {
-            kind == EffectKind::Joint(axis)
-                && (other.centre_mm - own.centre_mm).abs() < other.width_mm + own.width_mm
+        let touches = |part: Part, component: usize| {
+            let columns = &self.library.form(part).columns;
+            columns.iter().any(|column| self.library.terms[*column].touches(component, self.source.geometry))
+        };
+        rest.iter().any(|other| match shape(&self.library, *other) {
+            Some((EffectKind::Joint(along), other)) => {
+                along == axis && (other.centre_mm - own.centre_mm).abs() < other.width_mm + own.width_mm
+            }
+            Some((kind, _)) => {
+                curve_axis(kind) == Some(axis)
+                    && (0..3).any(|component| touches(*other, component) && touches(part, component))
+            }
+            None => false,
         })
     }
 
@@ -296,13 +326,12 @@ impl State<'_, '_> {
         loop {
             let level = self.fit.level;
             let (full, _) = self.space.left(&self.library, &self.parts, level);
-            let reducible = (self.space.total(level) - full).max(1e-12);
             let weakest = (0..self.parts.len())
                 .filter_map(|place| {
                     let rest = without(&self.parts, place);
                     let left = self.space.left(&self.library, &rest, level).0;
                     let with: Vec<Part> = rest.iter().copied().chain([self.parts[place]]).collect();
-                    let share = (left - full) * self.spread(self.parts[place]) / reducible;
+                    let share = self.share(&with, level);
                     let stays = share < LEAST_SHARE
                         && (self.library.completes(self.parts[place], &rest)
                             || self.was_taken_over(&with, left - full, left, level));
@@ -330,16 +359,19 @@ fn shape(library: &Library, part: Part) -> Option<(EffectKind, Shape)> {
 
 /// Why a knock or a damage cannot be told: hardly a row lies on the other side of the one, hardly a place in the other.
 pub(crate) fn unsupported(library: &Library, part: Part, rows: &[Row]) -> Option<Why> {
+    let beside = |moment: &dyn Fn(&Row) -> Option<f64>, knock: f64| {
+        let moments = || rows.iter().filter_map(moment);
+        let before = moments().filter(|moment| *moment < knock).count();
+        (before.min(moments().count() - before) < STEP_ROWS).then_some([
+            "so few rows lie on one side of the knock that they could be blunders",
+            "по одну сторону скачка так мало строк, что это могут быть промахи",
+        ])
+    };
+    if let Term::Knock { from, .. } = library.terms[*library.form(part).columns.first()?] {
+        return beside(&|row| Some(row.order[0]), from);
+    }
     match shape(library, part)? {
-        (EffectKind::Step(_), shape) => {
-            let times = || rows.iter().filter_map(|row| row.conditions.time_s);
-            let before = times().filter(|time| *time < shape.time_s).count();
-            let fewest = before.min(times().count() - before);
-            (fewest < STEP_ROWS).then_some([
-                "so few rows lie on one side of the knock that they could be blunders",
-                "по одну сторону скачка так мало строк, что это могут быть промахи",
-            ])
-        }
+        (EffectKind::Step(_), shape) => beside(&|row| row.conditions.time_s, shape.time_s),
         (EffectKind::Local(axis), shape) => {
             let places = rows.iter().map(|row| row.command.linear_mm[axis]);
             let mut inside: Vec<f64> =

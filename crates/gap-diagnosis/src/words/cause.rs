@@ -1,6 +1,6 @@
 //! Each cause in a sentence that a metrologist would say, and what not to do about it.
 
-use diagnostic::Text;
+use diagnostic::{Text, both};
 use machine_model::Vector;
 
 use crate::equations::term::Term;
@@ -38,6 +38,14 @@ impl Assembly<'_> {
         let own = self.own(place);
         let first = own.first().map_or(0.0, |(_, value)| *value);
         let shape = own.iter().find_map(|(term, _)| term.shape()).unwrap_or_default();
+        let row = own.iter().find_map(|(term, _)| match term {
+            Term::Knock { from, .. } => self.data.rows.iter().find(|row| row.order[0] >= *from),
+            _ => None,
+        });
+        let moment = match (row, shape.time_s) {
+            (Some(row), _) => both!("from line {} on", "со строки {}", row.line),
+            (None, time_s) => both!("at {time_s:.0} s", "в момент {time_s:.0} с"),
+        };
         let size = first.abs();
         // `X` of one axis, `XY` of two, `EYX` of what shows along Y as X moves.
         let id = kind.to_string();
@@ -54,7 +62,7 @@ impl Assembly<'_> {
             swing: self.swing_um(&own),
             pitch_mm: shape.pitch_mm,
             tau_min: shape.tau_s / 60.0,
-            time_s: shape.time_s,
+            moment: &moment,
             centre_mm: shape.centre_mm,
             width_mm: shape.width_mm,
             way_mm: 2.3 * shape.width_mm,

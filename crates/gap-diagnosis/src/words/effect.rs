@@ -29,7 +29,8 @@ pub(super) struct Size<'a> {
     pub(super) swing: f64,
     pub(super) pitch_mm: f64,
     pub(super) tau_min: f64,
-    pub(super) time_s: f64,
+    /// When it came: at a time, or from a line of the file on.
+    pub(super) moment: &'a Text,
     pub(super) centre_mm: f64,
     pub(super) width_mm: f64,
     /// Until a spike is gone.
@@ -334,10 +335,10 @@ static INSTRUMENT_DRIFT: Said = Said {
 
 static STEP: Said = Said {
     name: "скачок",
-    words: |&Size { a, size, time_s, .. }| {
+    words: |&Size { a, size, moment, .. }| {
         both!(
-            "something moved by {size:.1} µm along {a} at {time_s:.0} s",
-            "что-то сдвинулось на {size:.1} мкм вдоль {a} в момент {time_s:.0} с"
+            "something moved by {size:.1} µm along {a} {moment}",
+            "что-то сдвинулось на {size:.1} мкм вдоль {a} {moment:#}"
         )
     },
     remedy: Text::pair(

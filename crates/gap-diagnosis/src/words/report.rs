@@ -42,22 +42,22 @@ impl Assembly<'_> {
         let fine = gap.rms_um * 12.0_f64.sqrt() < options.resolution_um;
         let held = holdout.map(|h| self.holdout(h));
         let named = matches!(verdict(&evidence), Verdict::Named | Verdict::Ambiguous | Verdict::Partial);
-        evidence.unseen = match (holdout, &held) {
-            (Some(data), Some(held)) => {
-                let promised = causes.last().and_then(|c| c.shrink_predicted);
-                let pooled = self.unseen(data, held.rms_before_um, held.rms_after_um, promised);
-                let open = !fine && causes.is_empty() && !pooled.shows_a_gap();
-                Some(Unseen { worse: held.worse, alone: open && gap_of_its_own(data, options), ..pooled })
-            }
-            _ if named => kept_back(),
-            _ => None,
-        };
+        let told = holdout.zip(held.as_ref()).map(|(data, held)| {
+            let promised = causes.last().and_then(|c| c.shrink_predicted);
+            let pooled = self.unseen(data, held.rms_before_um, held.rms_after_um, promised);
+            let open = !fine && causes.is_empty() && !pooled.shows_a_gap();
+            Unseen { worse: held.worse, alone: open && gap_of_its_own(data, options), ..pooled }
+        });
+        // The same places say whether the causes come back, and nothing of what lies between them.
+        let elsewhere = holdout.is_some_and(|data| !data.repeats(self.data));
+        let told = told.filter(|told| elsewhere || !named || told.refutes());
+        evidence.unseen = told.or_else(|| if named { kept_back() } else { None });
         let mut causes = if fine { Vec::new() } else { causes };
         let verdict = if fine { Verdict::NoGap } else { verdict(&evidence) };
         let nameless = verdict.leaves_open();
         let formulas = if nameless { formulas(self.data, &self.model.scalars) } else { Vec::new() };
         let mut notes = self.notes();
-        notes.extend(evidence.unseen.filter(|_| holdout.is_none()).map(|u| u.kept_back_note()));
+        notes.extend(evidence.unseen.filter(|_| told.is_none()).map(|u| u.kept_back_note()));
         notes.extend(holdout.iter().flat_map(|h| self.forecast_notes(h, &causes)));
         notes.extend(formulas.iter().map(|f| both!("{} ({}).", "{:#} ({}).", f.words, f.text)));
         let unsure = verdict == Verdict::Underpowered && !causes.is_empty();

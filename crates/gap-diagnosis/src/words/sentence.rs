@@ -120,11 +120,11 @@ impl Unseen {
         short.or_else(worse)
     }
 
-    /// What is said of runs that were kept back because there is no hold-out.
+    /// What is said of runs that were kept back because there is no hold-out of other places.
     pub(crate) fn kept_back_note(&self) -> Text {
         both!(
-            "No hold-out was given: a search without every fourth run promised {:.0} % on these, and {:.0} % were achieved.",
-            "Контрольных измерений не дано: поиск без каждой четвёртой серии обещал на них {:.0} %, достигнуто {:.0} %.",
+            "No hold-out of other places was given: a search without every fourth run promised {:.0} % on these, and {:.0} % were achieved.",
+            "Контрольных измерений в других точках не дано: поиск без каждой четвёртой серии обещал на них {:.0} %, достигнуто {:.0} %.",
             100.0 * self.promised.1,
             100.0 * self.achieved()
         )

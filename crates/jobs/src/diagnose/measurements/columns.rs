@@ -156,17 +156,41 @@ pub(super) fn alive(sheet: &Sheet) -> Result<(), Box<Refusal>> {
     Ok(())
 }
 
-/// True where the readings are so few different numbers that repeats coincide: a dial of 0.01 mm.
+/// True where the readings are so few different numbers that repeats coincide, as of a dial of 0.01 mm.
 fn is_coarse(sheet: &Sheet) -> bool {
     /// Different readings, as a share of all.
     const FEW: f64 = 0.3;
-    READINGS.into_iter().filter(|column| sheet.has(column)).all(|column| {
-        let mut read: Vec<Cow<'_, str>> = sheet.rows().map(|row| row.text(column)).collect();
-        let all = read.len() as f64;
-        read.sort_unstable();
-        read.dedup();
-        (read.len() as f64) < FEW * all
-    })
+    readings(sheet).into_iter().all(|(read, all)| (read.len() as f64) < FEW * all as f64)
+}
+
+/// True where from the smallest reading to the largest a display has fewer steps than there are rows, so that some
+/// repeats coincide: most that have the same command do not. Of a part that was pasted twice all do.
+fn coincide(sheet: &Sheet, copies: usize) -> bool {
+    const COMMAND: [&str; 7] = ["run", "x_mm", "y_mm", "z_mm", "dir_x", "dir_y", "dir_z"];
+    let mut commands: Vec<[Cow<'_, str>; 7]> =
+        sheet.rows().map(|row| COMMAND.map(|column| row.text(column))).collect();
+    let all = commands.len();
+    commands.sort_unstable();
+    commands.dedup();
+    let has_steps = |(read, all): (Vec<f64>, usize)| {
+        let step = read.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        read.last().zip(read.first()).is_none_or(|(last, first)| last - first < step * all as f64)
+    };
+    2 * copies <= all - commands.len() && readings(sheet).into_iter().all(has_steps)
+}
+
+/// The different readings of each column in ascending order, and how many there are in all.
+fn readings(sheet: &Sheet) -> Vec<(Vec<f64>, usize)> {
+    /// What is nearer is one reading, in the unit of its column.
+    const SAME: f64 = 1e-9;
+    let of = |column: &str| {
+        let mut read: Vec<f64> = sheet.rows().filter_map(|row| row.number(column).ok()?).collect();
+        let all = read.len();
+        read.sort_by(f64::total_cmp);
+        read.dedup_by(|next, first| *next - *first < SAME);
+        (read, all)
+    };
+    READINGS.into_iter().filter(|column| sheet.has(column)).map(of).collect()
 }
 
 /// Rows that agree in every cell, reading included, were copied.
@@ -181,7 +205,8 @@ pub(super) fn no_copies(sheet: &Sheet) -> Result<(), Box<Refusal>> {
             seen.insert(cells, row);
         }
     }
-    if copies.len() < 3.max(sheet.rows().len() / 20) || is_coarse(sheet) {
+    let few = copies.len() < 3.max(sheet.rows().len() / 20);
+    if few || is_coarse(sheet) || coincide(sheet, copies.len()) {
         return Ok(());
     }
     let (first, copy) = copies[0];
