@@ -54,7 +54,7 @@ pub struct Reader<'a> {
 /// // The second half of a program, read alone, has the places of the whole.
 /// let (first, second) = (b"G21\nG0 X1.\n", b"G1 X2. F100\n");
 /// let dialect = &nc_syntax::Marks::default();
-/// let mut finder = EnvelopeFinder::new(language);
+/// let mut finder = EnvelopeFinder::new(dialect);
 /// finder.see(first);
 /// finder.see(second);
 /// let place = Place { offset: first.len() as u64, line: 3, ..Place::START };

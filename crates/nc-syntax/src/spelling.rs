@@ -5,7 +5,7 @@ use serde::Deserialize;
 /// What `( )` means.
 ///
 /// ```
-/// use nc_syntax::{Colon, ItemKind, Marks, Paren};
+/// use nc_syntax::{ItemKind, Marks, Paren};
 /// # use nc_syntax::{Block, Reader};
 /// # fn read(text: &'static str, marks: Marks) -> Block<'static> {
 /// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), Box::leak(Box::new(marks))), Block::default());
@@ -33,6 +33,7 @@ pub enum Paren {
 /// What `;` means where it ends no block ([`Marks::end_of_block`]).
 ///
 /// ```
+/// use nc_syntax::{Marks, Semicolon};
 /// # use nc_syntax::{Block, Reader};
 /// # fn read(text: &'static str, marks: Marks) -> Block<'static> {
 /// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), Box::leak(Box::new(marks))), Block::default());
@@ -56,7 +57,7 @@ pub enum Semicolon {
 /// What `:` means.
 ///
 /// ```
-/// use nc_syntax::ItemKind;
+/// use nc_syntax::{Colon, ItemKind, Marks};
 /// # use nc_syntax::{Block, Reader};
 /// # fn read(text: &'static str, marks: Marks) -> Block<'static> {
 /// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), Box::leak(Box::new(marks))), Block::default());
