@@ -108,7 +108,7 @@ pub enum Action {
     WorkOffsetNumbered,
     /// G15 of Okuma: the work offset that H numbers, `G15H1` in the profile.
     WorkOffsetByH,
-    /// G10: work offsets written by the program (L2, L20); see [`FrameRules::l20`].
+    /// G10: work offsets written by the program (L2, L20); see [`crate::FrameRules::l20`].
     WriteOffset,
     /// G52: shift of every work offset by the words.
     LocalShift,

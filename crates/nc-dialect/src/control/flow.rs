@@ -44,10 +44,10 @@ pub struct WrittenCycles {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CycleBack {
-    /// M53: to the level of [`Action::ReturnLevel`]; M54: to where the feed begins. A motion code ends the cycle.
+    /// M53: to the level of [`crate::Action::ReturnLevel`]; M54: to where the feed begins. A motion code ends the cycle.
     ByM,
-    /// [`Action::ReturnInitial`]: to where the tool stood when the cycle began; [`Action::ReturnR`]: to where the feed
-    /// begins. [`Action::CycleCancel`] alone ends the cycle.
+    /// [`crate::Action::ReturnInitial`]: to where the tool stood when the cycle began; [`crate::Action::ReturnR`]: to where the feed
+    /// begins. [`crate::Action::CycleCancel`] alone ends the cycle.
     ByG,
 }
 
@@ -78,9 +78,9 @@ pub struct Flow {
     /// First and last number of the programs that builders and makers of probes keep in the control: called where no
     /// file has them, they are left alone.
     pub control_programs: Option<(u32, u32)>,
-    /// Some code is [`Action::PolarOn`].
+    /// Some code is [`crate::Action::PolarOn`].
     pub polar_words: bool,
-    /// Some command is an [`Action::Called`], and `X=AC(5)`, `X=IC(5)` say a place or an increment.
+    /// Some command is an [`crate::Action::Called`], and `X=AC(5)`, `X=IC(5)` say a place or an increment.
     pub called: bool,
 }
 
