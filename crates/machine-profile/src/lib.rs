@@ -30,8 +30,8 @@ pub use field::MeasuredField;
 pub use load::load;
 pub use loader::Read;
 pub use profile::{
-    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics, LatheParts,
-    LeftAlone, MeasuringFrame, Nose, Outside, Profile, ProgramRules, TurningRules,
+    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, Kinematics, LatheParts, LeftAlone,
+    MeasuringFrame, Nose, Outside, Profile, ProgramRules,
 };
 pub use show::{plus_turns, schema};
 pub use tables::ErrorRows;

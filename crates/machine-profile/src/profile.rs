@@ -4,7 +4,7 @@ use machine_model::engines::{EngineInputs, ParametricTable};
 use machine_model::{
     Chain, Description, EngineId, Interpolation, RigidBody, Singularity, TipControl, Traverse, Vector, Volume,
 };
-use toolpath::{RotaryChain, RotaryLink, TiltRule};
+use toolpath::{RotaryChain, RotaryLink, TiltRule, TurningParameters};
 
 use crate::field::MeasuredField;
 use crate::tables::ErrorRows;
@@ -117,51 +117,7 @@ pub struct ProgramRules {
     /// G-code system of a lathe's control; `None`: not said.
     pub g_code_system: Option<String>,
     /// What parameters of a lathe's control say of its cycles.
-    pub turning: TurningRules,
-}
-
-/// Which pass of a thread cut by one edge begins where the cycle starts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FlankFrom {
-    /// None: one without depth would.
-    Start,
-    /// The first.
-    FirstPass,
-    /// The last.
-    LastPass,
-}
-
-/// Parameters of a lathe's control that decide how its cycles move; `None`: not said.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TurningRules {
-    /// Chamfer at the end of a thread, in leads.
-    pub thread_chamfer_leads: Option<f64>,
-    /// Its angle to the axis, degrees.
-    pub thread_chamfer_deg: Option<f64>,
-    /// By how much roughing leaves the contour behind a pass, radius, mm.
-    pub roughing_escape_mm: Option<f64>,
-    /// By how much pecks go back, mm.
-    pub groove_return_mm: Option<f64>,
-    /// Finishing passes of a thread in one block.
-    pub thread_finishing_passes: Option<f64>,
-    /// Its least infeed, radius, mm.
-    pub thread_least_mm: Option<f64>,
-    /// Its finishing allowance, radius, mm.
-    pub thread_allowance_mm: Option<f64>,
-    /// Which pass of a thread cut by one edge begins where the cycle starts.
-    pub thread_flank_from: Option<FlankFrom>,
-    /// Pecks of a drilling cycle go back by the return alone; false: to R; `None`: not said.
-    pub drill_chips: Option<bool>,
-    /// By how much they do, or stay off what is drilled, mm.
-    pub drill_return_mm: Option<f64>,
-    /// R of drilling cycles is a place, in systems B and C under G90; false: a way; `None`: not said.
-    pub drill_r_is_place: Option<bool>,
-    /// Feed out of a bored hole, per cent of F.
-    pub bore_return_percent: Option<f64>,
-    /// G41 and G42 within the contour of a cycle hold in finishing alone; false: not said.
-    pub nose_in_finishing: bool,
-    /// A, C and R of a line are words of a drawing without a comma too; false: not said.
-    pub plain_drawing: bool,
+    pub turning: TurningParameters,
 }
 
 /// Tool centre point control: the tip runs straight from end to end of a block.

@@ -4,7 +4,7 @@ use std::ops::Bound::{Excluded, Included};
 
 use diagnostic::{Text, both};
 use machine_model::{Axis, Chain};
-use toolpath::{TiltRule, WholeTurns};
+use toolpath::{DrillPecks, DrillR, FlankFrom, TiltRule, TurningParameters, WholeTurns};
 
 use crate::error::{CONFLICT, VALUE};
 use crate::format::{
@@ -13,9 +13,7 @@ use crate::format::{
 };
 use crate::loader::{Bounds, Loader, triple};
 use crate::number::{Finite, Spanned};
-use crate::profile::{
-    AfterChange, BareLengths, FlankFrom, Kinematics, LeftAlone, ProgramRules, TurningRules,
-};
+use crate::profile::{AfterChange, BareLengths, Kinematics, LeftAlone, ProgramRules};
 
 /// Arcs whose radii differ by more are none on any control, mm.
 const MOST_ARC_TOLERANCE_MM: f64 = 10.0;
@@ -87,14 +85,14 @@ impl Loader<'_> {
         }
     }
 
-    fn turning_rules(&mut self, program: &format::Program) -> TurningRules {
+    fn turning_rules(&mut self, program: &format::Program) -> TurningParameters {
         let thread_finishing_passes = self.finishing_passes(program);
         let mut number = |written: &Option<_>, name, most| self.number(written.as_ref(), name, &up_to(most));
         let mm = (MOST_ESCAPE_MM, Text::pair("mm", "мм"));
         let leads = (MOST_CHAMFER_LEADS, Text::pair("leads", "ходов"));
         let degrees = (MOST_CHAMFER_DEG, Text::pair("degrees", "градусов"));
         let percent = (MOST_RETURN_PERCENT, Text::pair("per cent", "процентов"));
-        TurningRules {
+        TurningParameters {
             thread_chamfer_leads: number(&program.thread_chamfer_leads, "thread_chamfer_leads", &leads),
             thread_chamfer_deg: number(&program.thread_chamfer_deg, "thread_chamfer_deg", &degrees),
             roughing_escape_mm: number(&program.roughing_escape_mm, "roughing_escape_mm", &mm),
@@ -107,9 +105,15 @@ impl Loader<'_> {
                 FlankName::FirstPass => FlankFrom::FirstPass,
                 FlankName::LastPass => FlankFrom::LastPass,
             }),
-            drill_chips: program.drill_pecks.map(|name| matches!(name, PecksName::Chip)),
+            drill_pecks: program.drill_pecks.map(|name| match name {
+                PecksName::Full => DrillPecks::Full,
+                PecksName::Chip => DrillPecks::Chip,
+            }),
             drill_return_mm: number(&program.drill_return_mm, "drill_return_mm", &mm),
-            drill_r_is_place: program.drill_r.map(|name| matches!(name, DrillRName::Place)),
+            drill_r: program.drill_r.map(|name| match name {
+                DrillRName::Place => DrillR::Place,
+                DrillRName::Way => DrillR::Way,
+            }),
             bore_return_percent: number(&program.bore_return_percent, "bore_return_percent", &percent),
             nose_in_finishing: matches!(program.contour_compensation, Some(ContourCompensation::Finishing)),
             plain_drawing: matches!(program.drawing_words, Some(DrawingWords::Plain)),

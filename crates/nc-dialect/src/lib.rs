@@ -21,10 +21,9 @@ pub use action::{ACTION_NAMES, action_name, action_named};
 pub use assumptions::assumption;
 pub use control::{
     Action, Called, CodeEntry, Codes, Command, ControlCall, CornerForm, CurveCode, CycleBack, CycleLevels,
-    Dialect, DrillPecks, DrillR, FlankFrom, Flow, FramePart, FrameRules, Keeps, LatheSign, LengthAfter,
-    LengthAtChange, MCode, MOTION_GROUP, Numbers, OffsetL20, Output, PathCode, PathKey, PlaneCode, Pockets,
-    PointFree, RefusedWord, RotaryFeed, Side, System, TWord, TipSwitch, Turning, TurningCycle,
-    TurningParameters, WrittenCycles,
+    Dialect, Flow, FramePart, FrameRules, Keeps, LatheSign, LengthAfter, LengthAtChange, MCode, MOTION_GROUP,
+    Numbers, OffsetL20, Output, PathCode, PathKey, PlaneCode, Pockets, PointFree, RefusedWord, RotaryFeed,
+    Side, System, TWord, TipSwitch, Turning, TurningCycle, WrittenCycles,
 };
 pub use describe::{Row, Rows, Treatment, rows, treatment};
 pub use load::load;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::control::{
     Action, CodeEntry, Command, Dialect, Flow, FrameRules, Keeps, LatheSign, LengthAfter, MCode, Numbers,
-    Output, PathCode, PathKey, RefusedWord, System, Turning, TurningParameters, WrittenCycles,
+    Output, PathCode, PathKey, RefusedWord, System, Turning, WrittenCycles,
 };
 use diagnostic::{Code, Diagnostic, Text, both};
 use nc_syntax::{GCode, Letters, Marks, Paren};
@@ -177,7 +177,7 @@ fn turning(
             LeadName::K => b'K',
         },
         diameters: None,
-        cycles: TurningParameters::default(),
+        cycles: toolpath::TurningParameters::default(),
         systems,
     }
 }

@@ -3,8 +3,9 @@
 use crate::common;
 
 use common::blocks;
-use nc_dialect::{Dialect, DrillPecks, DrillR, FlankFrom, TurningParameters};
+use nc_dialect::Dialect;
 use nc_expand::{Environment, Expanded, Limits, Refusal, expand};
+use toolpath::{DrillPecks, DrillR, FlankFrom, TurningParameters};
 
 const START: &str = "G0 X60. Z2.\n";
 

@@ -2,7 +2,8 @@
 //!
 //! The one word that the text wing and the mathematics wing share. Everything here is in *axis
 //! commands*: what the control tells the axes, machine coordinates, millimetres and degrees, after
-//! work offset and tool length. No text, no matrices, no machine.
+//! work offset and tool length. No text, no matrices, no machine. What parameters of a control say of its cycles
+//! ([`TurningParameters`]) stands here too: a profile says it, a lathe's program is read by it.
 
 mod chords;
 mod feed_rate;
@@ -13,6 +14,7 @@ mod nurbs;
 mod plane;
 mod position;
 mod tilted;
+mod turning;
 
 pub use chords::Chord;
 pub use feed_rate::FeedRate;
@@ -26,6 +28,7 @@ pub use nurbs::{Bezier, MOST_DEGREE, Nurbs, NurbsFault};
 pub use plane::Plane;
 pub use position::{Partial, Position};
 pub use tilted::{NoAngles, RotaryChain, RotaryLink, TiltRule, TiltedPlane, WholeTurns, unit};
+pub use turning::{DrillPecks, DrillR, FlankFrom, TurningParameters};
 
 /// Names of the linear and rotary axes, in the order of every array here.
 pub const AXIS_NAMES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];

@@ -3,11 +3,8 @@
 use std::path::Path;
 
 use diagnostic::{Code, Diagnostic, Text, both};
-use machine_profile::{BareLengths, Profile, TurningRules};
-use nc_dialect::{
-    Action, CodeEntry, ControlCall, Dialect, DrillPecks, DrillR, FlankFrom, MCode, PointFree, TipSwitch,
-    TurningParameters,
-};
+use machine_profile::{BareLengths, Profile};
+use nc_dialect::{Action, CodeEntry, ControlCall, Dialect, MCode, PointFree, TipSwitch};
 use nc_syntax::GCode;
 
 use crate::lines;
@@ -58,43 +55,8 @@ pub(crate) fn turning_dialect(dialect: Dialect, profile: &Profile) -> Result<Dia
 /// Puts into a lathe's dialect what the profile says of its words and cycles.
 pub(crate) fn declare_cycles(profile: &Profile, dialect: &mut Dialect) {
     let Some(turning) = &mut dialect.turning else { return };
-    let TurningRules {
-        thread_chamfer_leads,
-        thread_chamfer_deg,
-        roughing_escape_mm,
-        groove_return_mm,
-        thread_finishing_passes,
-        thread_least_mm,
-        thread_allowance_mm,
-        thread_flank_from,
-        drill_chips,
-        drill_return_mm,
-        drill_r_is_place,
-        bore_return_percent,
-        nose_in_finishing,
-        plain_drawing,
-    } = profile.program.turning;
     turning.diameters = profile.program.diameters;
-    turning.cycles = TurningParameters {
-        thread_chamfer_leads,
-        thread_chamfer_deg,
-        roughing_escape_mm,
-        groove_return_mm,
-        thread_finishing_passes,
-        thread_least_mm,
-        thread_allowance_mm,
-        thread_flank_from: thread_flank_from.map(|from| match from {
-            machine_profile::FlankFrom::Start => FlankFrom::Start,
-            machine_profile::FlankFrom::FirstPass => FlankFrom::FirstPass,
-            machine_profile::FlankFrom::LastPass => FlankFrom::LastPass,
-        }),
-        drill_pecks: drill_chips.map(|chips| if chips { DrillPecks::Chip } else { DrillPecks::Full }),
-        drill_return_mm,
-        drill_r: drill_r_is_place.map(|is_place| if is_place { DrillR::Place } else { DrillR::Way }),
-        bore_return_percent,
-        nose_in_finishing,
-        plain_drawing,
-    };
+    turning.cycles = profile.program.turning;
 }
 
 /// Their names.

@@ -1,9 +1,10 @@
 //! What a profile says of programs and of the control that runs them.
 
 use diagnostic::{Text, both};
+use toolpath::{DrillPecks, DrillR, FlankFrom};
 
 use super::Lines;
-use crate::profile::{AfterChange, BareLengths, FlankFrom, Profile};
+use crate::profile::{AfterChange, BareLengths, Profile};
 
 impl Profile {
     /// What is said of the machine's programs, where anything is.
@@ -130,18 +131,16 @@ impl Profile {
                 ),
             });
         }
-        if let Some(chips) = turning.drill_chips {
-            said.push(if chips {
-                Text::pair("pecks break the chip", "врезания дробят стружку")
-            } else {
-                Text::pair("pecks go back to R", "после врезания отвод до R")
+        if let Some(pecks) = turning.drill_pecks {
+            said.push(match pecks {
+                DrillPecks::Chip => Text::pair("pecks break the chip", "врезания дробят стружку"),
+                DrillPecks::Full => Text::pair("pecks go back to R", "после врезания отвод до R"),
             });
         }
-        if let Some(is_place) = turning.drill_r_is_place {
-            said.push(if is_place {
-                Text::pair("R of holes is a place", "R отверстий — координата")
-            } else {
-                Text::pair("R of holes is a way", "R отверстий — расстояние")
+        if let Some(r) = turning.drill_r {
+            said.push(match r {
+                DrillR::Place => Text::pair("R of holes is a place", "R отверстий — координата"),
+                DrillR::Way => Text::pair("R of holes is a way", "R отверстий — расстояние"),
             });
         }
         if turning.plain_drawing {

@@ -21,7 +21,7 @@ pub use frames::{FrameRules, LengthAfter, LengthAtChange, OffsetL20, TWord};
 pub use numbers::{Numbers, PointFree};
 pub use output::{Output, RotaryFeed};
 pub use path::{Keeps, PathCode, PathKey};
-pub use turning::{DrillPecks, DrillR, FlankFrom, System, Turning, TurningParameters};
+pub use turning::{System, Turning};
 
 /// A letter whose words are refused.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -10,10 +10,9 @@
 //! block from where the tool stands: with W alone nobody knows.
 
 use diagnostic::{Refusal, both};
-use nc_dialect::{DrillPecks, DrillR};
 use nc_program::modal::ReturnLevel;
 use nc_syntax::{Item, ItemKind, Number, Span, Value};
-use toolpath::{MOST_PECKS, Retreat, Stroke, peck_depths, strokes, whole_pecks};
+use toolpath::{DrillPecks, DrillR, MOST_PECKS, Retreat, Stroke, peck_depths, strokes, whole_pecks};
 
 use super::emit::Moves;
 use super::place::{Code, MILLION, Spot};

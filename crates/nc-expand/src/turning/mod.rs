@@ -3,7 +3,7 @@
 //! Fanuc's single passes (G90, G92, G94 of system A), contours (G70 to G73), pecks (G74, G75) and threads (G76), by
 //! their names in systems A, B and C. What each of them does is told by the manual (B-64304EN-1, Series 0i-D, lathe
 //! system: "Canned cycle", "Multiple repetitive cycle"), and by parameters of the control, which the profile has to say
-//! ([`nc_dialect::TurningParameters`]).
+//! ([`toolpath::TurningParameters`]).
 //!
 //! * [`drawing`]: corners and angles of drawings, where they come and in contours.
 //! * [`pass`]: one pass there and back, repeated by each block that names a place.

@@ -14,8 +14,8 @@
 //! no sentence; the profile has to say it ([`FlankFrom`]).
 
 use diagnostic::{Refusal, Text, both};
-use nc_dialect::FlankFrom;
 use nc_syntax::Span;
+use toolpath::FlankFrom;
 use units::math;
 
 use super::held::ThreadSettings;
