@@ -19,7 +19,6 @@ use crate::equations::term::Term;
 use crate::judgement::assembly::Assembly;
 use crate::judgement::shrinkage::LEAST_WEIGHT;
 use crate::library::candidates::{Library, Part};
-use crate::search::bounds::log_prior;
 use crate::search::moves::{by_effect, without};
 use crate::search::space::{Asked, Fit};
 use crate::search::trial::unsupported;
@@ -110,8 +109,7 @@ impl Assembly<'_> {
         let model = self.model;
         let (library, parts) = (&model.library, &model.parts);
         let score = model.space.fit(library, parts).score;
-        let prior = |parts: &[Part]| log_prior(&model.space.values(library, parts, model.solution.rho));
-        let own_prior = prior(parts);
+        let own_prior = model.log_prior(parts);
         let pairs = (0..parts.len()).flat_map(|a| (0..a).map(move |b| vec![b, a]));
         let written =
             |group: &Vec<usize>| group.iter().all(|place| self.corrects(library.kind(parts[*place])));
@@ -132,7 +130,7 @@ impl Assembly<'_> {
                 let with: Vec<Part> = rest.iter().copied().chain([part]).collect();
                 // What the rows say and what machines usually have, together: an angle that no carriage has may fit
                 // better.
-                let likelier = prior(&with) - own_prior - 0.5 * (fit.score - score);
+                let likelier = model.log_prior(&with) - own_prior - 0.5 * (fit.score - score);
                 if likelier > units::math::ln(LEAST_WEIGHT) {
                     found.push(self.explained(&with, Some((group[0], part))));
                 }

@@ -5,7 +5,6 @@ use nalgebra::DMatrix;
 
 use crate::equations::linear::{Factor, Products, explained};
 use crate::library::candidates::Part;
-use crate::search::bounds::log_prior;
 use crate::search::explanation::Explanation;
 use crate::search::moves::without;
 use crate::search::space::{Asked, Sweep, WITHIN};
@@ -44,8 +43,7 @@ pub(crate) fn rivals(model: &Explanation, place: usize) -> Vec<Rival> {
         .filter(|(p, _)| p.candidate == own.candidate)
         .map(|(_, f)| f.score)
         .fold(f64::INFINITY, f64::min);
-    let prior = |parts: &[Part]| log_prior(&model.space.values(&model.library, parts, model.solution.rho));
-    let own_prior = prior(&model.parts);
+    let own_prior = model.log_prior(&model.parts);
     let left = left_over(model, &rest);
     let contribution = contribution(model, &left, own);
     let mut found: Vec<Rival> = Vec::new();
@@ -61,7 +59,7 @@ pub(crate) fn rivals(model: &Explanation, place: usize) -> Vec<Rival> {
         let mut behind = fit.score - own_score;
         if behind <= WITHIN {
             let with: Vec<Part> = rest.iter().copied().chain([*part]).collect();
-            behind += 2.0 * (own_prior - prior(&with)).max(0.0);
+            behind += 2.0 * (own_prior - model.log_prior(&with)).max(0.0);
         }
         // A rival that must be bent to look alike is judged by its score; one that looks alike as it stands
         // in textbooks is a rival whatever the score says: the true shape is neither.

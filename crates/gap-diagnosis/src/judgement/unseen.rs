@@ -120,7 +120,9 @@ impl Assembly<'_> {
         if count == 0 {
             return None;
         }
-        let foretold = kept.rows.iter().filter(|row| !self.is_at_a_knock(row)).copied().collect();
+        let knocks = self.knocks();
+        let told = |row: &&Row| knocks.iter().all(|knock| !knock.hides(row));
+        let foretold = kept.rows.iter().filter(told).copied().collect();
         let kept = &Measurements { rows: foretold, ..kept.clone() };
         let solution = &self.model.solution;
         let framing = self.model.library.framing;
@@ -140,28 +142,44 @@ impl Assembly<'_> {
         Some(Unseen { worse, ..self.unseen(kept, size(&before), size(&after), Some(promised)) })
     }
 
-    /// True where a row lies between the two fitted ones between which a knock came: on which side it is nobody can
-    /// foretell.
-    fn is_at_a_knock(&self, row: &Row) -> bool {
-        type Moment = fn(&Row) -> Option<f64>;
-        self.taken_off(self.ordered.len()).into_iter().any(|(term, _)| {
-            let (moment, knock): (Moment, f64) = match term {
+    /// Between which fitted rows each knock among the causes came.
+    fn knocks(&self) -> Vec<Knock> {
+        let knock = |(term, _): (Term, f64)| {
+            let (moment, came): (Moment, f64) = match term {
                 Term::Knock { from, .. } => (|row| Some(row.order[0]), from),
                 Term::Effect { kind: EffectKind::Step(_), shape, .. } => {
                     (|row| row.conditions.time_s, shape.time_s)
                 }
-                _ => return false,
+                _ => return None,
             };
             let fitted = || self.data.rows.iter().filter_map(moment);
-            let before = fitted().filter(|at| *at < knock).fold(f64::NEG_INFINITY, f64::max);
-            let behind = fitted().filter(|at| *at >= knock).fold(f64::INFINITY, f64::min);
-            moment(row).is_some_and(|at| at > before && at < behind)
-        })
+            let before = fitted().filter(|at| *at < came).fold(f64::NEG_INFINITY, f64::max);
+            let behind = fitted().filter(|at| *at >= came).fold(f64::INFINITY, f64::min);
+            Some(Knock { moment, before, behind })
+        };
+        self.taken_off(self.ordered.len()).into_iter().filter_map(knock).collect()
     }
 
     /// Ids of the causes in order.
     fn names(&self) -> impl Iterator<Item = String> {
         self.ordered.iter().map(|r| self.model.library.kind(r.part).to_string())
+    }
+}
+
+/// When a row was read: a time, or how far through the file.
+type Moment = fn(&Row) -> Option<f64>;
+
+/// The fitted rows between which a knock came.
+struct Knock {
+    moment: Moment,
+    before: f64,
+    behind: f64,
+}
+
+impl Knock {
+    /// True where a row lies between these two: on which side of the knock it is nobody can foretell.
+    fn hides(&self, row: &Row) -> bool {
+        (self.moment)(row).is_some_and(|at| at > self.before && at < self.behind)
     }
 }
 

@@ -38,13 +38,16 @@ impl Library {
         }
         let nuisances = terms.len();
         let untimed = data.rows.iter().all(|row| row.conditions.time_s.is_none());
+        let read = if untimed { components_read(data) } else { [false; 3] };
         let mut library = Self { sampling: seen.sampling, terms, framing, nuisances, candidates: Vec::new() };
         for kind in EffectKind::all().into_iter().filter(|k| !without.contains(k)) {
             let mut variants = library.forms(kind, &seen);
             variants.retain(|form| seen.carry(kind, form.columns.len()));
             match kind {
-                EffectKind::InstrumentDrift if untimed => variants = library.orders(data),
-                EffectKind::Step(component) if untimed => variants = library.knocks(data, component),
+                EffectKind::InstrumentDrift if untimed => variants = library.orders(data, read),
+                EffectKind::Step(axis) if untimed => {
+                    variants = if read[axis] { library.knocks(data, axis) } else { Vec::new() };
+                }
                 _ => {}
             }
             if !variants.is_empty() {
@@ -114,15 +117,13 @@ impl Library {
 
     /// A drift in the order of the rows: even through all runs; even, or with a time constant, anew in each, as where
     /// each begins cold. On places that are passed once the order is the place.
-    fn orders(&mut self, data: &Measurements) -> Vec<Variant> {
-        let scalars = data.scalars(None);
-        let is_read = |component: &usize| scalars.iter().any(|s| s.class == *component);
+    fn orders(&mut self, data: &Measurements, read: [bool; 3]) -> Vec<Variant> {
         let passed_again =
             |anew: &bool| data.is_followed() && data.comes_back(|row| if *anew { row.run } else { 0 });
         let mut forms = Vec::new();
         for anew in [false, true].into_iter().filter(passed_again) {
             let grown = if anew { &TAU_SHARES[..] } else { &[] };
-            for component in (0..3).filter(is_read) {
+            for component in (0..3).filter(|component| read[*component]) {
                 for tau in [f64::INFINITY].iter().chain(grown) {
                     self.terms.push(Term::Order { component, anew, tau: *tau });
                     forms.push(Variant::textbook(vec![self.terms.len() - 1]));
@@ -134,8 +135,7 @@ impl Library {
 
     /// A knock between two rows, where the order of the rows is no place.
     fn knocks(&mut self, data: &Measurements, component: usize) -> Vec<Variant> {
-        let read = data.scalars(None).iter().any(|s| s.class == component);
-        if !read || !data.is_followed() || !data.comes_back(|_| 0) {
+        if !data.is_followed() || !data.comes_back(|_| 0) {
             return Vec::new();
         }
         let at = |k: usize| k as f64 / (STEP_TIMES + 1) as f64;
@@ -312,4 +312,10 @@ impl Library {
         forms.iter_mut().for_each(|form| form.only_rival = only_rival);
         forms
     }
+}
+
+/// X, Y, Z that rows read as such.
+fn components_read(data: &Measurements) -> [bool; 3] {
+    let scalars = data.scalars(None);
+    [0, 1, 2].map(|component| scalars.iter().any(|scalar| scalar.class == component))
 }

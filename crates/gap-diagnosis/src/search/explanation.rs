@@ -8,6 +8,7 @@ use crate::equations::observation::Scalar;
 use crate::equations::serial::Serial;
 use crate::equations::set_up::Clamping;
 use crate::library::candidates::{Library, Part};
+use crate::search::bounds::log_prior;
 use crate::search::space::{Fit, Space};
 
 /// What the search arrived at.
@@ -45,6 +46,12 @@ impl Explanation {
     /// BIC of the whole model, its set-up counted, so that models with different set-ups compare.
     pub(crate) fn evidence(&self) -> f64 {
         self.space.evidence(&self.fit)
+    }
+
+    /// Logarithm of how plausible some parts are before anything is measured, with the values that they have together
+    /// at this model's run-offset ratio ([`log_prior`]).
+    pub(crate) fn log_prior(&self, parts: &[Part]) -> f64 {
+        log_prior(&self.space.values(&self.library, parts, self.solution.rho))
     }
 }
 

@@ -325,16 +325,18 @@ impl State<'_, '_> {
     pub(crate) fn prune(&mut self) {
         loop {
             let level = self.fit.level;
-            let (full, _) = self.space.left(&self.library, &self.parts, level);
+            let left = |parts: &[Part]| self.space.left(&self.library, parts, level).0;
             let weakest = (0..self.parts.len())
                 .filter_map(|place| {
                     let rest = without(&self.parts, place);
-                    let left = self.space.left(&self.library, &rest, level).0;
                     let with: Vec<Part> = rest.iter().copied().chain([self.parts[place]]).collect();
                     let share = self.share(&with, level);
+                    let taken_over = || {
+                        let without = left(&rest);
+                        self.was_taken_over(&with, without - left(&self.parts), without, level)
+                    };
                     let stays = share < LEAST_SHARE
-                        && (self.library.completes(self.parts[place], &rest)
-                            || self.was_taken_over(&with, left - full, left, level));
+                        && (self.library.completes(self.parts[place], &rest) || taken_over());
                     (!stays).then_some((share, rest))
                 })
                 .min_by(|a, b| a.0.total_cmp(&b.0));
