@@ -1,8 +1,6 @@
 //! Cycles of lathes: the moves that they are written out as, worked out by hand.
 
-use crate::common;
-
-use common::blocks;
+use crate::common::{self, blocks};
 use nc_dialect::Dialect;
 use nc_expand::{Environment, Expanded, Limits, Refusal, expand};
 use toolpath::{DrillPecks, DrillR, FlankFrom, TurningParameters};

@@ -13,7 +13,9 @@ use machine_model::effects::{EffectGeometry, EffectKind, legendre};
 use crate::equations::noise::median;
 use crate::equations::observation::{Measurements, Row, Scalar};
 use crate::equations::term::Term;
-use crate::search::explanation::Why;
+
+/// Why a cause cannot be meant, in English and in Russian.
+pub(crate) type Why = [&'static str; 2];
 
 /// A cause may displace by so many times the largest reading: twice is what two causes that overlap can need.
 const LARGEST: f64 = 2.0;

@@ -8,7 +8,7 @@ use crate::equations::observation::Scalar;
 use crate::equations::serial::Serial;
 use crate::equations::set_up::Clamping;
 use crate::library::candidates::{Library, Part};
-use crate::search::bounds::log_prior;
+use crate::search::bounds::{Why, log_prior};
 use crate::search::space::{Fit, Space};
 
 /// What the search arrived at.
@@ -80,9 +80,6 @@ pub(crate) enum Reason {
     /// It explains too little to be named.
     Little(Why),
 }
-
-/// Why, in English and in Russian.
-pub(crate) type Why = [&'static str; 2];
 
 impl Reason {
     /// The same in words.
