@@ -108,5 +108,114 @@ fn passed_is_of_the_machine() {
     let said = String::from_utf8_lossy(&checked.stdout).into_owned();
     assert!(said.ends_with("the control adds up to 100.0 um at corners (line 4)\npassed\n"), "{said}");
     let strict = shop.0.refused(&program, &["-m", &profile, "--strict"]);
-    assert!(strict.starts_with("error[VP0529]") && strict.contains("write G61 before it"), "{strict}");
+    assert!(
+        strict.starts_with("error[VP0529]") && strict.contains("`--path-control exact` writes G61 before it"),
+        "{strict}"
+    );
+}
+
+const SWITCHED: &str =
+    "G21 G90 G54 G64 P0.05\nG0 X10. Y10. Z5.\nG1 Z0 F200.\nX40.\nG64\nG2 X60. Y30. I0. J20.\nG0 Z5.\nM30\n";
+
+/// Lines of a program that say how near the control keeps to the path.
+fn modes(corrected: &str) -> Vec<&str> {
+    corrected.lines().filter(|line| line.contains("G6")).collect()
+}
+
+/// Where asked for, what keeps the control to the path stands in front of the feeds that need it, and of no other.
+#[test]
+fn feeds_are_kept_to_the_path() {
+    let shop = Shop::new();
+    let profile = shop.profile("\"linuxcnc\"");
+    for (how, wanted) in [
+        ("keep", &["G21 G90 G54 G64 P0.05", "G64"][..]),
+        ("exact", &["G21 G90 G54 G64 P0.05", "G61", "G64", "G61"]),
+        // Half of 1 um is the control's: P and Q add up.
+        ("tolerance", &["G21 G90 G54 G64 P0.05", "G64 P0.00025 Q0.00025", "G64", "G64 P0.00025 Q0.00025"]),
+    ] {
+        let asked = format!("--path-control={how}");
+        let (corrected, said) = shop.0.corrected(SWITCHED, &["-m", &profile, &asked]);
+        assert_eq!(modes(&corrected), wanted, "{corrected}");
+        assert_eq!(said.contains("VP0529"), how == "keep", "{said}");
+    }
+    // Inches, and what is near enough already.
+    let inches = "G20 G90 G54 G64 P0.00001\nG0 X1. Y1. Z1.\nG1 Z0 F8.\nG21\nX40.\nM30\n";
+    let (corrected, _) = shop.0.corrected(inches, &["-m", &profile, "--path-control=tolerance"]);
+    assert_eq!(modes(&corrected), ["G20 G90 G54 G64 P0.00001", "G64 P0.000009 Q0.000009"]);
+    let (corrected, _) =
+        shop.0.corrected(inches, &["-m", &profile, "--path-control=tolerance", "--tolerance=2"]);
+    assert_eq!(modes(&corrected), ["G20 G90 G54 G64 P0.00001"]);
+}
+
+#[test]
+fn what_cannot_be_put_in_is_refused() {
+    let shop = Shop::new();
+    let exact = |control: &str, start: &str| {
+        let profile = shop.profile(&format!("\"{control}\""));
+        shop.0.refused(&format!("{start}\n{CORNER}"), &["-m", &profile, "--path-control=exact"])
+    };
+    let itself = exact("linuxcnc", "G21 G90 G54\nG0 X0 Y0 Z5.\nG64 G1 X5. F100.");
+    assert!(itself.contains("error[VP0535]") && itself.contains("says otherwise itself"), "{itself}");
+    let offset = exact("fanuc", "G21 G90 G54\nG0 X0 Y0 Z5.\nG41 D1");
+    assert!(offset.contains("error[VP0535]") && offset.contains("write `G61` before G41"), "{offset}");
+    for (control, how, said) in [
+        ("heidenhain-iso", "exact", "no words by which it keeps to the path"),
+        ("fanuc", "tolerance", "use `--path-control exact`"),
+    ] {
+        let (profile, program) =
+            (shop.profile(&format!("\"{control}\"")), shop.0.write("wordless.nc", CORNER));
+        let ran = run(&[&program, "-m", &profile, &format!("--path-control={how}")]);
+        assert!(ran.status.code() == Some(2) && messages(&ran).contains(said), "{}", messages(&ran));
+    }
+}
+
+/// What stops cost is said where the acceleration is known.
+#[test]
+fn stops_have_their_price() {
+    let shop = Shop::new();
+    let priced = |control: &str| {
+        let (profile, summary) = (shop.profile(control), shop.0.write("summary.json", ""));
+        let program = "G21 G90 G54\nG0 X10. Y10. Z5.\nG1 Z0 F6000.\nX40.\nX40.5\nM30\n";
+        let asked = ["-m", &profile, "--path-control=exact", "--summary", &summary];
+        shop.0.corrected(program, &asked);
+        let summary = std::fs::read_to_string(&summary).expect("it was written");
+        serde_json::from_str::<serde_json::Value>(&summary).expect("JSON")["stops"].clone()
+    };
+    let known = priced("{ dialect = \"linuxcnc\", acceleration_mm_s2 = 1000 }");
+    // 100 mm/s by 1000 mm/s²: 10 mm to get there and as many to stop, 0.1 s more for 30 mm. 5 mm take 2 sqrt(5/1000) s
+    // instead of 0.05 s, 0.5 mm 0.0447 instead of 0.005 s.
+    assert_eq!(known["blocks"], 3);
+    let seconds = known["seconds_at_most"].as_f64().expect("known");
+    assert!((seconds - (0.1 + 0.141_42 - 0.05 + 0.044_72 - 0.005)).abs() < 1e-3, "{seconds}");
+    assert!(priced("\"linuxcnc\"")["seconds_at_most"].is_null());
+}
+
+/// A control that cuts arcs as chords leaves them by what its rule makes of each.
+#[test]
+fn chords_of_arcs_are_the_controls_part() {
+    let shop = Shop::new();
+    // A half circle of radius 30: 94.2 mm.
+    let program = "G21 G90 G54\nG0 X30. Y0. Z0.\nG3 X-30. Y0. I-30. J0. F500.\nM30\n";
+    for (control, um) in [
+        // 94 chords of 1.0026 mm, 188 of 0.501 mm.
+        ("{ dialect = \"grbl\", arcs = { chord_mm = 1.0 } }", 4.189),
+        ("{ dialect = \"grbl\", arcs = { chord_mm = 0.5 } }", 1.047),
+        // 136.03 chords 2 um beside the arc, of which 136 are made.
+        ("\"grbl\"", 2.001),
+        ("{ dialect = \"grbl\", arcs = { tolerance_mm = 0.0005 } }", 0.5),
+        ("{ dialect = \"linuxcnc\", blending = { mode = \"exact-stop\" } }", 0.0),
+    ] {
+        let (said_um, said) = shop.said(control, program);
+        assert!((said_um.as_f64().expect("known") - um).abs() < 0.004 * um.max(0.1), "{control}: {said_um}");
+        assert_eq!(said.contains("it cuts chords"), um > 1.0, "{said}");
+    }
+    for (wrong, expected) in [
+        ("arcs = { chord_mm = 200 }", "chord_mm or tolerance_mm, above 0, up to 10"),
+        ("arcs = {}", "chord_mm or tolerance_mm, above 0, up to 10"),
+        ("arcs = { chord_mm = 1, tolerance_mm = 0.002 }", "chord_mm or tolerance_mm, above 0, up to 10"),
+        ("acceleration_mm_s2 = 0", "acceleration_mm_s2 above 0"),
+    ] {
+        let ran = run(&["profile", "check", &shop.profile(&format!("{{ dialect = \"grbl\", {wrong} }}"))]);
+        assert!(!ran.status.success() && messages(&ran).contains(expected), "{wrong}: {}", messages(&ran));
+    }
 }

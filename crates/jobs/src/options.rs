@@ -150,6 +150,20 @@ pub struct JobOptions {
     #[arg(long, global = true, help_heading = "Program")]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub guard: bool,
+    /// The control's corners: keep, tolerance or exact.
+    ///
+    /// What the program says (keep); or in front of feeds the control's words for a tolerance (tolerance: half of
+    /// `--tolerance` is the control's, half the machine's) or for exact stops (exact).
+    #[arg(
+        long = "path-control",
+        value_enum,
+        value_name = "HOW",
+        global = true,
+        hide_possible_values = true,
+        help_heading = "Program"
+    )]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path_control: Option<PathControl>,
     /// Conditions: temp_c=24, time_s=600 … (repeatable).
     ///
     /// Those that effects of the profile depend on: temp_c (temp_x_c …), time_s, load_kg, feed_mm_min.
@@ -260,6 +274,18 @@ pub enum Decimal {
     Increments,
     /// The unit in force.
     Millimetres,
+}
+
+/// How near the control is told to keep to the path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PathControl {
+    /// As the program says.
+    Keep,
+    /// Within half the tolerance.
+    Tolerance,
+    /// With exact stops.
+    Exact,
 }
 
 /// What is corrected on five axes.

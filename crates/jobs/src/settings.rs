@@ -13,7 +13,8 @@ use machine_profile::Profile;
 use nc_dialect::Dialect;
 use nc_program::{Questions, Setup};
 use nc_syntax::Macros;
-use rewrite::{Datums, Guards, Job};
+
+use rewrite::{Datums, Guards, Job, PathMode};
 
 use crate::flow::Flow;
 use crate::message::{Failure, OPTION, Report, notice};
@@ -59,6 +60,8 @@ pub struct Settings {
     pub strict: bool,
     /// `--guard`
     guards: Guards,
+    /// `--path-control`
+    pub path_mode: PathMode,
     /// What is to be said before any program is read.
     pub warnings: Vec<Report>,
 }
@@ -126,6 +129,7 @@ impl Settings {
             orientation,
         };
         let guards = guards(options, &dialect)?;
+        let path_mode = path_mode(options, &dialect, limits.tolerance_mm)?;
         let profile_name = lines::name(path);
         let flow = Flow::load(options)?;
         Ok(Self {
@@ -137,11 +141,12 @@ impl Settings {
             setup,
             engine,
             tip,
-            options: limits,
+            options: Options { tolerance_mm: limits.tolerance_mm - path_mode.share_mm(), ..limits },
             datums,
             flow,
             strict: options.strict,
             guards,
+            path_mode,
             warnings: warning.into_iter().chain(doubts).collect(),
         })
     }
@@ -167,6 +172,12 @@ impl Settings {
                 name.trim_end_matches("-published")
             ))
         })
+    }
+
+    /// What machine and control keep to together, mm; the control's share is 0 where it is not asked for.
+    #[must_use]
+    pub fn tolerance_mm(&self) -> f64 {
+        self.options.tolerance_mm + self.path_mode.share_mm()
     }
 
     /// Decimals that write the profile's resolution exactly, or finer.
@@ -201,7 +212,8 @@ impl Settings {
             force: false,
             provenance,
             guards: self.guards,
-            blending_mm: self.profile.blending_mm,
+            interpolator: self.profile.interpolator,
+            path_mode: self.path_mode,
         })
     }
 }
@@ -243,6 +255,32 @@ fn guards(options: &JobOptions, dialect: &Dialect) -> Result<Guards, Failure> {
         )));
     }
     Ok(Guards::Put)
+}
+
+/// `--path-control`: what the output tells the control, where it has words for that.
+fn path_mode(options: &JobOptions, dialect: &Dialect, tolerance_mm: f64) -> Result<PathMode, Failure> {
+    let mode = match options.path_control {
+        None | Some(options::PathControl::Keep) => return Ok(PathMode::AsPosted),
+        Some(options::PathControl::Tolerance) => PathMode::Within(0.5 * tolerance_mm),
+        Some(options::PathControl::Exact) => PathMode::Exact,
+    };
+    if mode.block(dialect, 25.4).is_some() {
+        return Ok(mode);
+    }
+    let name = &dialect.name;
+    Err(Failure::usage(match mode {
+        PathMode::Within(_) if PathMode::Exact.block(dialect, 1.0).is_some() => notice!(OPTION;
+            "dialect {name} has no words for a tolerance of corners of {} um",
+            "у диалекта {name} нет слов для допуска на углах в {} мкм", 500.0 * tolerance_mm;
+            "use `--path-control exact`", "возьмите `--path-control exact`"
+        ),
+        _ => notice!(OPTION;
+            "dialect {name} has no words by which it keeps to the path",
+            "у диалекта {name} нет слов, которые держат его на траектории";
+            "correct without `--path-control`, and say in the profile what the control does at corners: `blending`",
+            "исправляйте без `--path-control` и скажите в профиле, что стойка делает на углах: `blending`"
+        ),
+    }))
 }
 
 /// A step as decimals and how many of their steps; what no seven decimals say is rounded to the next finer one that they do.

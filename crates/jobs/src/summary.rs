@@ -33,6 +33,8 @@ pub struct Summary<'a> {
     deviation_after_line: u64,
     control_um: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    stops: Option<Stops>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     tilt_urad: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     tilt_line: Option<u64>,
@@ -92,6 +94,14 @@ struct Profile<'a> {
     name: &'a str,
     machine: &'a str,
     blake3: String,
+}
+
+/// Blocks at whose ends the control was made to stop.
+#[derive(Debug, Serialize)]
+struct Stops {
+    blocks: u64,
+    /// Where the profile says the acceleration.
+    seconds_at_most: Option<f64>,
 }
 
 /// Motions whose directions were to be corrected and could not.
@@ -175,7 +185,7 @@ impl<'a> Summary<'a> {
             changed: *changed,
             engine: settings.engine.id().name(),
             dialect: &settings.dialect.name,
-            tolerance_um: um(settings.options.tolerance_mm),
+            tolerance_um: um(settings.tolerance_mm()),
             blocks_in: figures.blocks_in,
             blocks_out: figures.blocks_out,
             splits: figures.splits,
@@ -187,6 +197,10 @@ impl<'a> Summary<'a> {
             deviation_after_um: um(figures.after.0),
             deviation_after_line: figures.after.1,
             control_um: control_um(&figures.control),
+            stops: figures
+                .control
+                .stops()
+                .map(|(blocks, seconds)| Stops { blocks, seconds_at_most: seconds }),
             tilt_urad: tilt(figures).map(|(rad, _)| urad(rad)),
             tilt_line: tilt(figures).map(|(_, line)| line),
             orientation: settings

@@ -3,28 +3,39 @@
 use diagnostic::both;
 
 use crate::error::VALUE;
-use crate::format::{self, Blending, BlendingMode};
+use crate::format::{self, Arcs, Blending, BlendingMode};
 use crate::loader::Loader;
 use crate::number::{Finite, Spanned};
+use toolpath::{ArcChords, Interpolator};
 
 /// Controls that round corners by more cut another part, mm.
 const MOST_BLENDING_MM: f64 = 10.0;
+/// Longer chords are no arcs, mm.
+const MOST_CHORD_MM: f64 = 10.0;
+/// Ten times the acceleration of gravity: faster are units mistaken.
+const MOST_ACCELERATION_MM_S2: f64 = 1e5;
 
 /// What a profile says of the control.
 #[derive(Debug, Default)]
 pub(crate) struct Control {
     pub(crate) dialect: Option<String>,
-    pub(crate) blending_mm: Option<f64>,
+    pub(crate) interpolator: Interpolator,
 }
 
 impl Loader<'_> {
     pub(crate) fn control(&mut self, written: Option<&Spanned<format::Control>>) -> Control {
         let Some(written) = written else { return Control::default() };
         match written.get_ref().clone() {
-            format::Control::Dialect(name) => Control { dialect: Some(name), blending_mm: None },
+            format::Control::Dialect(name) => {
+                Control { dialect: Some(name), interpolator: Interpolator::default() }
+            }
             format::Control::More(rules) => Control {
                 dialect: rules.dialect,
-                blending_mm: rules.blending.and_then(|blending| self.blending_mm(written, blending)),
+                interpolator: Interpolator {
+                    blending_mm: rules.blending.and_then(|blending| self.blending_mm(written, blending)),
+                    arcs: rules.arcs.and_then(|arcs| self.arcs(written, arcs)),
+                    acceleration_mm_s2: self.acceleration_mm_s2(written, rules.acceleration_mm_s2),
+                },
             },
         }
     }
@@ -51,6 +62,46 @@ impl Loader<'_> {
             "write what the control's manual or its parameters say, like {{ mode = \"tolerance\", tolerance_mm = 0.005 }}",
             "напишите то, что сказано в руководстве или параметрах стойки, например {{ mode = \"tolerance\", tolerance_mm = 0.005 }}"
         );
+        self.refuse(at, VALUE, message, expected, help);
+        None
+    }
+
+    /// How the control cuts arcs.
+    fn arcs(&mut self, at: &Spanned<format::Control>, arcs: Arcs) -> Option<ArcChords> {
+        let sensible = |mm: f64| mm > 0.0 && mm <= MOST_CHORD_MM;
+        match (arcs.chord_mm, arcs.tolerance_mm) {
+            (Some(Finite(mm)), None) if sensible(mm) => return Some(ArcChords::Length(mm)),
+            (None, Some(Finite(mm))) if sensible(mm) => return Some(ArcChords::Tolerance(mm)),
+            _ => {}
+        }
+        let message = both!("`arcs` of the control are not understood", "`arcs` стойки непонятны");
+        let expected = both!(
+            "expected chord_mm or tolerance_mm, above 0, up to {MOST_CHORD_MM}",
+            "ожидалось chord_mm или tolerance_mm больше 0 и не больше {MOST_CHORD_MM}"
+        );
+        let help = both!(
+            "write {{ chord_mm = 1.0 }} where chords have a length (Klipper, `resolution`), {{ tolerance_mm = 0.002 }} where they keep near the arc (Grbl, `$12`)",
+            "напишите {{ chord_mm = 1.0 }}, если задана длина хорд (Klipper, `resolution`), или {{ tolerance_mm = 0.002 }}, если задано их удаление от дуги (Grbl, `$12`)"
+        );
+        self.refuse(at, VALUE, message, expected, help);
+        None
+    }
+
+    /// Along the path, mm/s².
+    fn acceleration_mm_s2(&mut self, at: &Spanned<format::Control>, written: Option<Finite>) -> Option<f64> {
+        let Finite(acceleration) = written?;
+        if acceleration > 0.0 && acceleration <= MOST_ACCELERATION_MM_S2 {
+            return Some(acceleration);
+        }
+        let message = both!(
+            "no machine accelerates by {acceleration} mm/s²",
+            "ни один станок не разгоняется с {acceleration} мм/с²"
+        );
+        let expected = both!(
+            "expected acceleration_mm_s2 above 0, up to {MOST_ACCELERATION_MM_S2}",
+            "ожидалось acceleration_mm_s2 больше 0 и не больше {MOST_ACCELERATION_MM_S2}"
+        );
+        let help = both!("give it in mm/s²: 0.3 g are 2943", "задайте в мм/с²: 0,3 g — это 2943");
         self.refuse(at, VALUE, message, expected, help);
         None
     }

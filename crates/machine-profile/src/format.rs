@@ -87,7 +87,7 @@ pub(crate) struct Document {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(
     untagged,
-    expecting = "expected a dialect like \"fanuc\", or { dialect = \"fanuc\", blending = { mode = \"tolerance\", tolerance_mm = 0.005 } } with the mode \"exact-stop\", \"tolerance\" or \"unlimited\""
+    expecting = "expected a dialect like \"fanuc\", or { dialect = \"fanuc\", blending = { mode = \"tolerance\", tolerance_mm = 0.005 } } with the mode \"exact-stop\", \"tolerance\" or \"unlimited\"; arcs = { chord_mm = 1.0 } or { tolerance_mm = 0.002 } and acceleration_mm_s2 = 2000 may stand beside it"
 )]
 pub(crate) enum Control {
     Dialect(String),
@@ -101,6 +101,20 @@ pub(crate) struct ControlRules {
     pub(crate) dialect: Option<String>,
     /// What the control does at corners where the program does not say how near it keeps to the path.
     pub(crate) blending: Option<Blending>,
+    /// How it cuts arcs into chords, where it does not follow them.
+    pub(crate) arcs: Option<Arcs>,
+    /// Along the path, mm/s²: what stops at corners cost.
+    pub(crate) acceleration_mm_s2: Option<Finite>,
+}
+
+/// One of both.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Arcs {
+    /// Length of a chord, mm (Klipper, `resolution` of `[gcode_arcs]`).
+    pub(crate) chord_mm: Option<Finite>,
+    /// How far chords are meant to lie beside the arc, mm (Grbl, `$12`).
+    pub(crate) tolerance_mm: Option<Finite>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]

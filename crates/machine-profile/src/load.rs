@@ -142,7 +142,7 @@ impl Loader<'_> {
             name: document.name,
             control_at: document.control.as_ref().map(|control| span(&control.span())),
             control: control.dialect,
-            blending_mm: control.blending_mm,
+            interpolator: control.interpolator,
             calibrated,
             description,
             resolution_mm,

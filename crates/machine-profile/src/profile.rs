@@ -4,7 +4,7 @@ use machine_model::engines::{EngineInputs, ParametricTable};
 use machine_model::{
     Chain, Description, EngineId, Interpolation, RigidBody, Singularity, TipControl, Traverse, Vector, Volume,
 };
-use toolpath::{RotaryChain, RotaryLink, TiltRule, TurningParameters};
+use toolpath::{Interpolator, RotaryChain, RotaryLink, TiltRule, TurningParameters};
 
 use crate::field::MeasuredField;
 use crate::tables::ErrorRows;
@@ -194,8 +194,8 @@ pub struct Profile {
     pub name: String,
     /// The control's dialect.
     pub control: Option<String>,
-    /// How far the control leaves the path at corners where a program does not say, mm: 0 where it stops at each; `None`: not known.
-    pub blending_mm: Option<f64>,
+    /// What the control adds to the path.
+    pub interpolator: Interpolator,
     /// The bytes of the profile that say it.
     pub control_at: Option<std::ops::Range<u64>>,
     /// Calibration record.

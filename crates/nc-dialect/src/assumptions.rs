@@ -72,6 +72,7 @@ const PHRASES: &[(&str, &str)] = &[
     ("Grbl 1.1, grblHAL, FluidNC, TinyG", "Grbl 1.1, grblHAL, FluidNC, TinyG"),
     ("The control starts in G0 G17 G21 G54 G90 G91.1 G94 with no offset in force: start.codes.", "При включении действуют G0 G17 G21 G54 G90 G91.1 G94, без коррекций: start.codes."),
     ("Cycles, G43 and cutter compensation are taken as LinuxCNC takes them, where the control has them (grblHAL, FluidNC): codes.", "Циклы, G43 и коррекция на радиус читаются как в LinuxCNC, где они у стойки есть (grblHAL, FluidNC): codes."),
+    ("Arcs are cut as chords 0.002 mm beside them, as $12 is shipped, unless the profile says otherwise: output.arc_chord_tolerance_mm.", "Дуги режутся хордами в 0.002 мм от них, как задано в $12 при поставке, если профиль не говорит иного: output.arc_chord_tolerance_mm."),
     ("The end of an arc may lie up to 0.005 mm or 0.1 % of the radius off it (Grbl 1.1, error 33): output.arc_radius_tolerance_mm, output.arc_radius_tolerance_share.", "Конец дуги может отходить от радиуса до 0.005 мм или 0.1 % радиуса (Grbl 1.1, ошибка 33): output.arc_radius_tolerance_mm, output.arc_radius_tolerance_share."),
     ("F counts the way of all axes, a degree of a rotary one as a millimetre (planners of Grbl and TinyG): output.rotary_feed.", "F считает путь всех осей, градус поворотной — как миллиметр (планировщики Grbl и TinyG): output.rotary_feed."),
     ("$H and G28.2 bring axes to their switches, wherever those are: commands.$H, codes.G28.2.", "$H и G28.2 выводят оси на датчики, где бы те ни стояли: commands.$H, codes.G28.2."),

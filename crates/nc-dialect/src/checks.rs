@@ -154,6 +154,7 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
         );
     }
     let inch = output.arc_radius_tolerance_inch.as_ref().map(|inch| ("arc_radius_tolerance_inch", inch, 0.5));
+    let chords = output.arc_chord_tolerance_mm.as_ref().map(|mm| ("arc_chord_tolerance_mm", mm, 1.0));
     for (what, length, most) in [
         ("peck_clearance_mm", &cycles.peck_clearance_mm, 100.0),
         ("chip_retreat_mm", &cycles.chip_retreat_mm, 100.0),
@@ -161,6 +162,7 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
     ]
     .into_iter()
     .chain(inch)
+    .chain(chords)
     {
         let unit =
             if what.ends_with("mm") { Text::pair("mm", "мм") } else { Text::pair("inch", "дюйма") };

@@ -329,6 +329,7 @@ fn output_rules(output: OutputRules, [peck_clearance_mm, chip_retreat_mm]: [f64;
         arc_radius_tolerance_mm: output.arc_radius_tolerance_mm.into_inner(),
         arc_radius_tolerance_inch: output.arc_radius_tolerance_inch.map(Spanned::into_inner),
         arc_radius_tolerance_share: output.arc_radius_tolerance_share.map_or(0.0, Spanned::into_inner),
+        arc_chord_tolerance_mm: output.arc_chord_tolerance_mm.map(Spanned::into_inner),
         rotary_feed: output.rotary_feed,
         largest_inverse_feed: output.largest_inverse_feed.map_or(FIVE_DIGITS, Spanned::into_inner),
         peck_clearance_mm,

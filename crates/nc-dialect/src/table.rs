@@ -319,6 +319,7 @@ pub(crate) struct OutputRules {
     pub(crate) arc_radius_tolerance_mm: Spanned<f64>,
     pub(crate) arc_radius_tolerance_inch: Option<Spanned<f64>>,
     pub(crate) arc_radius_tolerance_share: Option<Spanned<f64>>,
+    pub(crate) arc_chord_tolerance_mm: Option<Spanned<f64>>,
     pub(crate) rotary_feed: Option<RotaryFeed>,
     pub(crate) largest_inverse_feed: Option<Spanned<f64>>,
 }

@@ -15,7 +15,8 @@ use crate::delete;
 use crate::environment::{Environment, Owner};
 use crate::modal::{
     ArcCentres, Aside, Axes, Axis, Compensation, Distance, FeedMode, LastFeed, Lost, Modal, MotionMode,
-    Naming, Progress, ReturnLevel, Shifts, Stated, ToolLength, Transform, Units, Why, WorkOffset, XWords,
+    Naming, PathControl, Progress, ReturnLevel, Shifts, Stated, ToolLength, Transform, Units, Why,
+    WorkOffset, XWords,
 };
 use crate::motion;
 use crate::moved::Moved;
@@ -145,6 +146,15 @@ impl<'d> Interpreter<'d> {
         }
         let demand = settings::apply(&self.env, &words, &self.modal, &mut state)?;
         Ok((state, demand.owner))
+    }
+
+    /// What a block that was put in says of how near the control keeps to the path, whether the blocks beside it are skipped or
+    /// not.
+    pub fn keeps_path(&mut self, said: PathControl) {
+        self.modal.path_control = said;
+        if let Some(aside) = &mut self.modal.aside {
+            aside.skipped.path_control = said;
+        }
     }
 
     /// What is not whole where the program's text ends here, and its line.

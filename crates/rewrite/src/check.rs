@@ -17,6 +17,7 @@ use crate::control::ControlPart;
 use crate::datum::Datum;
 use crate::figures::Corrected;
 use crate::job::{Guards, Job};
+use crate::path_mode::PathMode;
 use crate::whole::pass;
 use crate::words::retreats;
 use reading::{Numbers, Optional, Program, file_and_line};
@@ -69,7 +70,7 @@ pub fn check(
 
 /// Of each line that cannot be held within the tolerance, what the correction proves of it instead, mm.
 fn accepted(job: &Job<'_>, posted: &Expanded<'_>) -> BTreeMap<u64, f64> {
-    let job = Job { force: true, guards: Guards::default(), ..*job };
+    let job = Job { force: true, guards: Guards::default(), path_mode: PathMode::default(), ..*job };
     let corrected = pass::<Vec<Diagnostic>>(posted.text(), &job, |_| false, |line| line, |_| Ok(()));
     let Ok(Some(Corrected { figures, .. })) = corrected else { return BTreeMap::new() };
     let mut accepted = BTreeMap::new();

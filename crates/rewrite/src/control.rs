@@ -1,78 +1,185 @@
-//! What the control adds to the path: corners that it blends, modes that leave the path by an amount of their own.
+//! What the control adds to the path: corners that it blends, arcs that it cuts as chords, modes that leave the path by an
+//! amount of their own; and what it costs to stop.
 
 use std::ops::Range;
 
 use diagnostic::{Diagnostic, Text, both};
-use nc_dialect::{Dialect, Keeps, PathCode, PathKey};
-use nc_program::{Modal, PathControl};
-use nc_syntax::GCode;
+use nc_program::{LastFeed, Modal, PathControl};
+use toolpath::{ArcChords, Feed, Shape};
 
 use crate::job::{CONTROL_LEAVES, Job, Warning};
+use crate::path_mode::{self, PathMode};
 
 /// Where something is cut with the control farthest off the path.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct ControlPart(Option<Cut>);
+pub struct ControlPart {
+    corner: Option<Corner>,
+    arc: Option<Chords>,
+    /// Where stops were asked for.
+    stops: Option<Stops>,
+}
 
 #[derive(Debug, Clone, PartialEq)]
-struct Cut {
+struct Corner {
     by: PathControl,
     span: Range<u64>,
     line: u64,
+}
+
+/// The arc that chords leave farthest.
+#[derive(Debug, Clone, PartialEq)]
+struct Chords {
+    off_mm: f64,
+    span: Range<u64>,
+    line: u64,
+}
+
+/// Blocks at whose end the control stops.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Stops {
+    count: u64,
+    /// What they take at most, s; NaN where nobody knows.
+    seconds: f64,
+}
+
+/// The control's arcs: what the profile says of them, else the dialect.
+fn chords(job: &Job<'_>) -> Option<ArcChords> {
+    job.interpolator.arcs.or_else(|| job.dialect.output.arc_chord_tolerance_mm.map(ArcChords::Tolerance))
 }
 
 impl ControlPart {
     /// A feed is made in this state; the corners of a hole lie in the air.
     #[inline]
     pub(crate) fn cut(&mut self, job: &Job<'_>, modal: &Modal, place: impl FnOnce() -> (Range<u64>, u64)) {
-        let mut by = modal.path_control;
-        if by.off_mm.is_infinite() {
-            by.off_mm = job.blending_mm.unwrap_or(f64::INFINITY);
-        }
-        if self.off_mm().is_none_or(|known_mm| by.off_mm > known_mm) {
+        let off_mm = path_mode::leaves_mm(job, modal);
+        if self.corner.as_ref().is_none_or(|known| off_mm > known.by.off_mm) {
             let (span, line) = place();
-            self.0 = Some(Cut { by, span, line });
+            self.corner = Some(Corner { by: PathControl { off_mm, ..modal.path_control }, span, line });
         }
+    }
+
+    /// An arc is left to the control.
+    pub(crate) fn arc(&mut self, job: &Job<'_>, feed: &Feed, (span, line): (&Range<u64>, u64)) {
+        let off_mm = chords(job).map_or(0.0, |chords| chords.leaves_mm(feed));
+        if off_mm > self.arc.as_ref().map_or(0.0, |known| known.off_mm) {
+            self.arc = Some(Chords { off_mm, span: span.clone(), line });
+        }
+    }
+
+    /// Blocks of a motion of so many mm, at whose ends the control is asked to stop.
+    #[inline]
+    pub(crate) fn stop(
+        &mut self,
+        job: &Job<'_>,
+        modal: &Modal,
+        blocks: usize,
+        length_mm: impl FnOnce() -> f64,
+    ) {
+        if job.path_mode != PathMode::Exact {
+            return;
+        }
+        let stops = self.stops.get_or_insert_default();
+        let mm_s = match modal.last_feed {
+            LastFeed::PerMinute(feed, units) => feed.to_f64() * units.mm() / 60.0,
+            _ => f64::NAN,
+        };
+        let acceleration = job.interpolator.acceleration_mm_s2.unwrap_or(f64::NAN);
+        let each_mm = length_mm() / blocks as f64;
+        // From rest to rest, less what it takes at full speed.
+        let more_s = if each_mm < mm_s * mm_s / acceleration {
+            2.0 * (each_mm / acceleration).sqrt() - each_mm / mm_s
+        } else {
+            mm_s / acceleration
+        };
+        stops.count += blocks as u64;
+        stops.seconds += blocks as f64 * more_s;
     }
 
     pub(crate) fn add(&mut self, later: &Self) {
-        if later.off_mm() > self.off_mm() {
-            self.clone_from(later);
+        let (off, more) = (|corner: &Option<Corner>| corner.as_ref().map(|at| at.by.off_mm), &later.corner);
+        if off(more) > off(&self.corner) {
+            self.corner.clone_from(more);
+        }
+        if later.arc.as_ref().map(|at| at.off_mm) > self.arc.as_ref().map(|at| at.off_mm) {
+            self.arc.clone_from(&later.arc);
+        }
+        if let Some(more) = later.stops {
+            let stops = self.stops.get_or_insert_default();
+            stops.count += more.count;
+            stops.seconds += more.seconds;
         }
     }
 
-    /// By how much the control leaves the path at most, mm; infinite where nobody says, `None` where nothing is cut.
+    /// By how much the control leaves the path at most, mm: at corners and on arcs together; infinite where nobody says, `None`
+    /// where nothing is cut.
     #[must_use]
     pub fn off_mm(&self) -> Option<f64> {
-        self.0.as_ref().map(|cut| cut.by.off_mm)
+        let corner_mm = self.corner.as_ref()?.by.off_mm;
+        Some(corner_mm + self.arc.as_ref().map_or(0.0, |arc| arc.off_mm))
+    }
+
+    /// Ends of blocks at which the control was made to stop, and what that takes at most, s; `None` there: nobody knows.
+    #[must_use]
+    pub fn stops(&self) -> Option<(u64, Option<f64>)> {
+        self.stops.map(|stops| (stops.count, Some(stops.seconds).filter(|seconds| seconds.is_finite())))
     }
 
     /// The lines of its places.
     pub(crate) fn lines(&mut self) -> impl Iterator<Item = &mut u64> {
-        self.0.iter_mut().flat_map(|cut| cut.by.line.iter_mut().chain([&mut cut.line]))
+        let corner = self.corner.iter_mut().flat_map(|cut| cut.by.line.iter_mut().chain([&mut cut.line]));
+        corner.chain(self.arc.iter_mut().map(|arc| &mut arc.line))
     }
 
-    /// What it adds to the path, in words; `None` where it adds nothing.
-    #[must_use]
-    pub fn said(&self) -> Option<Text> {
-        let Cut { by, line, .. } = self.0.as_ref().filter(|cut| cut.by.off_mm > 0.0)?;
-        Some(if by.off_mm.is_finite() {
+    /// What it adds to the path, in words, and what its stops cost; none where it adds nothing.
+    pub fn said(&self) -> impl Iterator<Item = Text> {
+        let corner =
+            self.corner.as_ref().filter(|cut| cut.by.off_mm > 0.0).map(|Corner { by, line, .. }| {
+                if by.off_mm.is_finite() {
+                    both!(
+                        "the control adds up to {:.1} um at corners (line {line})",
+                        "стойка добавляет на углах до {:.1} мкм (строка {line})",
+                        1e3 * by.off_mm
+                    )
+                } else {
+                    both!(
+                        "what the control adds at corners is not known",
+                        "что добавляет на углах стойка, неизвестно"
+                    )
+                }
+            });
+        let arc = self.arc.as_ref().map(|Chords { off_mm, line, .. }| {
             both!(
-                "the control adds up to {:.1} um at corners (line {line})",
-                "стойка добавляет на углах до {:.1} мкм (строка {line})",
-                1e3 * by.off_mm
+                "the control adds up to {:.1} um on arcs, which it cuts as chords (line {line})",
+                "стойка добавляет на дугах, которые режет хордами, до {:.1} мкм (строка {line})",
+                1e3 * off_mm
             )
-        } else {
-            both!(
-                "what the control adds at corners is not known",
-                "что добавляет на углах стойка, неизвестно"
-            )
-        })
+        });
+        let stops = self.stops().map(|(count, seconds)| match seconds {
+            Some(seconds) => both!(
+                "stops at the ends of {count} blocks take up to {seconds:.1} s more",
+                "остановы в концах кадров ({count}) займут до {seconds:.1} с"
+            ),
+            None => both!(
+                "what stops at the ends of {count} blocks take is not known: `acceleration_mm_s2` under `control` says it",
+                "сколько займут остановы в концах кадров ({count}), неизвестно: нужно `acceleration_mm_s2` в `control`"
+            ),
+        });
+        corner.into_iter().chain(arc).chain(stops)
     }
 
     /// What the tolerance does not cover.
-    pub(crate) fn warning(&self, job: &Job<'_>) -> Option<Warning> {
-        let Cut { by, span, line } =
-            self.0.as_ref().filter(|cut| cut.by.off_mm > job.options.tolerance_mm)?;
+    pub(crate) fn warnings(&self, job: &Job<'_>) -> impl Iterator<Item = Warning> {
+        let tolerance_mm = job.options.tolerance_mm;
+        let corner = self.corner.as_ref().filter(|cut| cut.by.off_mm > tolerance_mm);
+        let arc = self.arc.as_ref().filter(|arc| arc.off_mm > tolerance_mm);
+        let warnings = [corner.map(|corner| corner.warning(job)), arc.map(|arc| arc.warning(job))];
+        warnings.into_iter().flatten()
+    }
+}
+
+impl Corner {
+    fn warning(&self, job: &Job<'_>) -> Warning {
+        let Self { by, span, line } = self;
         let tolerance_um = 1e3 * job.options.tolerance_mm;
         let message = if by.off_mm.is_finite() {
             both!(
@@ -101,20 +208,52 @@ impl ControlPart {
             "say in the profile what it does, `control = {{ dialect = \"{name}\", blending = {{ mode = \"tolerance\", tolerance_mm = 0.005 }} }}` or `{{ mode = \"exact-stop\" }}`",
             "скажите в профиле, что она делает: `control = {{ dialect = \"{name}\", blending = {{ mode = \"tolerance\", tolerance_mm = 0.005 }} }}` или `{{ mode = \"exact-stop\" }}`"
         );
-        let help = match exact(job.dialect) {
-            Some(code) => {
-                both!("write {code} before it, or {settled}", "напишите перед ним {code} или {settled:#}")
-            }
+        let help = match path_mode::exact(job.dialect) {
+            Some(code) => both!(
+                "`--path-control exact` writes {code} before it, or {settled}",
+                "`--path-control exact` напишет перед ним {code}, или {settled:#}"
+            ),
             None => settled,
         };
-        Some((Diagnostic::doubt(CONTROL_LEAVES, message).at(span.clone(), label).help(help), *line))
+        (Diagnostic::doubt(CONTROL_LEAVES, message).at(span.clone(), label).help(help), *line)
     }
 }
 
-/// The code by which the control keeps to the path.
-fn exact(dialect: &Dialect) -> Option<GCode> {
-    dialect.path_control.iter().find_map(|row| match row {
-        PathCode { key: PathKey::Code(code), keeps: Keeps::Exact } => Some(*code),
-        _ => None,
-    })
+impl Chords {
+    fn warning(&self, job: &Job<'_>) -> Warning {
+        let Self { off_mm, span, line } = self;
+        let tolerance_um = 1e3 * job.options.tolerance_mm;
+        let message = both!(
+            "the control itself leaves this arc by {:.1} um, since it cuts chords: more than the tolerance of {tolerance_um} um",
+            "сама стойка сходит с этой дуги на {:.1} мкм, так как режет хордами: больше допуска {tolerance_um} мкм",
+            1e3 * off_mm
+        );
+        let label = both!("no arc is left farther", "дальше она не сходит ни с одной дуги");
+        let name = &job.dialect.name;
+        let help = both!(
+            "set finer chords at the control (`resolution` of Klipper, `$12` of Grbl), and say so in the profile: `control = {{ dialect = \"{name}\", arcs = {{ tolerance_mm = 0.0005 }} }}`, or `arcs = {{ chord_mm = 0.1 }}`",
+            "задайте на стойке хорды мельче (`resolution` в Klipper, `$12` в Grbl) и скажите это в профиле: `control = {{ dialect = \"{name}\", arcs = {{ tolerance_mm = 0.0005 }} }}` или `arcs = {{ chord_mm = 0.1 }}`"
+        );
+        (Diagnostic::doubt(CONTROL_LEAVES, message).at(span.clone(), label).help(help), *line)
+    }
+}
+
+/// How long a motion is, mm; of a curve by control points its chord.
+pub(crate) fn length_mm(feed: &Feed) -> f64 {
+    let (start, end) = (&feed.start.linear_mm, &feed.end.linear_mm);
+    match feed.shape {
+        Shape::Arc(arc) => {
+            let [first, second, normal] = arc.plane.axes();
+            let radius_mm =
+                units::math::hypot(start[first] - arc.centre_mm[0], start[second] - arc.centre_mm[1]);
+            units::math::hypot(radius_mm * arc.sweep_rad, end[normal] - start[normal])
+        }
+        _ => distance_mm(start, end),
+    }
+}
+
+/// Of two places, mm.
+pub(crate) fn distance_mm(start: &[f64; 3], end: &[f64; 3]) -> f64 {
+    let square = |axis: usize| (end[axis] - start[axis]) * (end[axis] - start[axis]);
+    (square(0) + square(1) + square(2)).sqrt()
 }

@@ -5,8 +5,10 @@ use diagnostic::{Code, Diagnostic};
 use machine_model::{Models, PathModel};
 use nc_dialect::Dialect;
 use nc_program::Setup;
+use toolpath::Interpolator;
 
 use crate::datum::Datums;
+use crate::path_mode::PathMode;
 
 /// Feed motion, or what would correct it, lies outside the calibrated volume.
 pub const OUTSIDE: Code = Code(501);
@@ -58,6 +60,8 @@ pub const TOUCHED_BY_GUESS: Code = Code(523);
 pub const ACCEPTED: Code = Code(528);
 /// The control may leave the path by more than the tolerance, or by an unknown amount.
 pub const CONTROL_LEAVES: Code = Code(529);
+/// The program cannot be made to keep the control to the path.
+pub const KEPT_NOWHERE: Code = Code(535);
 /// Tools cut without a length in force.
 pub const WITHOUT_LENGTH: Code = Code(527);
 /// Lost motion moves the tool sideways where an axis turns, by more than can be hidden.
@@ -95,8 +99,10 @@ pub struct Job<'a> {
     pub provenance: &'a str,
     /// Whether the output asks the control for what it was corrected for.
     pub guards: Guards,
-    /// How far the control leaves the path where a program does not say, mm; `None`: not known.
-    pub blending_mm: Option<f64>,
+    /// What the control adds to the path where a program does not say.
+    pub interpolator: Interpolator,
+    /// What the output tells the control of keeping to the path.
+    pub path_mode: PathMode,
 }
 
 impl<'a> Job<'a> {

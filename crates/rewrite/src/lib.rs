@@ -28,7 +28,8 @@
 //!     force: false,
 //!     provenance: "AN EXAMPLE",
 //!     guards: Guards::None,
-//!     blending_mm: Some(0.0),
+//!     interpolator: toolpath::Interpolator { blending_mm: Some(0.0), ..Default::default() },
+//!     path_mode: rewrite::PathMode::AsPosted,
 //! };
 //! let posted = b"G21 G90 G54\nG0 X10. Y10. Z30.\nG1 X90. F500.\nM30\n";
 //! let corrected = correct::<Vec<diagnostic::Diagnostic>>(posted, &job, |line| line, |_| Ok(())).expect("inside the volume");
@@ -52,6 +53,7 @@ mod lowered;
 mod nose;
 mod notices;
 mod pass;
+mod path_mode;
 mod plain;
 mod sink;
 mod state;
@@ -67,5 +69,6 @@ pub use datum::{Datum, Datums, Touch, TouchTool, Touches, Zero};
 pub use figures::{Corrected, Figures, Held};
 pub use job::*;
 pub use large::{Digest, Large, LargeEnd, Manner, Part, Source};
+pub use path_mode::PathMode;
 pub use survey::all_refusals;
 pub use whole::{correct, correct_plain, corrected_before};

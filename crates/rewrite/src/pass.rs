@@ -9,6 +9,7 @@ use nc_syntax::{Block, Letters, Reader};
 use smallvec::SmallVec;
 use toolpath::{Hole, Motion};
 
+use crate::control::length_mm;
 use crate::cutter;
 use crate::datum::{LastDatum, going_on};
 use crate::feed;
@@ -85,6 +86,7 @@ impl Pass<'_> {
     pub(crate) fn block(&mut self, block: &Block<'_>) -> Result<(), Vec<Diagnostic>> {
         self.tally.figures.blocks_in += 1;
         let before = self.before_guards();
+        let compensation = self.state.interpreter.modal().compensation;
         let executed = self.state.interpreter.step(block);
         // Looked at where it lies: hundreds of bytes.
         let Ok(step) = &executed else { return executed.map(|_| ()) };
@@ -94,6 +96,7 @@ impl Pass<'_> {
         if let Some(before) = before.as_ref().filter(|_| !step.motions.is_empty()) {
             self.guard_before(block, before)?;
         }
+        self.keep_to_path(block, &step.motions, compensation)?;
         if step.states_position {
             self.state_position(block, context)?;
         } else {
@@ -371,9 +374,14 @@ impl Pass<'_> {
         if cuts {
             self.tally.lengthless.cut(self.job, self.state.interpreter.modal(), &span, line);
         }
-        if motions.iter().any(|motion| matches!(motion, Motion::Feed(_))) {
-            let place = || (span.clone(), line);
-            self.tally.figures.control.cut(self.job, self.state.interpreter.modal(), place);
+        for motion in motions {
+            let Motion::Feed(feed) = motion else { continue };
+            let (control, modal) = (&mut self.tally.figures.control, self.state.interpreter.modal());
+            control.cut(self.job, modal, || (span.clone(), line));
+            control.stop(self.job, modal, blocks_out, || length_mm(feed));
+            if self.state.emitter.motion().is_some_and(|code| self.codes.is_arc(code)) {
+                control.arc(self.job, feed, (&span, line));
+            }
         }
         let Tally { figures, notices, .. } = &mut self.tally;
         for (motion, correction) in motions.iter().zip(corrections) {

@@ -10,6 +10,7 @@ use nc_program::PlainEnd;
 use nc_syntax::{Block, Letters, PlainLine, Reader};
 use toolpath::Motion;
 
+use crate::control::distance_mm;
 use crate::pass::{Pass, info};
 use crate::words::letters;
 
@@ -20,7 +21,7 @@ impl Pass<'_> {
         reader: &mut Reader<'_>,
         ends: &mut impl FnMut(&mut Self, u64) -> Result<bool, E>,
     ) -> Result<bool, E> {
-        if self.lacks_guard() {
+        if self.lacks_guard() || self.strays() {
             return Ok(false);
         }
         let Some((feeds, mut start_mm)) = self.state.interpreter.plain_feeds() else { return Ok(false) };
@@ -78,9 +79,13 @@ impl Pass<'_> {
                 read.iter().for_each(|line| self.tally.evidence.see_line(line, &self.questions));
             }
             if let Some(run) = &run {
-                start_mm = found[done - 1].end_mm;
                 let feed = found[..done].iter().rev().find_map(|end| end.feed);
                 self.state.interpreter.go_to(&found[done - 1], feed);
+                for end_mm in &ends_mm[..done] {
+                    let (control, modal) = (&mut self.tally.figures.control, self.state.interpreter.modal());
+                    control.stop(self.job, modal, 1, || distance_mm(&start_mm, end_mm));
+                    start_mm = *end_mm;
+                }
                 self.write_run(&lines, &found, run, info.decimals)?;
             }
             if done < count {

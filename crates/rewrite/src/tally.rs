@@ -48,7 +48,7 @@ impl Tally {
     pub(crate) fn warnings(&self, job: &Job<'_>) -> Vec<Warning> {
         let mut warnings = self.notices.warnings(&self.figures.held);
         warnings.extend(self.lengthless.warning(job));
-        warnings.extend(self.figures.control.warning(job));
+        warnings.extend(self.figures.control.warnings(job));
         warnings
     }
 

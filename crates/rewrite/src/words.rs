@@ -25,6 +25,11 @@ impl MotionCodes {
         self.line
     }
 
+    /// G2, G3.
+    pub(crate) fn is_arc(&self, code: GCode) -> bool {
+        [self.clockwise, self.counter_clockwise].contains(&code)
+    }
+
     /// From the dialect's table; codes it lacks keep their usual numbers and are never written.
     pub(crate) fn of(dialect: &Dialect) -> Self {
         let find = |action: Action, usual: u16| dialect.row_of(&action).map_or(GCode(usual), |row| row.code);

@@ -9,6 +9,7 @@ mod chords;
 mod feed_rate;
 mod frame;
 mod hole;
+mod interpolator;
 mod motion;
 mod nurbs;
 mod plane;
@@ -23,6 +24,7 @@ pub use hole::{
     Cycle, CycleKind, Hole, HoleMove, MOST_PECKS, PeckRetreats, Retreat, Stroke, peck_depths, strokes,
     whole_pecks,
 };
+pub use interpolator::{ArcChords, Interpolator};
 pub use motion::{Arc, Division, Feed, Kinematics, Motion, Mover, Shape};
 pub use nurbs::{Bezier, MOST_DEGREE, Nurbs, NurbsFault};
 pub use plane::Plane;

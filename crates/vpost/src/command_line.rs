@@ -88,7 +88,7 @@ const OF_PROGRAM: [&str; 15] = [
     "outside",
 ];
 /// Of the corrections alone.
-const OF_OUTPUT: [&str; 3] = ["guard", "strict", "verbose"];
+const OF_OUTPUT: [&str; 4] = ["guard", "path_control", "strict", "verbose"];
 
 /// Of a plan that is written as a program.
 const OF_WRITTEN_PLAN: [&str; 4] = ["dialect", "work_offset", "linuxcnc_ini", "at"];
@@ -125,7 +125,7 @@ fn reads(command: &[&str], option: &str) -> bool {
 /// correction was given.
 fn accepts(command: &[&str], option: &str) -> bool {
     match command {
-        ["check"] => ["outside", "strict"].contains(&option),
+        ["check"] => ["outside", "strict", "path_control"].contains(&option),
         ["batch", ..] => option == "verbose",
         _ => false,
     }

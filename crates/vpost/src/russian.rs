@@ -260,6 +260,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("Take the columns as named: no look for flipped signs, swapped columns", "Брать столбцы как названы: не искать обратных знаков и переставленных столбцов"),
     ("Target points (CSV); - for standard input", "Цели (CSV); - стандартный ввод"),
     ("Temperature of the machine, °C; else temp_c", "Температура станка, °C; иначе — temp_c"),
+    ("The control's corners: keep, tolerance or exact", "Углы: как в программе, допуск или останов"),
     ("The corrected program", "Исправленная программа"),
     ("The dialects vpost knows, with their assumptions", "Диалекты, которые знает vpost, и что о них принято"),
     ("The error over the volume, and where to put the workpiece", "Погрешность по объёму и куда поставить деталь"),

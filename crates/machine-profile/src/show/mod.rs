@@ -9,6 +9,8 @@ pub use sense::plus_turns;
 use diagnostic::{Language, Text, both};
 use machine_model::EngineId;
 
+use toolpath::ArcChords;
+
 use crate::format::Document;
 use crate::profile::{Outside, Profile};
 
@@ -50,13 +52,28 @@ impl Profile {
         if let Some(control) = &self.control {
             out.line(both!("control      {control}", "ЧПУ          {control}"));
         }
-        match self.blending_mm {
+        match self.interpolator.blending_mm {
             None => {}
             Some(0.0) => out.line(both!("corners      exact stop", "углы         точный останов")),
             Some(mm) => out.line(both!(
                 "corners      the control keeps within {mm} mm of the path",
                 "углы         стойка держит траекторию в пределах {mm} мм"
             )),
+        }
+        match self.interpolator.arcs {
+            None => {}
+            Some(ArcChords::Length(mm)) => {
+                out.line(both!("arcs         chords of {mm} mm", "дуги         хорды по {mm} мм"));
+            }
+            Some(ArcChords::Tolerance(mm)) => {
+                out.line(both!(
+                    "arcs         chords {mm} mm beside them",
+                    "дуги         хорды в {mm} мм от них"
+                ));
+            }
+        }
+        if let Some(acceleration) = self.interpolator.acceleration_mm_s2 {
+            out.line(both!("acceleration {acceleration} mm/s²", "ускорение    {acceleration} мм/с²"));
         }
         self.write_chain(out);
         self.write_calibration(out);

@@ -32,6 +32,8 @@ pub struct Output {
     pub arc_radius_tolerance_inch: Option<f64>,
     /// The same as a share of the radius, where the control takes that too and it is more; 0 for none.
     pub arc_radius_tolerance_share: f64,
+    /// How far the chords by which the control cuts arcs are meant to lie beside them, mm; `None` where it follows arcs.
+    pub arc_chord_tolerance_mm: Option<f64>,
     /// What F of G94 counts where rotary axes turn; `None` where the control's manual leaves it open.
     pub rotary_feed: Option<RotaryFeed>,
     /// Largest F of G93 that the control reads, 1/min.

@@ -267,8 +267,9 @@ impl<'a, 'n> Program<'a, 'n> {
             let (tool_mm, kinematics) = (context.tool_mm, context.kinematics);
             let datum = self.datum.placement(self.job.datums, self.job.machine(), context);
             let cuts = matches!(motion, Motion::Feed(_) | Motion::Hole(_));
-            if matches!(motion, Motion::Feed(_)) {
+            if let Motion::Feed(feed) = &motion {
                 self.control.cut(self.job, self.interpreter.modal(), || (block.file_range(), line));
+                self.control.arc(self.job, feed, (&block.file_range(), line));
             }
             if let Some(datum) = cuts.then(|| self.datum.newly_used()).flatten()
                 && !self.datums.iter().any(|known| known.is(datum))

@@ -49,6 +49,7 @@ def options(
     outside: Optional[str] = None,
     strict: bool = False,
     guard: bool = False,
+    path_control: Optional[str] = None,
 ) -> List[str]:
     """The words of a command line."""
     words = [] if profile is None else [f"--machine={os.fspath(profile)}"]
@@ -80,6 +81,8 @@ def options(
         words.append(f"--outside={outside}")
     words.extend(["--strict"] if strict else [])
     words.extend(["--guard"] if guard else [])
+    if path_control is not None:
+        words.append(f"--path-control={path_control}")
     return words
 
 

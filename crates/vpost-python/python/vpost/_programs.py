@@ -100,7 +100,7 @@ def correct(
             ``work_offset`` (``{"G54": (x, y, z)}``, mm), ``tool`` (``{"H1": 120.0}``, mm), ``start_at`` (mm),
             ``variables`` (``{"#500": 12.5}``), ``include`` (folders of subprograms), ``decimal``
             (``"increments"`` or ``"millimetres"``), ``at`` (``{"temp_c": 24.0}``), ``outside`` (``"refuse"`` or
-            ``"clamp"``), ``strict``, ``guard``.
+            ``"clamp"``), ``strict``, ``guard``, ``path_control`` (``"keep"``, ``"tolerance"`` or ``"exact"``).
 
     Raises:
         Refused: With the text that the command prints.

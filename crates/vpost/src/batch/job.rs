@@ -85,5 +85,6 @@ fn hash(settings: &Settings, shared: &Shared) -> Result<Hash, Failure> {
     put("strict", &[u8::from(settings.strict)]);
     put("conditions", format!("{:?}", conditions(&shared.job)?).as_bytes());
     put("guards", &[u8::from(shared.job.guard)]);
+    put("path mode", format!("{:?}", settings.path_mode).as_bytes());
     Ok(hasher.finalize())
 }
