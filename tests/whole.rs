@@ -70,6 +70,7 @@ mod points;
 mod profile_new;
 mod real_machines;
 mod refusals;
+mod restart;
 mod russian;
 mod s_wall;
 mod shop_floor;

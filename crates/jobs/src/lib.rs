@@ -23,6 +23,7 @@ pub mod options;
 pub mod points;
 pub mod predict;
 pub mod profile;
+pub mod restart;
 pub mod settings;
 mod setup;
 pub mod shown;

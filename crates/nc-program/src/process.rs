@@ -190,6 +190,17 @@ impl Process {
         }
     }
 
+    /// The last code of each modal group with its words, `G54.1 P2`.
+    pub fn modes(&self) -> impl Iterator<Item = (GCode, String)> + '_ {
+        self.modes.iter().map(|mode| (mode.code, mode.to_string()))
+    }
+
+    /// The last number of a letter.
+    #[must_use]
+    pub fn word(&self, letter: u8) -> Option<Argument> {
+        self.words[LETTERS.iter().position(|known| *known == letter)?]
+    }
+
     /// What X, Y and Z are from here on; true where that is something else than before.
     pub fn move_by(&mut self, kinematics: &Kinematics) -> bool {
         let before = std::mem::replace(&mut self.tilted, Tilted::of(kinematics));

@@ -30,7 +30,8 @@ pub struct Offset {
 
 impl Offset {
     /// A motion is neither offset nor leads off an offset path.
-    pub(crate) fn is_off(self) -> bool {
+    #[must_use]
+    pub fn is_off(self) -> bool {
         self.stage == Stage::Off
     }
 

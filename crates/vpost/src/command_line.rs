@@ -11,6 +11,7 @@ use crate::calibrate::Calibrate;
 use crate::diagnose::{Diagnose, Form};
 use crate::explain::Explain;
 use crate::map::Map;
+use crate::restart::Restart;
 use crate::{language, russian};
 
 /// Rewrites NC programs so that a measured machine goes where the program says.
@@ -44,6 +45,8 @@ pub enum Command {
     Batch(Batch),
     /// Do two programs cut alike on this machine?
     Check(Check),
+    /// Begin a corrected program anew at one of its lines.
+    Restart(Restart),
     /// Where the machine really goes for commanded points.
     Predict(Predict),
     /// What to command so that the tool reaches points.
@@ -87,6 +90,9 @@ const OF_PROGRAM: [&str; 15] = [
     "orientation",
     "outside",
 ];
+/// Of those, what a program is read by.
+const OF_READING: [&str; 7] =
+    ["dialect", "work_offset", "tool", "tool_table", "linuxcnc_ini", "start_at", "decimal"];
 /// Of the corrections alone.
 const OF_OUTPUT: [&str; 4] = ["guard", "path_control", "strict", "verbose"];
 
@@ -102,6 +108,7 @@ fn reads(command: &[&str], option: &str) -> bool {
         ["batch", ..] => option != "verbose",
         ["correct", ..] => true,
         ["check", ..] => option != "outside" && !OF_OUTPUT.contains(&option),
+        ["restart"] => option == "machine" || OF_READING.contains(&option),
         // A lathe's program, or points.
         ["predict", ..] => {
             !["orientation", "zero", "touched_at"].contains(&option) && !OF_OUTPUT.contains(&option)
@@ -126,6 +133,7 @@ fn reads(command: &[&str], option: &str) -> bool {
 fn accepts(command: &[&str], option: &str) -> bool {
     match command {
         ["check"] => ["outside", "strict", "path_control"].contains(&option),
+        ["restart"] => option != "verbose",
         ["batch", ..] => option == "verbose",
         _ => false,
     }

@@ -27,6 +27,7 @@ mod predict;
 mod profile_command;
 pub mod profile_new;
 mod progress;
+pub mod restart;
 mod roles;
 mod russian;
 pub mod session;
@@ -88,6 +89,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Correct(a)) => correct::run(a, &arguments.shared, &messages),
         Some(Command::Batch(a)) => batch::run(a, &arguments.shared, &messages),
         Some(Command::Check(a)) => check::run(a, &arguments.shared, &messages),
+        Some(Command::Restart(a)) => restart::run(a, &arguments.shared, &messages),
         Some(Command::Predict(a)) => predict::run(a, &arguments.shared, &messages),
         Some(Command::Solve(a)) => solve::run(a, &arguments.shared, &messages),
         Some(Command::Calibrate(a)) => calibrate::run(a, &arguments.shared, &messages),

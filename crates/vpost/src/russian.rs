@@ -158,6 +158,8 @@ const TEXTS: &[(&str, &str)] = &[
     ("Ball bar: location errors of a table's rotary axes, or squareness, scale mismatch and backlash of linear axes", "Телескопический измеритель: положение поворотных осей стола или перпендикулярность, масштаб и люфт линейных осей"),
     ("Ball deviations (CSV): run, one mounting of the ball; x_mm … z_mm, a_deg … c_deg commanded; dx_um dy_um dz_um, workpiece frame; tool_x_mm …, dir_a …, u_um or u_x_um …, repeat, temp_c where known", "Отклонения шара (CSV): run — одна установка шара; x_mm … z_mm, a_deg … c_deg заданные; dx_um dy_um dz_um в системе детали; tool_x_mm …, dir_a …, u_um или u_x_um …, repeat, temp_c, если известны"),
     ("Ball deviations at angles of A, B, C, by R-test or by probe and sphere: location errors and error functions of rotary axes", "Отклонения шара при углах A, B, C, R-тест или щуп и сфера: погрешности положения и функции погрешностей поворотных осей"),
+    ("Begin a corrected program anew at one of its lines", "Начать исправленную программу заново с одной из её строк"),
+    ("Begin at this line", "Начать с этой строки"),
     ("Between targets: linear, monotone", "Между целями: linear, monotone"),
     ("Beyond the volume: refuse, or clamp to its edge", "Вне объёма: refuse (отказать) или clamp (взять край)"),
     ("Check that every program of a manifest was corrected; say what is missing", "Проверить, все ли программы задания исправлены; сказать, чего не хватает"),
@@ -271,6 +273,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("The manual pages (roff)", "Страницы руководства (roff)"),
     ("The profile; a file that is there is left alone", "Профиль; существующий файл не тронут"),
     ("The program as posted", "Программа, какой её выдал постпроцессор"),
+    ("The program, as the machine has it; - for standard input", "Программа, какая она на станке; - стандартный ввод"),
     ("The result as JSON on standard output", "Результат как JSON в стандартный вывод"),
     ("The rows are places at which a touch probe was centred on a sphere fixed to the workpiece: no dx_um dy_um dz_um", "Строки — места, где щуп центрировали по сфере, закреплённой на детали: без dx_um dy_um dz_um"),
     ("The same for a layer of nodes, at a place of the third axis in mm, or for every layer (repeatable)", "То же для слоя узлов, в месте третьей оси в мм, или для каждого слоя (можно повторять)"),
@@ -334,6 +337,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("Write what became of each program (JSON Lines, in the order of the outputs' names); `-` for standard output", "Записать, что стало с каждой программой (JSON Lines, по порядку имён выходных файлов); `-` — стандартный вывод"),
     ("Write what was found as JSON", "Записать найденное как JSON"),
     ("Write what was found, with covariance, as JSON", "Записать найденное с ковариацией как JSON"),
+    ("Z of the way above the workpiece, mm", "Z пути над деталью, мм"),
     ("Zeros and lengths of a LinuxCNC machine", "Нули и длины станка с LinuxCNC"),
 ];
 

@@ -1,0 +1,253 @@
+//! What a program has brought about before a line: modes, tool, spindle, and where each axis stands in its play.
+
+use diagnostic::Diagnostic;
+use machine_model::{Command, Play, Vector};
+use nc_dialect::PathKey;
+use nc_program::process::{BlockSays, Process, Said, said};
+use nc_program::{Interpreter, Units, WorkOffset};
+use nc_syntax::Block;
+use smallvec::SmallVec;
+use toolpath::{Arc, Feed, Motion, Partial, Position, Shape};
+use units::decimal::Decimal;
+
+use crate::job::Job;
+
+/// M codes that leave nothing behind, or what the tool tells: stops, ends, a tool change, overrides.
+const PASSING_M: [u16; 8] = [0, 1, 2, 6, 30, 48, 49, 60];
+/// A curve by control points is gone along in so many steps.
+const CURVE_STEPS: u32 = 64;
+
+/// An F as it was written, and what it was then.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FeedWord {
+    pub(super) number: Decimal,
+    pub(super) mode: nc_program::modal::FeedMode,
+    pub(super) units: Units,
+}
+
+/// What a program has brought about so far.
+#[derive(Clone)]
+pub(super) struct State<'a> {
+    pub(super) job: &'a Job<'a>,
+    pub(super) interpreter: Interpreter<'a>,
+    /// What the program itself has said.
+    pub(super) process: Process,
+    /// What a code that is no mode, or a command, says of keeping to the path.
+    pub(super) path: Option<String>,
+    pub(super) feed: Option<FeedWord>,
+    /// M3, M4, M13, M14.
+    pub(super) spindle: Option<u16>,
+    pub(super) coolant: SmallVec<[u16; 2]>,
+    /// What else it has switched, and in which line.
+    pub(super) others: Vec<(String, u64)>,
+    /// G98 or G99 was said.
+    pub(super) return_said: bool,
+    pub(super) play: Play,
+    /// Where the axes were commanded to last.
+    pub(super) at: Command,
+    /// The highest Z, axis command, mm, with this tool and zero.
+    pub(super) highest_mm: Option<f64>,
+}
+
+impl<'a> State<'a> {
+    pub(super) fn new(job: &'a Job<'a>) -> Self {
+        Self {
+            job,
+            interpreter: Interpreter::new(job.dialect, job.setup),
+            process: Process::default(),
+            path: None,
+            feed: None,
+            spindle: None,
+            coolant: SmallVec::new(),
+            others: Vec::new(),
+            return_said: false,
+            play: Play::unknown(),
+            at: Command::default(),
+            highest_mm: None,
+        }
+    }
+
+    /// Takes in a block; true where it moves an axis to a place that it names.
+    pub(super) fn step(&mut self, block: &Block<'_>) -> Result<bool, Vec<Diagnostic>> {
+        let level = |state: &Self| {
+            let modal = state.interpreter.modal();
+            (modal.tool_loaded, modal.tool_length, modal.work_offset)
+        };
+        let before: (Option<u32>, _, WorkOffset) = level(self);
+        let step = self.interpreter.step(block)?;
+        let BlockSays { before: says, behind } = said(block, self.job.dialect, &step);
+        for one in says.into_iter().chain(behind) {
+            match one {
+                Said::Feed(_) => self.feed_word(block),
+                Said::Setting(setting) => self.process.set(setting),
+                Said::Deed(deed) => self.deed(&deed.to_string(), block.line),
+            }
+        }
+        self.return_said |= block.words().any(|word| {
+            use nc_dialect::Action::{ReturnInitial, ReturnR};
+            let row = word.g_code().and_then(|code| self.job.dialect.code(code));
+            row.is_some_and(|row| matches!(row.action, ReturnInitial | ReturnR))
+        });
+        if level(self) != before {
+            self.highest_mm = None;
+        }
+        self.at.tool_mm = Vector::from(step.context.tool_mm);
+        step.motions.iter().for_each(|motion| self.moved(motion));
+        Ok(step.motions.iter().any(|motion| !matches!(motion, Motion::Uncorrected { .. })))
+    }
+
+    fn feed_word(&mut self, block: &Block<'_>) {
+        let modal = self.interpreter.modal();
+        let number = block.word(b'F').and_then(|word| word.number());
+        self.feed = number.map(|number| FeedWord {
+            number: number.decimal,
+            mode: modal.feed_mode,
+            units: modal.units,
+        });
+    }
+
+    /// Something is done once, `M8`, `G5.1 Q1`.
+    fn deed(&mut self, deed: &str, line: u64) {
+        let says_path = |key: &PathKey| match key {
+            PathKey::Code(code) => deed.split(' ').next() == Some(&code.to_string()),
+            PathKey::Command(name) => deed.starts_with(&name.to_ascii_uppercase()),
+        };
+        if self.job.dialect.path_control.iter().any(|row| says_path(&row.key)) {
+            self.path = Some(deed.to_owned());
+            return;
+        }
+        let Some(code) = deed.strip_prefix('M').and_then(|code| code.parse::<u16>().ok()) else {
+            if !deed.starts_with('G') {
+                self.others.push((deed.to_owned(), line));
+            }
+            return;
+        };
+        match code {
+            3 | 4 | 13 | 14 => self.spindle = Some(code),
+            5 | 19 => self.spindle = None,
+            7 | 8 => self.coolant.extend(Some(code).filter(|code| !self.coolant.contains(code))),
+            9 => self.coolant.clear(),
+            _ if PASSING_M.contains(&code) => {}
+            _ => self.others.push((deed.to_owned(), line)),
+        }
+    }
+
+    fn moved(&mut self, motion: &Motion) {
+        match motion {
+            Motion::Rapid { end, .. } | Motion::Uncorrected { end, .. } => self.go_if_known(end),
+            Motion::Feed(feed) => {
+                self.rise(feed.start.linear_mm[2]);
+                along(feed, |place| self.go(place));
+            }
+            Motion::Hole(hole) => {
+                self.rise(hole.start.linear_mm[2]);
+                let normal = hole.plane.axes()[2];
+                let mut above = hole.at_r;
+                above.linear_mm[normal] = hole.start.linear_mm[normal];
+                let mut bottom = hole.at_r;
+                bottom.linear_mm[normal] = hole.bottom_mm;
+                [above, bottom, hole.end()].iter().for_each(|place| self.go(place));
+            }
+        }
+    }
+
+    fn rise(&mut self, z_mm: f64) {
+        self.highest_mm = Some(self.highest_mm.map_or(z_mm, |known| known.max(z_mm)));
+    }
+
+    fn go(&mut self, place: &Position) {
+        self.rise(place.linear_mm[2]);
+        self.at.linear_mm = Vector::from(place.linear_mm);
+        self.at.rotary_rad = Vector::from(place.rotary_deg.map(f64::to_radians));
+        self.play.go(self.job.models.axes, &self.at);
+        self.play.turn(self.job.models.axes, &self.at, [true; 3]);
+    }
+
+    fn go_if_known(&mut self, end: &Partial) {
+        for axis in 0..3 {
+            self.at.linear_mm[axis] = end.linear_mm[axis].unwrap_or(self.at.linear_mm[axis]);
+        }
+        self.at.rotary_rad = Vector::from(end.rotary_deg.map(f64::to_radians));
+        self.play.go(self.job.models.axes, &self.at);
+        self.play.turn(self.job.models.axes, &self.at, end.rotary_known);
+        for axis in (0..3).filter(|axis| end.linear_mm[*axis].is_none()) {
+            self.play.forget(axis, None);
+        }
+        end.linear_mm[2].into_iter().for_each(|z_mm| self.rise(z_mm));
+    }
+}
+
+/// The places of a motion to which each axis goes one way only, from the first behind its start to its end.
+fn along(feed: &Feed, mut go: impl FnMut(&Position)) {
+    match feed.shape {
+        Shape::Line => {}
+        Shape::Arc(arc) => turning_points(feed, &arc).iter().for_each(&mut go),
+        Shape::Bezier(curve) => {
+            for k in 1..CURVE_STEPS {
+                let (s, mut place) = (f64::from(k) / f64::from(CURVE_STEPS), feed.start);
+                place.linear_mm = curve.at(&feed.start.linear_mm, &feed.end.linear_mm, s);
+                go(&place);
+            }
+        }
+    }
+    go(&feed.end);
+}
+
+/// Where an axis of an arc's plane turns back.
+fn turning_points(feed: &Feed, arc: &Arc) -> Vec<Position> {
+    let [first, second, normal] = arc.plane.axes();
+    let (start, end) = (&feed.start.linear_mm, &feed.end.linear_mm);
+    let from = [start[first] - arc.centre_mm[0], start[second] - arc.centre_mm[1]];
+    let to = [end[first] - arc.centre_mm[0], end[second] - arc.centre_mm[1]];
+    let radius = |at: &[f64; 2]| units::math::hypot(at[0], at[1]);
+    let begin_rad = units::math::atan2(from[1], from[0]);
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let sense = arc.sweep_rad.signum();
+    // The first quarter in the sense of the motion, then each.
+    let mut next = (sense * begin_rad / quarter).floor() + 1.0;
+    let mut found = Vec::new();
+    while sense * (next * quarter * sense - begin_rad) < arc.sweep_rad.abs() {
+        let angle_rad = sense * next * quarter;
+        let share = sense * (angle_rad - begin_rad) / arc.sweep_rad.abs();
+        let radius_mm = radius(&from) + (radius(&to) - radius(&from)) * share;
+        let (sin, cos) = units::math::sin_cos(angle_rad);
+        let mut place = feed.start;
+        place.linear_mm[first] = arc.centre_mm[0] + cos * radius_mm;
+        place.linear_mm[second] = arc.centre_mm[1] + sin * radius_mm;
+        place.linear_mm[normal] = start[normal] + (end[normal] - start[normal]) * share;
+        found.push(place);
+        next += 1.0;
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use toolpath::{Division, FeedRate, Plane};
+
+    use super::*;
+
+    #[test]
+    fn an_arc_turns_back_at_its_quarters() {
+        let at = |x: f64, y: f64| Position { linear_mm: [x, y, 0.0], ..Position::default() };
+        let half = 0.5f64.sqrt() * 10.0;
+        for sense in [1.0, -1.0] {
+            let arc =
+                Arc { plane: Plane::Xy, centre_mm: [0.0, 0.0], sweep_rad: sense * std::f64::consts::PI };
+            let feed = Feed {
+                start: at(half, half),
+                end: at(-half, -half),
+                shape: Shape::Arc(arc),
+                rate: FeedRate::PerMinute,
+                division: Division::Any,
+            };
+            let found: Vec<[f64; 2]> = turning_points(&feed, &arc)
+                .iter()
+                .map(|at| [at.linear_mm[0].round(), at.linear_mm[1].round()])
+                .collect();
+            let [one, other] =
+                if sense > 0.0 { [[0.0, 10.0], [-10.0, 0.0]] } else { [[10.0, 0.0], [0.0, -10.0]] };
+            assert_eq!(found, [one, other]);
+        }
+    }
+}
