@@ -106,7 +106,10 @@ fn passed_is_of_the_machine() {
         [("part.nc", &program), ("out.nc", &corrected)].map(|(name, text)| shop.0.write(name, text));
     let checked = run(&["check", &posted, &corrected, "-m", &profile]);
     let said = String::from_utf8_lossy(&checked.stdout).into_owned();
-    assert!(said.ends_with("the control adds up to 100.0 um at corners (line 4)\npassed\n"), "{said}");
+    assert!(
+        said.ends_with("the control adds up to 100.0 um at corners (line 4)\npassed: the machine's part\n"),
+        "{said}"
+    );
     let strict = shop.0.refused(&program, &["-m", &profile, "--strict"]);
     assert!(
         strict.starts_with("error[VP0529]") && strict.contains("`--path-control exact` writes G61 before it"),

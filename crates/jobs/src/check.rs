@@ -138,12 +138,20 @@ impl Outcome {
         for finding in &self.findings {
             text.push(&both!("- {finding}\n", "- {finding:#}\n"));
         }
-        text.push(&if self.passed { PASSED } else { FAILED });
+        // The control comes on top.
+        let together_um = self.control_um.map(|control_um| self.deviation_after_um + control_um);
+        text.push(&match (self.passed, together_um) {
+            (false, _) => FAILED,
+            (true, Some(together_um)) if together_um <= self.limit_um => PASSED,
+            (true, _) => PASSED_BY_THE_MACHINE,
+        });
         text
     }
 }
 
 const PASSED: Text = Text::pair("passed\n", "проверка пройдена\n");
+const PASSED_BY_THE_MACHINE: Text =
+    Text::pair("passed: the machine's part\n", "проверка пройдена: доля станка\n");
 const FAILED: Text = Text::pair("FAILED\n", "ПРОВЕРКА НЕ ПРОЙДЕНА\n");
 
 /// JSON is English in every language.
