@@ -128,11 +128,14 @@ impl Program<'_, '_> {
         while reader.next(&mut block) {
             reached.step(&block).map_err(unread)?;
         }
+        let changes = blocks::changes_tool(self.job.dialect, next);
+        if !changes && self.stands_elsewhere(wanted, &reached) {
+            return Err(other_side());
+        }
         // What the block itself says needs not be in force before it, nor behind a tool change what comes before a motion.
         let mut wanted = wanted.clone();
         let (mut tail, mut one) =
             (Reader::new(&self.plain[next.offset as usize..], self.job.dialect), Block::default());
-        let changes = blocks::changes_tool(self.job.dialect, next);
         while tail.next(&mut one) {
             let [moves, _] = [wanted.step(&one).map_err(unread)?, reached.step(&one).map_err(unread)?];
             if !changes || moves {
@@ -154,10 +157,7 @@ impl Program<'_, '_> {
         let [a, b] = [&wanted, &reached].map(|state| state.interpreter.modal());
         match differs(a, b) {
             Some(what) => Err(both!("{what} cannot be brought about", "{what:#} не восстановить")),
-            None if self.stands_elsewhere(&wanted, &reached) => Err(both!(
-                "an axis stands on another side of its play than it can be brought to from above",
-                "ось стоит в своём люфте на другой стороне, чем та, к которой её можно подвести сверху"
-            )),
+            None if self.stands_elsewhere(&wanted, &reached) => Err(other_side()),
             None => Ok(()),
         }
     }
@@ -207,6 +207,14 @@ impl Program<'_, '_> {
             ),
         })
     }
+}
+
+/// Play is where it cannot be brought to.
+fn other_side() -> Text {
+    both!(
+        "an axis stands on another side of its play than it can be brought to",
+        "ось стоит в своём люфте на другой стороне, чем та, к которой её можно подвести"
+    )
 }
 
 /// In what two states differ, named; `None` where whatever follows means the same.

@@ -209,44 +209,109 @@ impl Writer<'_, '_> {
             machine_mm[axis] = axis_mm;
             written(AXIS_NAMES[axis], frame.to_program(machine_mm)[axis] / unit_mm)
         };
+        let length = match self.modal.tool_length {
+            ToolLength::On { number, negative, .. } => {
+                let action = if negative { Action::LengthOnNegative } else { Action::LengthOn };
+                format!("{} H{number}", self.code(&action)?)
+            }
+            _ => String::new(),
+        };
         let stands = self.modal.axes.linear.map(Axis::known);
-        // Where Z is not known the program itself names it before it feeds.
-        let (Some(z_mm), Some(highest_mm)) = (stands[2], self.state.highest_mm) else { return Ok(()) };
+        let (Some(z_mm), Some(highest_mm)) = (stands[2], self.state.highest_mm()) else {
+            if stands[..2].iter().any(Option::is_some) {
+                return Err(both!(
+                    "how high the tool stands there is not known",
+                    "на какой высоте там инструмент, неизвестно"
+                ));
+            }
+            // The program itself names Z before it feeds.
+            self.blocks.extend(Some(length).filter(|length| !length.is_empty()));
+            return Ok(());
+        };
         let up_mm = match safe_mm {
             None => highest_mm,
             Some(safe_mm) => frame.to_machine([0.0, 0.0, safe_mm])[2].max(z_mm),
         };
-        let length = match self.modal.tool_length {
-            ToolLength::On { number, negative, .. } => {
-                let action = if negative { Action::LengthOnNegative } else { Action::LengthOn };
-                format!("{} H{number} ", self.code(&action)?)
-            }
-            _ => String::new(),
-        };
-        self.blocks.push(format!("{rapid} {length}{}", word(2, up_mm)));
+        let up = [rapid.as_str(), &length, &word(2, up_mm)].join(" ").replace("  ", " ");
+        self.blocks.push(up);
         self.rotary_and_plane(stands, &rapid, &word);
-        let (above_mm, line) = (up_mm - z_mm, self.code(&Action::Line)?);
-        if above_mm > LAST_MM {
-            self.blocks.push(format!("{rapid} {}", word(2, z_mm + LAST_MM)));
-        }
-        let goes_on = self.modal.motion.code().filter(|_| !says_motion(self.state, next));
-        let feeds = matches!(self.modal.motion, MotionMode::Line(_)) && goes_on.is_some();
-        if above_mm > SAME_MM || feeds {
-            let speed = self
-                .code(&Action::FeedPerMinute)
-                .ok()
-                .filter(|_| self.modal.feed_mode != FeedMode::PerMinute);
-            let feed = written('F', (LAST_FEED_MM_MIN / unit_mm * 100.0).round() / 100.0);
-            let words = speed.into_iter().chain([line, word(2, z_mm), feed]);
-            self.blocks.push(words.collect::<Vec<_>>().join(" "));
-        }
-        match (goes_on, self.modal.motion) {
-            (Some(_), MotionMode::Rapid(_)) if above_mm > SAME_MM => {
-                self.blocks.push(format!("{rapid} {}", word(2, z_mm)));
+        let in_force = self.down([up_mm, z_mm], &rapid, &|z_mm| word(2, z_mm))?;
+        self.motion_code(next, in_force, &|action, feed| match feed {
+            Some(feed) => format!("{action} {} {feed}", word(2, z_mm)),
+            None => format!("{action} {}", word(2, z_mm)),
+        })
+    }
+
+    /// From above to the place, and which motion code is in force there.
+    fn down(
+        &mut self,
+        [up_mm, z_mm]: [f64; 2],
+        rapid: &str,
+        word: &dyn Fn(f64) -> String,
+    ) -> Result<Action, Text> {
+        let (model, state) = (self.state.job.models.axes, self.state);
+        let reversal_mm = model.reversal_mm(2, &state.at);
+        if reversal_mm > NO_PLAY_MM && state.play.side()[2] > 0 {
+            if !state.rose_by_rapid {
+                return Err(both!(
+                    "Z has come up there at feed, and has play, which cannot be had from above",
+                    "Z поднялась туда на рабочей подаче, и у неё люфт; сверху так не подойти"
+                ));
             }
-            (None, MotionMode::None) if !says_motion(self.state, next) => {
-                self.blocks.extend(self.code(&Action::CycleCancel));
+            // In the air: from a little below, as it came.
+            let into_mm = state.play.lag_mm(model, &state.at, state.play.side())[2];
+            let mut places = [z_mm - REVERSALS * reversal_mm, z_mm + into_mm, z_mm].map(word).to_vec();
+            places.dedup();
+            self.blocks.extend(places.iter().map(|place| format!("{rapid} {place}")));
+            return Ok(Action::Rapid);
+        }
+        if up_mm - z_mm <= SAME_MM {
+            return Ok(Action::Rapid);
+        }
+        if state.feed.is_none() {
+            // Nothing has been cut.
+            self.blocks.push(format!("{rapid} {}", word(z_mm)));
+            return Ok(Action::Rapid);
+        }
+        if up_mm - z_mm > LAST_MM {
+            self.blocks.push(format!("{rapid} {}", word(z_mm + LAST_MM)));
+        }
+        let feed = self.slowly()?;
+        self.blocks.push(format!("{} {} {feed}", self.code(&Action::Line)?, word(z_mm)));
+        Ok(Action::Line)
+    }
+
+    /// F of the way back, per minute.
+    fn slowly(&mut self) -> Result<String, Text> {
+        if self.modal.feed_mode != FeedMode::PerMinute {
+            let speed = self.code(&Action::FeedPerMinute)?;
+            self.blocks.push(speed);
+        }
+        Ok(written('F', (LAST_FEED_MM_MIN / self.modal.units.mm() * 100.0).round() / 100.0))
+    }
+
+    /// The motion code that the program goes on with.
+    ///
+    /// * `there` – a block with a code, and F, that moves to where the tool stands
+    fn motion_code(
+        &mut self,
+        next: &Block<'_>,
+        in_force: Action,
+        there: &dyn Fn(&str, Option<&str>) -> String,
+    ) -> Result<(), Text> {
+        if says_motion(self.state, next) {
+            return Ok(());
+        }
+        match (self.modal.motion, in_force) {
+            (MotionMode::Line(_), Action::Rapid) => {
+                let (line, feed) = (self.code(&Action::Line)?, self.slowly()?);
+                self.blocks.push(there(&line, Some(&feed)));
             }
+            (MotionMode::Rapid(_), Action::Line) => {
+                let rapid = self.code(&Action::Rapid)?;
+                self.blocks.push(there(&rapid, None));
+            }
+            (MotionMode::None, _) => self.blocks.extend(self.code(&Action::CycleCancel)),
             _ => {}
         }
         Ok(())
@@ -292,21 +357,12 @@ impl Writer<'_, '_> {
             FeedMode::PerRevolution => Action::FeedPerRevolution,
             FeedMode::InverseTime => Action::FeedInverseTime,
         };
-        let word = self
-            .state
-            .feed
-            .filter(|feed| feed.mode == mode && feed.units == unit && mode != FeedMode::InverseTime);
-        let feed = match word {
-            Some(FeedWord { number, .. }) => Some(decimal_word('F', number)),
-            None if self.state.feed.is_some()
-                && mode != FeedMode::InverseTime
-                && next.word(b'F').is_none() =>
-            {
-                return Err(both!("which F holds there is not known", "какое F там действует, неизвестно"));
-            }
-            None => None,
-        };
-        let feed = feed.filter(|_| next.word(b'F').is_none());
+        let word = self.state.feed.filter(|feed| feed.mode == mode && feed.units == unit);
+        let needs = self.state.feed.is_some() && mode != FeedMode::InverseTime && next.word(b'F').is_none();
+        if needs && word.is_none() {
+            return Err(both!("which F holds there is not known", "какое F там действует, неизвестно"));
+        }
+        let feed = word.map(|FeedWord { number, .. }| decimal_word('F', number));
         let code = self.code(&code).ok().filter(|_| mode != FeedMode::PerMinute);
         let block: Vec<String> = code.into_iter().chain(feed).collect();
         self.blocks.extend(Some(block.join(" ")).filter(|block| !block.is_empty()));

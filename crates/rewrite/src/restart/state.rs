@@ -4,7 +4,7 @@ use diagnostic::Diagnostic;
 use machine_model::{Command, Play, Vector};
 use nc_dialect::PathKey;
 use nc_program::process::{BlockSays, Process, Said, said};
-use nc_program::{Interpreter, Units, WorkOffset};
+use nc_program::{Interpreter, ToolLength, Units, WorkOffset};
 use nc_syntax::Block;
 use smallvec::SmallVec;
 use toolpath::{Arc, Feed, Motion, Partial, Position, Shape};
@@ -24,6 +24,9 @@ pub(super) struct FeedWord {
     pub(super) mode: nc_program::modal::FeedMode,
     pub(super) units: Units,
 }
+
+/// Tool, length and zero that a height belongs to.
+type Setting = (Option<u32>, ToolLength, WorkOffset);
 
 /// What a program has brought about so far.
 #[derive(Clone)]
@@ -45,8 +48,10 @@ pub(super) struct State<'a> {
     pub(super) play: Play,
     /// Where the axes were commanded to last.
     pub(super) at: Command,
-    /// The highest Z, axis command, mm, with this tool and zero.
-    pub(super) highest_mm: Option<f64>,
+    /// What brought Z up last was a rapid: it stands in the air.
+    pub(super) rose_by_rapid: bool,
+    /// The highest Z, axis command, mm, with each tool and zero.
+    highest: Vec<(Setting, f64)>,
 }
 
 impl<'a> State<'a> {
@@ -63,17 +68,13 @@ impl<'a> State<'a> {
             return_said: false,
             play: Play::unknown(),
             at: Command::default(),
-            highest_mm: None,
+            rose_by_rapid: false,
+            highest: Vec::new(),
         }
     }
 
     /// Takes in a block; true where it moves an axis to a place that it names.
     pub(super) fn step(&mut self, block: &Block<'_>) -> Result<bool, Vec<Diagnostic>> {
-        let level = |state: &Self| {
-            let modal = state.interpreter.modal();
-            (modal.tool_loaded, modal.tool_length, modal.work_offset)
-        };
-        let before: (Option<u32>, _, WorkOffset) = level(self);
         let step = self.interpreter.step(block)?;
         let BlockSays { before: says, behind } = said(block, self.job.dialect, &step);
         for one in says.into_iter().chain(behind) {
@@ -88,9 +89,6 @@ impl<'a> State<'a> {
             let row = word.g_code().and_then(|code| self.job.dialect.code(code));
             row.is_some_and(|row| matches!(row.action, ReturnInitial | ReturnR))
         });
-        if level(self) != before {
-            self.highest_mm = None;
-        }
         self.at.tool_mm = Vector::from(step.context.tool_mm);
         step.motions.iter().for_each(|motion| self.moved(motion));
         Ok(step.motions.iter().any(|motion| !matches!(motion, Motion::Uncorrected { .. })))
@@ -133,6 +131,7 @@ impl<'a> State<'a> {
     }
 
     fn moved(&mut self, motion: &Motion) {
+        let from_mm = self.at.linear_mm[2];
         match motion {
             Motion::Rapid { end, .. } | Motion::Uncorrected { end, .. } => self.go_if_known(end),
             Motion::Feed(feed) => {
@@ -149,10 +148,30 @@ impl<'a> State<'a> {
                 [above, bottom, hole.end()].iter().for_each(|place| self.go(place));
             }
         }
+        let rises = self.at.linear_mm[2] - from_mm;
+        if rises != 0.0 || matches!(motion, Motion::Hole(_)) {
+            self.rose_by_rapid =
+                matches!(motion, Motion::Hole(_)) || (rises > 0.0 && !matches!(motion, Motion::Feed(_)));
+        }
+    }
+
+    /// The highest Z, axis command, mm, that was commanded with the tool and the zero in force.
+    pub(super) fn highest_mm(&self) -> Option<f64> {
+        let here = self.setting();
+        self.highest.iter().find(|(setting, _)| *setting == here).map(|(_, z_mm)| *z_mm)
+    }
+
+    fn setting(&self) -> Setting {
+        let modal = self.interpreter.modal();
+        (modal.tool_loaded, modal.tool_length, modal.work_offset)
     }
 
     fn rise(&mut self, z_mm: f64) {
-        self.highest_mm = Some(self.highest_mm.map_or(z_mm, |known| known.max(z_mm)));
+        let here = self.setting();
+        match self.highest.iter_mut().find(|(setting, _)| *setting == here) {
+            Some((_, known_mm)) => *known_mm = known_mm.max(z_mm),
+            None => self.highest.push((here, z_mm)),
+        }
     }
 
     fn go(&mut self, place: &Position) {
