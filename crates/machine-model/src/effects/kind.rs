@@ -260,14 +260,7 @@ mod tests {
             let is_name = variant.starts_with("    ") && name.starts_with(|c: char| c.is_ascii_uppercase());
             assert!(!is_name || all.iter().any(|kind| format!("{kind:?}").starts_with(&name)), "{name}");
         }
-        for id in [
-            "lost-motion.EYX",
-            "straightness.EZY",
-            "angular.EAX",
-            "rotary.EX0C",
-            "rotary.EB0A",
-            "servo-mismatch.XY",
-        ] {
+        for id in ["lost-motion.EYX", "angular.EAX", "rotary.EX0C", "rotary.EB0A", "servo-mismatch.XY"] {
             assert!(id.parse::<EffectKind>().is_ok(), "{id}");
         }
         assert!("scale.W".parse::<EffectKind>().is_err());
