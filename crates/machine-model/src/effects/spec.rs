@@ -160,7 +160,6 @@ impl EffectKind {
     }
 
     /// Names of the [`super::Shape`] fields the effect uses.
-    #[must_use]
     pub fn shape_names(&self) -> impl Iterator<Item = &'static str> + Clone {
         Spec::of(*self).shape.iter().map(|(name, _)| *name)
     }
