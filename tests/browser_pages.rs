@@ -308,12 +308,11 @@ const LOOKS: [(&str, View); 5] = [
 ];
 
 /// What a reader sees: a desk and a telephone in light and in dark, and paper, which is white whatever the reader's theme:
-/// printed from a dark screen it has the same bytes. Whole pages are in `target/pictures`, for whoever looks at them;
-/// `VPOST_UPDATE_DOCS=1` writes the first screen of each into `docs/img`.
+/// printed from a dark screen it has the same bytes. `VPOST_UPDATE_DOCS=1` writes the first screen of each into `docs/img`,
+/// and whole pages into `target/pictures`, for whoever looks at them.
 #[test]
 fn pictures_of_every_page() {
     let Some(mut browser) = Browser::start() else { return };
-    let folder = root().join("target/pictures");
     let are_kept = std::env::var_os("VPOST_UPDATE_DOCS").is_some();
     for page in all_pages() {
         let name = page.file_stem().expect("a name").to_string_lossy().into_owned();
@@ -328,9 +327,10 @@ fn pictures_of_every_page() {
             if are_kept {
                 let small = browser.small_picture();
                 std::fs::write(root().join(docs_picture(&name, what)), small).expect("docs/img");
-            }
-            for (k, part) in browser.whole_picture().iter().enumerate() {
-                std::fs::write(folder.join(format!("{name}_{what}_{}.png", k + 1)), part).expect("writable");
+                for (k, part) in browser.whole_picture().iter().enumerate() {
+                    let file = format!("target/pictures/{name}_{what}_{}.png", k + 1);
+                    std::fs::write(root().join(file), part).expect("writable");
+                }
             }
             if view.is_paper {
                 open_as(&mut browser, &page, View { is_dark: true, ..view });
