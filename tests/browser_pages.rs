@@ -308,8 +308,8 @@ const LOOKS: [(&str, View); 5] = [
 ];
 
 /// What a reader sees: a desk and a telephone in light and in dark, and paper, which is white whatever the reader's theme:
-/// printed from a dark screen it has the same bytes. `VPOST_UPDATE_DOCS=1` writes the first screen of each into `docs/img`,
-/// and whole pages into `target/pictures`, for whoever looks at them.
+/// printed from a dark screen it has the same bytes. `VPOST_UPDATE_DOCS=1` writes the first screen of each into
+/// `docs/img`, and whole pages into `target/pictures`, for whoever looks at them.
 #[test]
 fn pictures_of_every_page() {
     let Some(mut browser) = Browser::start() else { return };

@@ -146,6 +146,7 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
     let length = |what, found, most: f64, unit: Text| {
         let expected =
             both!("expected above 0, up to {most}{unit}", "ожидалось больше 0 и не больше {most}{unit:#}");
+        // The smallest number above 0.
         (what, found, f64::from_bits(1)..=most, expected)
     };
     let mm = || Text::pair(" mm", " мм");
