@@ -3,6 +3,7 @@
 //! axe-core (the package of that name, MPL-2.0) is no part of the project: `npm` puts it into `target/axe`. Where it cannot be
 //! had the test says that it was skipped; with `CI` set it fails.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
@@ -40,14 +41,18 @@ fn axe() -> Option<String> {
     found
 }
 
-/// Every kind of page in both languages, made once for all tests.
+/// Every kind of page in both languages, made once for all tests: who comes first makes them, others wait.
 fn all_pages() -> impl Iterator<Item = PathBuf> {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     let folder = FOLDER.get_or_init(|| {
         let folder = made_in();
         std::fs::create_dir_all(&folder).expect("writable");
-        for language in LANGUAGES {
-            pages(&folder, language);
+        let made =
+            std::fs::File::options().append(true).create(true).open(folder.join("made")).expect("writable");
+        made.lock().expect("a lock");
+        if made.metadata().expect("a file").len() == 0 {
+            LANGUAGES.iter().for_each(|language| pages(&folder, language));
+            (&made).write_all(b"all").expect("writable");
         }
         folder
     });
@@ -55,7 +60,7 @@ fn all_pages() -> impl Iterator<Item = PathBuf> {
     LANGUAGES.into_iter().flat_map(made)
 }
 
-/// A folder of this process: runners may give each test its own. What others left long ago is removed.
+/// A folder of this run, of which nextest gives each test a process. What others left long ago is removed.
 fn made_in() -> PathBuf {
     const OLD: std::time::Duration = std::time::Duration::from_secs(3600);
     let all = root().join("target/pictures");
@@ -67,7 +72,8 @@ fn made_in() -> PathBuf {
             let _ = std::fs::remove_dir_all(folder.path());
         }
     }
-    all.join(format!("pages-{}", std::process::id()))
+    let run = std::env::var("NEXTEST_RUN_ID").unwrap_or_else(|_| std::process::id().to_string());
+    all.join(format!("pages-{run}"))
 }
 
 const KINDS: [&str; 11] = [
@@ -302,12 +308,11 @@ const LOOKS: [(&str, View); 5] = [
 ];
 
 /// What a reader sees: a desk and a telephone in light and in dark, and paper, which is white whatever the reader's theme:
-/// printed from a dark screen it has the same bytes. Whole pages are in `target/pictures`, for whoever looks at them;
-/// `VPOST_UPDATE_DOCS=1` writes the first screen of each into `docs/img`.
+/// printed from a dark screen it has the same bytes. `VPOST_UPDATE_DOCS=1` writes the first screen of each into
+/// `docs/img`, and whole pages into `target/pictures`, for whoever looks at them.
 #[test]
 fn pictures_of_every_page() {
     let Some(mut browser) = Browser::start() else { return };
-    let folder = root().join("target/pictures");
     let are_kept = std::env::var_os("VPOST_UPDATE_DOCS").is_some();
     for page in all_pages() {
         let name = page.file_stem().expect("a name").to_string_lossy().into_owned();
@@ -322,9 +327,10 @@ fn pictures_of_every_page() {
             if are_kept {
                 let small = browser.small_picture();
                 std::fs::write(root().join(docs_picture(&name, what)), small).expect("docs/img");
-            }
-            for (k, part) in browser.whole_picture().iter().enumerate() {
-                std::fs::write(folder.join(format!("{name}_{what}_{}.png", k + 1)), part).expect("writable");
+                for (k, part) in browser.whole_picture().iter().enumerate() {
+                    let file = format!("target/pictures/{name}_{what}_{}.png", k + 1);
+                    std::fs::write(root().join(file), part).expect("writable");
+                }
             }
             if view.is_paper {
                 open_as(&mut browser, &page, View { is_dark: true, ..view });

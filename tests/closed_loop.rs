@@ -311,6 +311,10 @@ fn cutter_compensation_is_the_programs() {
     }
 }
 
+const TILTING: &str = "format = 1\nname = \"TILTING\"\ncontrol = \"fanuc\"\nchain = \"[w A X Y b Z t]\"\n\
+    axis = { X.travel_mm = [-500, 500], Y.travel_mm = [-500, 500], Z.travel_mm = [-500, 500] }\n\
+    [rotary.A]\ntilt = \"body\"\nEB0A_urad = 100.0\n[work_offsets_mm]\nG54 = [0, 0, 0]\n";
+
 /// A feed of rotary axes alone has a path too: nobody passes it who does not know where it leads.
 #[test]
 fn a_feed_of_rotary_axes_alone_is_judged() {
@@ -320,12 +324,7 @@ fn a_feed_of_rotary_axes_alone_is_judged() {
         std::fs::write(&path, text).expect("writable");
         path.to_str().expect("a plain path").to_owned()
     };
-    let axes: String =
-        ["X", "Y", "Z"].map(|axis| format!("[axis.{axis}]\ntravel_mm = [-500, 500]\n")).concat();
-    let machine = format!(
-        "format = 1\nname = \"TILTING\"\ncontrol = \"fanuc\"\nchain = \"[w A X Y b Z t]\"\n{axes}[rotary.A]\ntilt = \"body\"\nEB0A_urad = 100.0\n[work_offsets_mm]\nG54 = [0, 0, 0]\n"
-    );
-    let machine = written("tilting.toml", &machine);
+    let machine = written("tilting.toml", TILTING);
     let program = written("posted.nc", "G21 G17 G90 G54\nG0 X200. Y0. Z100. A0.\nG1 A60. F500.\nM30\n");
     let ran = run(&["check", &program, &program, "-m", &machine, "-d", "fanuc"]);
     assert_eq!(ran.status.code(), Some(1), "{}", String::from_utf8_lossy(&ran.stdout));
@@ -364,12 +363,7 @@ fn rapids_of_pecks_and_turns_are_judged() {
         println!("{wrong:?}: {found}");
         assert!(found.contains("positions the tool where the program does not"), "{wrong:?}: {found}");
     }
-    let axes: String =
-        ["X", "Y", "Z"].map(|axis| format!("[axis.{axis}]\ntravel_mm = [-500, 500]\n")).concat();
-    let machine = format!(
-        "format = 1\nname = \"TILTING\"\ncontrol = \"fanuc\"\nchain = \"[w A X Y b Z t]\"\n{axes}[rotary.A]\ntilt = \"body\"\nEB0A_urad = 100.0\n[work_offsets_mm]\nG54 = [0, 0, 0]\n"
-    );
-    let machine = written("tilting.toml", &machine);
+    let machine = written("tilting.toml", TILTING);
     let posted = "G21 G17 G90 G54\nG0 X0. Y0. Z100. A0.\nG0 A90.\nG1 X50. F200.\nG0 Z200.\nA0.\nM30\n";
     let ran = run(&[&written("program.nc", posted), "-m", &machine, "-d", "fanuc", "-q", "--zero", "true"]);
     let right = String::from_utf8(ran.stdout).expect("text");

@@ -566,7 +566,7 @@ fn the_reference_has_every_effect_with_its_parameters() {
         let row = row_of(format!("| `{family}."))
             .or_else(|| row_of(format!("| `{family}`")))
             .unwrap_or_else(|| panic!("docs/reference.md has no effect {family}"));
-        let names = kind.coefficient_names().iter().chain(kind.shape_names());
+        let names = kind.coefficient_names().iter().copied().chain(kind.shape_names());
         missing.extend(
             names.filter(|name| !row.contains(&format!("`{name}`"))).map(|name| format!("{kind}: {name}")),
         );

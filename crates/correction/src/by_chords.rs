@@ -2,7 +2,7 @@
 
 use machine_model::{Command, Move, Vector};
 use smallvec::SmallVec;
-use toolpath::{Bezier, Chord, Feed, Position, Shape};
+use toolpath::{Bezier, Feed, Position, Shape};
 
 use crate::corrected::{Corrected, Correction};
 use crate::corrector::Corrector;
@@ -59,22 +59,24 @@ impl Corrector<'_> {
         block: &Block,
     ) -> Result<Corrected, CorrectionError> {
         let within_mm = OF_TOLERANCE * (self.options.tolerance_mm - block.reserved_mm);
-        let beyond = |chord: &Chord| CorrectionError::NotWithinTolerance {
-            distance_um: chord.beside_mm * 1e3,
-            tolerance_um: self.options.tolerance_mm * 1e3,
+        let tolerance_um = self.options.tolerance_mm * 1e3;
+        let beyond = move |beside_mm: f64| {
+            let distance_um = beside_mm * 1e3;
+            let is_beyond = beside_mm > within_mm;
+            if is_beyond {
+                Err(CorrectionError::NotWithinTolerance { distance_um, tolerance_um })
+            } else {
+                Ok(())
+            }
         };
         if within_mm <= 0.0 {
-            return Err(beyond(&Chord { end_mm: feed.end.linear_mm, beside_mm: f64::INFINITY }));
+            beyond(f64::INFINITY)?;
         }
         let (start_mm, end_mm) = (&feed.start.linear_mm, &feed.end.linear_mm);
         if self.is_without_errors(block, feed.end.rotary_deg) {
             let state = self.state(block, feed.end.rotary_deg);
-            let tolerance_um = self.options.tolerance_mm * 1e3;
             curve.chords(start_mm, end_mm, within_mm, &mut |chord| {
-                if chord.beside_mm > within_mm {
-                    let distance_um = chord.beside_mm * 1e3;
-                    return Err(CorrectionError::NotWithinTolerance { distance_um, tolerance_um });
-                }
+                beyond(chord.beside_mm)?;
                 // Refused where the volume ends, as a line is.
                 self.solve(&state, chord.end_mm.into()).map(|_| ())
             })?;
@@ -95,12 +97,8 @@ impl Corrector<'_> {
         }
         let mut all = Corrected { pieces: SmallVec::new(), correction: Correction::default() };
         let mut from = feed.start;
-        let tolerance_um = self.options.tolerance_mm * 1e3;
         curve.chords(start_mm, end_mm, within_mm, &mut |chord| {
-            if chord.beside_mm > within_mm {
-                let distance_um = chord.beside_mm * 1e3;
-                return Err(CorrectionError::NotWithinTolerance { distance_um, tolerance_um });
-            }
+            beyond(chord.beside_mm)?;
             own.reserved_mm = block.reserved_mm + chord.beside_mm;
             let end = Position { linear_mm: chord.end_mm, ..feed.end };
             let line = Feed { start: from, end, shape: Shape::Line, ..*feed };
@@ -108,7 +106,7 @@ impl Corrector<'_> {
             all.pieces.extend(written.pieces);
             all.correction.take_in(&written.correction, chord.beside_mm);
             from = end;
-            Ok(())
+            Ok::<(), CorrectionError>(())
         })?;
         if all.pieces.is_empty() {
             // Too little to move an axis a step: its own words would be another curve.

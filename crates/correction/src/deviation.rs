@@ -344,9 +344,7 @@ impl Pair<'_> {
         // Depth first, left to right, on a stack of right halves: no recursion, no allocation.
         let mut stack = [first; DEEPEST + 3];
         stack[0] = last;
-        let mut height = 1;
-        let mut left = first;
-        let mut places = 0;
+        let (mut left, mut height, mut places) = (first, 1, 0);
         while height > 0 {
             let right = stack[height - 1];
             let bound = known_bounds.pop().unwrap_or_else(|| bound(&left, &right));

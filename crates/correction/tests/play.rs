@@ -91,6 +91,27 @@ impl Judged {
         let value = |table: &Option<Table>| table.as_ref().map_or(0.0, |table| table.value(at));
         0.5 * (value(down) - value(up))
     }
+
+    fn seen(&self, at: Vector) -> Seen {
+        let error =
+            |direction| self.model.error_mm(&Command { linear_mm: at, direction, ..Default::default() });
+        let (half_mm, mean) = ([0, 1, 2].map(|axis| self.half_mm(axis, at[axis])), error([0; 3]));
+        let of_up = [0, 1, 2].map(|axis| {
+            let mut of_up = error([0, 1, 2].map(|k| i8::from(k == axis))) - mean;
+            // Along the axis by its play, all else by its own state.
+            of_up[axis] += half_mm[axis];
+            of_up
+        });
+        Seen { half_mm, mean, of_up }
+    }
+}
+
+/// The model at a place, the same for every reading.
+struct Seen {
+    half_mm: [f64; 3],
+    mean: Vector,
+    /// What each axis changes that comes from below, its play apart.
+    of_up: [Vector; 3],
 }
 
 /// When what lies across an axis changes.
@@ -114,9 +135,9 @@ struct Hysteresis {
 }
 
 impl Hysteresis {
-    fn go(&mut self, judged: &Judged, to: Vector, reading: Reading) {
+    fn go(&mut self, to: Vector, seen: &Seen, reading: Reading) {
         for axis in 0..3 {
-            let half = judged.half_mm(axis, to[axis]);
+            let half = seen.half_mm[axis];
             let by = to[axis] - self.at[axis];
             if by.abs() <= 1e-9 {
                 continue;
@@ -135,35 +156,19 @@ impl Hysteresis {
         self.at = to;
     }
 
-    fn tip(&self, judged: &Judged) -> Vector {
-        let error = |direction: [i8; 3]| {
-            judged.model.error_mm(&Command { linear_mm: self.at, direction, ..Default::default() })
-        };
-        let mean = error([0; 3]);
-        let mut tip = self.at + mean;
+    fn tip(&self, seen: &Seen) -> Vector {
+        let mut tip = self.at + seen.mean;
         for axis in 0..3 {
-            let mut up = [0; 3];
-            up[axis] = 1;
-            let mut of_up = error(up) - mean;
-            // Along the axis by its play, all else by its own state.
-            let half = judged.half_mm(axis, self.at[axis]);
-            of_up[axis] += half;
-            tip += of_up * self.across[axis];
-            tip[axis] -= half * self.along[axis];
+            tip += seen.of_up[axis] * self.across[axis];
+            tip[axis] -= seen.half_mm[axis] * self.along[axis];
         }
         tip
     }
 }
 
-/// The largest distance from a motion, mm, of the pieces that were written for it.
-fn furthest(
-    judged: &Judged,
-    hysteresis: &mut Hysteresis,
-    reading: Reading,
-    wanted: &Curve,
-    curves: &[Curve],
-) -> f64 {
-    let mut worst = 0.0_f64;
+/// The largest distance by each reading from a motion, mm, of the pieces that were written for it.
+fn furthest(judged: &Judged, states: &mut [Hysteresis; 3], wanted: &Curve, curves: &[Curve]) -> [f64; 3] {
+    let mut worst = [0.0_f64; 3];
     for curve in curves {
         // Dense where play is taken up: at the start, and behind an arc's turns.
         let mut places: Vec<f64> = (0..=60).map(|k| f64::from(k) / 60.0).collect();
@@ -177,11 +182,16 @@ fn furthest(
         places.retain(|s| (0.0..=1.0).contains(s));
         places.sort_by(f64::total_cmp);
         for s in places {
-            hysteresis.go(judged, curve.at(s), reading);
-            worst = worst.max(distance(wanted, &hysteresis.tip(judged)));
+            let at = curve.at(s);
+            let seen = judged.seen(at);
+            for ((state, reading), worst) in states.iter_mut().zip(READINGS).zip(&mut worst) {
+                state.go(at, &seen, reading);
+                *worst = worst.max(distance(wanted, &state.tip(&seen)));
+            }
         }
     }
-    worst.max((hysteresis.tip(judged) - wanted.at(1.0)).norm())
+    let (seen, end) = (judged.seen(states[0].at), wanted.at(1.0));
+    [0, 1, 2].map(|k| worst[k].max((states[k].tip(&seen) - end).norm()))
 }
 
 /// What came of a program.
@@ -222,7 +232,7 @@ fn run(judged: &Judged, random: &mut Random, turned: Option<f64>) -> Found {
     }
     let mut states = READINGS.map(|reading| {
         let mut state = Hysteresis { at: Vector::repeat(1.0), along: [1.0; 3], across: [1.0; 3] };
-        state.go(judged, control.at, reading);
+        state.go(control.at, &judged.seen(control.at), reading);
         state
     });
     let mut found = Found::default();
@@ -280,10 +290,8 @@ fn run(judged: &Judged, random: &mut Random, turned: Option<f64>) -> Found {
             Ok(Ran { corrected, curves }) => {
                 found.motions += 1;
                 found.told_mm = found.told_mm.max(corrected.correction.after_mm);
-                for ((state, reading), worst) in states.iter_mut().zip(READINGS).zip(&mut found.worst_mm) {
-                    let own = furthest(judged, state, reading, &wanted, &curves);
-                    *worst = worst.max(own);
-                }
+                let own = furthest(judged, &mut states, &wanted, &curves);
+                found.worst_mm = [0, 1, 2].map(|k| found.worst_mm[k].max(own[k]));
             }
         }
     }

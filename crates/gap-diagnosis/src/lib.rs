@@ -4,11 +4,12 @@
 //! lie, which unmodelled effect causes it and which others could, how far it shrinks with that effect in the
 //! model, and what to measure next. The method and its thresholds are in `docs/diagnosis.md`.
 //!
-//! One folder a step, each using only those before it: `equations` (what was read, and the columns that could explain
+//! One folder a step, each using only those before it: `effects` (what is known of each), `equations` (what was read, and the columns that could explain
 //! it), `library` (the effects a file could show), `search` (which of them explain the gap), `judgement` (what that is
 //! worth), `words`; [`diagnose()`] takes them in turn.
 
 mod diagnose;
+mod effects;
 mod equations;
 mod judgement;
 mod library;

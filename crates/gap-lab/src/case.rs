@@ -367,7 +367,19 @@ fn coefficient(
         Effect::ServoLag(_) => ("ms", 6e4),
         // The column of a unit lag on one axis and its opposite on the other: the difference is twice that.
         Effect::ServoMismatch(..) => ("ms", 1.2e5),
-        _ => return None,
+        // More columns than one, or another unit in every row.
+        Effect::Thermal(_)
+        | Effect::Warmup(_)
+        | Effect::Positioning(_)
+        | Effect::Straightness(..)
+        | Effect::Pitch(_)
+        | Effect::Angular(..)
+        | Effect::Sag(_)
+        | Effect::Step(_)
+        | Effect::Local(_)
+        | Effect::Eccentricity
+        | Effect::ProbeLobing
+        | Effect::InstrumentDrift => return None,
     };
     let all = variants(effect, machine, layout);
     let column = view.clean(|r| all[0][0](r));

@@ -28,7 +28,16 @@ pub(crate) fn visible(effect: Effect, layout: &Layout) -> bool {
         Effect::Thermal(_) => columns.temperature,
         Effect::Warmup(_) | Effect::Step(_) | Effect::InstrumentDrift => columns.time,
         Effect::Load(_) => columns.load,
-        _ => true,
+        Effect::Scale(_)
+        | Effect::Squareness(..)
+        | Effect::Positioning(_)
+        | Effect::Straightness(..)
+        | Effect::Pitch(_)
+        | Effect::Angular(..)
+        | Effect::Sag(_)
+        | Effect::Local(_)
+        | Effect::RotaryC(_)
+        | Effect::Eccentricity => true,
     }
 }
 

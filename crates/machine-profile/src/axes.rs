@@ -59,6 +59,24 @@ impl Loader<'_> {
         }
     }
 
+    /// Refuses an axis that stood somewhere while it was measured.
+    fn measured_beside(&mut self, axis: Axis, place: Option<&Spanned<format::MeasuredAt>>) {
+        if let Some(place) = place
+            && [place.get_ref().X, place.get_ref().Y, place.get_ref().Z][axis.direction()].is_some()
+        {
+            let message = both!(
+                "measured_at_mm of {axis} names {axis} itself",
+                "в measured_at_mm оси {axis} названа сама {axis}"
+            );
+            let label = both!("{axis} moved along the whole line", "{axis} прошла всю линию");
+            let help = both!(
+                "it says where the other axes stood while this one was measured",
+                "там сказано, где стояли остальные оси, пока измеряли эту"
+            );
+            self.refuse(place, CONFLICT, message, label, help);
+        }
+    }
+
     pub(crate) fn linear(
         &mut self,
         axis: Axis,
@@ -105,20 +123,7 @@ impl Loader<'_> {
             .and_then(|travel| self.range(travel, &both!("travel_mm of {axis}", "travel_mm оси {axis}")));
         let backlash = data.backlash_um.as_ref().map(|value| (value, "backlash_um"));
         self.both_directions(axis, data.errors.as_ref(), data.errors_negative.as_ref(), backlash);
-        if let Some(place) = &data.measured_at_mm
-            && [place.get_ref().X, place.get_ref().Y, place.get_ref().Z][index].is_some()
-        {
-            let message = both!(
-                "measured_at_mm of {axis} names {axis} itself",
-                "в measured_at_mm оси {axis} названа сама {axis}"
-            );
-            let label = both!("{axis} moved along the whole line", "{axis} прошла всю линию");
-            let help = both!(
-                "it says where the other axes stood while this one was measured",
-                "там сказано, где стояли остальные оси, пока измеряли эту"
-            );
-            self.refuse(place, CONFLICT, message, label, help);
-        }
+        self.measured_beside(axis, data.measured_at_mm.as_ref());
         if self.errors.len() > before {
             return None;
         }

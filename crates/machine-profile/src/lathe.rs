@@ -187,17 +187,10 @@ impl Loader<'_> {
         }
     }
 
-    /// How far the workpiece bends, whether the tailstock bears it, and the bar itself.
-    fn workpiece(
-        &mut self,
-        document: &Document,
-        tailstock: Option<Tailstock>,
-    ) -> (Bending, bool, Option<Workpiece>) {
-        let Some(spanned) = &document.workpiece else {
-            return (Bending::default(), tailstock.is_some(), None);
-        };
+    /// The force on the tip along X.
+    fn force(&mut self, spanned: &Spanned<format::Workpiece>) -> Force {
         let written = spanned.get_ref();
-        let force = match (&written.radial_force_n, written.specific_force_n_mm2) {
+        match (&written.radial_force_n, written.specific_force_n_mm2) {
             (Some(force), None) => Force::Radial { newton: force.get_ref().0 },
             (None, Some(Finite(specific_n_mm2))) => match (written.depth_mm, written.feed_mm) {
                 (Some(Finite(depth_mm)), Some(Finite(feed_mm))) => {
@@ -226,7 +219,20 @@ impl Loader<'_> {
                 self.refuse(force, CONFLICT, message, both!("counted twice", "учтено дважды"), help);
                 NO_FORCE
             }
+        }
+    }
+
+    /// How far the workpiece bends, whether the tailstock bears it, and the bar itself.
+    fn workpiece(
+        &mut self,
+        document: &Document,
+        tailstock: Option<Tailstock>,
+    ) -> (Bending, bool, Option<Workpiece>) {
+        let Some(spanned) = &document.workpiece else {
+            return (Bending::default(), tailstock.is_some(), None);
         };
+        let written = spanned.get_ref();
+        let force = self.force(spanned);
         let tail = |this: &mut Self| match tailstock {
             Some(Tailstock { at_mm, .. }) => Some(at_mm),
             None => {

@@ -257,22 +257,7 @@ impl Loader<'_> {
             let help = both!("name each M code once", "назовите каждую функцию M один раз");
             self.refuse(both, VALUE, message, both!("also under `off`", "она же в `off`"), help);
         }
-        let branch = section.branch.as_ref().and_then(|written| {
-            let axis = |letter: char| axes.iter().find(|axis| axis.letter() == letter);
-            let mut letters = written.get_ref().chars();
-            match (letters.next().and_then(axis), letters.next(), letters.next()) {
-                (Some(axis), Some(sign @ ('+' | '-')), None) => Some((axis.direction(), sign == '+')),
-                _ => {
-                    let message = both!("`{}` is no branch", "`{}` — не ветвь", written.get_ref());
-                    let help = both!(
-                        "name a rotary axis of the chain and its sign where the tool has been turned to a tilted plane, like \"A+\"",
-                        "назовите поворотную ось цепи и её знак, когда инструмент повёрнут к наклонной плоскости, например \"A+\""
-                    );
-                    self.refuse(written, VALUE, message, both!("this branch", "эта ветвь"), help);
-                    None
-                }
-            }
-        });
+        let branch = section.branch.as_ref().and_then(|written| self.branch(written, &axes));
         let turns = section.turn.map(|turn| match turn {
             format::TurnName::Shortest => WholeTurns::Shortest,
             format::TurnName::Principal => WholeTurns::Principal,
@@ -292,6 +277,24 @@ impl Loader<'_> {
             on,
             off,
         })
+    }
+
+    /// The rotary axis of a branch, and whether its angle is above zero there.
+    fn branch(&mut self, written: &Spanned<String>, axes: &[Axis]) -> Option<(usize, bool)> {
+        let axis = |letter: char| axes.iter().find(|axis| axis.letter() == letter);
+        let mut letters = written.get_ref().chars();
+        match (letters.next().and_then(axis), letters.next(), letters.next()) {
+            (Some(axis), Some(sign @ ('+' | '-')), None) => Some((axis.direction(), sign == '+')),
+            _ => {
+                let message = both!("`{}` is no branch", "`{}` — не ветвь", written.get_ref());
+                let help = both!(
+                    "name a rotary axis of the chain and its sign where the tool has been turned to a tilted plane, like \"A+\"",
+                    "назовите поворотную ось цепи и её знак, когда инструмент повёрнут к наклонной плоскости, например \"A+\""
+                );
+                self.refuse(written, VALUE, message, both!("this branch", "эта ветвь"), help);
+                None
+            }
+        }
     }
 
     /// Of A, B, C the rotary axis of the chain with this letter; one that the chain lacks is refused.

@@ -89,38 +89,44 @@ impl Header<'_> {
                 refuse(message, both!("write `{a}` or `{b}`", "напишите `{a}` или `{b}`"))
             }
             Said::Unknown => {
-                if let Some(axis) = Column::axis_of_error_function(&header) {
-                    let message = both!(
-                        " is an error function of {axis}, and the file is of another axis",
-                        " — функция погрешности оси {axis}, а файл другой оси"
-                    );
-                    let help = both!("give each axis a file of its own", "дайте каждой оси отдельный файл");
-                    return refuse(message, help);
-                }
-                let names: Vec<String> = known.iter().map(Column::header).collect();
-                if ["axis", "ось"].contains(&header.to_lowercase().as_str())
-                    && names.iter().any(|name| name == "position_mm")
-                {
-                    return refuse(
-                        both!(": a file holds the readings of one axis", ": в файле — отсчёты одной оси"),
-                        both!(
-                            "split the rows by this column into a file for each axis, without it and with readings that name the axis (EXX_um in that of X, EYY_um in that of Y); then give all files to one command",
-                            "разделите строки по этому столбцу на файлы, по одному на ось, без него и с отсчётами, названными по оси (EXX_um в файле X, EYY_um в файле Y); затем дайте все файлы одной команде"
-                        ),
-                    );
-                }
-                let near = closest(&header, names.iter().map(String::as_str));
-                let mut help = near
-                    .map_or(Text::EMPTY, |near| both!("did you mean {near}? ", "имелось в виду {near}? "));
-                help.push(&both!("known here: {}", "здесь известны: {}", names.join(", ")));
-                if self.ignore.is_some() {
-                    help.push(&both!(
-                        "; or pass it over with `--ignore-column {header}`",
-                        "; или пропустите его: `--ignore-column {header}`"
-                    ));
-                }
-                refuse(both!(" is unknown", " неизвестен"), help)
+                let (message, help) = self.unknown(&header);
+                refuse(message, help)
             }
         }
+    }
+
+    /// What to say of a header that no column has: message behind it, and help.
+    fn unknown(&self, header: &str) -> (Text, Text) {
+        if let Some(axis) = Column::axis_of_error_function(header) {
+            let message = both!(
+                " is an error function of {axis}, and the file is of another axis",
+                " — функция погрешности оси {axis}, а файл другой оси"
+            );
+            let help = both!("give each axis a file of its own", "дайте каждой оси отдельный файл");
+            return (message, help);
+        }
+        let names: Vec<String> = self.known.iter().map(Column::header).collect();
+        if ["axis", "ось"].contains(&header.to_lowercase().as_str())
+            && names.iter().any(|name| name == "position_mm")
+        {
+            return (
+                both!(": a file holds the readings of one axis", ": в файле — отсчёты одной оси"),
+                both!(
+                    "split the rows by this column into a file for each axis, without it and with readings that name the axis (EXX_um in that of X, EYY_um in that of Y); then give all files to one command",
+                    "разделите строки по этому столбцу на файлы, по одному на ось, без него и с отсчётами, названными по оси (EXX_um в файле X, EYY_um в файле Y); затем дайте все файлы одной команде"
+                ),
+            );
+        }
+        let near = closest(header, names.iter().map(String::as_str));
+        let mut help =
+            near.map_or(Text::EMPTY, |near| both!("did you mean {near}? ", "имелось в виду {near}? "));
+        help.push(&both!("known here: {}", "здесь известны: {}", names.join(", ")));
+        if self.ignore.is_some() {
+            help.push(&both!(
+                "; or pass it over with `--ignore-column {header}`",
+                "; или пропустите его: `--ignore-column {header}`"
+            ));
+        }
+        (both!(" is unknown", " неизвестен"), help)
     }
 }

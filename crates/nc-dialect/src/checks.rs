@@ -139,57 +139,38 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
             );
         }
     }
-    if let Some(share) = &output.arc_radius_tolerance_share
-        // Written so that NaN is refused too.
-        && !(*share.get_ref() >= 0.0 && *share.get_ref() <= MOST_SHARE)
-    {
-        report(
-            share.span(),
-            both!(
-                "arc_radius_tolerance_share = {} is out of range",
-                "arc_radius_tolerance_share = {} вне границ",
-                share.get_ref()
-            ),
-            both!("expected 0 to {MOST_SHARE} of the radius", "ожидалось от 0 до {MOST_SHARE} радиуса"),
-        );
-    }
-    let inch = output.arc_radius_tolerance_inch.as_ref().map(|inch| ("arc_radius_tolerance_inch", inch, 0.5));
-    let chords = output.arc_chord_tolerance_mm.as_ref().map(|mm| ("arc_chord_tolerance_mm", mm, 1.0));
-    for (what, length, most) in [
-        ("peck_clearance_mm", &cycles.peck_clearance_mm, 100.0),
-        ("chip_retreat_mm", &cycles.chip_retreat_mm, 100.0),
-        ("arc_radius_tolerance_mm", &output.arc_radius_tolerance_mm, 10.0),
-    ]
-    .into_iter()
-    .chain(inch)
-    .chain(chords)
-    {
-        let unit =
-            if what.ends_with("mm") { Text::pair("mm", "мм") } else { Text::pair("inch", "дюйма") };
-        let found = *length.get_ref();
-        // Written so that NaN is refused too.
-        if !(found > 0.0 && found <= most) {
+    let share = output.arc_radius_tolerance_share.as_ref();
+    let expected =
+        || both!("expected 0 to {MOST_SHARE} of the radius", "ожидалось от 0 до {MOST_SHARE} радиуса");
+    let share = share.map(|share| ("arc_radius_tolerance_share", share, 0.0..=MOST_SHARE, expected()));
+    let length = |what, found, most: f64, unit: Text| {
+        let expected =
+            both!("expected above 0, up to {most}{unit}", "ожидалось больше 0 и не больше {most}{unit:#}");
+        // The smallest number above 0.
+        (what, found, f64::from_bits(1)..=most, expected)
+    };
+    let mm = || Text::pair(" mm", " мм");
+    let inch = output.arc_radius_tolerance_inch.as_ref();
+    let inch =
+        inch.map(|found| length("arc_radius_tolerance_inch", found, 0.5, Text::pair(" inch", " дюйма")));
+    let chords = output.arc_chord_tolerance_mm.as_ref();
+    let chords = chords.map(|found| length("arc_chord_tolerance_mm", found, 1.0, mm()));
+    let ranges = [
+        length("peck_clearance_mm", &cycles.peck_clearance_mm, 100.0, mm()),
+        length("chip_retreat_mm", &cycles.chip_retreat_mm, 100.0, mm()),
+        length("arc_radius_tolerance_mm", &output.arc_radius_tolerance_mm, 10.0, mm()),
+        length("scaling_step", &grammar.frames.scaling_step, 1.0, Text::EMPTY),
+    ];
+    for (what, number, range, expected) in share.into_iter().chain(ranges).chain(inch).chain(chords) {
+        let found = *number.get_ref();
+        // NaN is in no range.
+        if !range.contains(&found) {
             report(
-                length.span(),
+                number.span(),
                 both!("{what} = {found} is out of range", "{what} = {found} вне границ"),
-                both!(
-                    "expected above 0, up to {most} {unit}",
-                    "ожидалось больше 0 и не больше {most} {unit:#}"
-                ),
+                expected,
             );
         }
-    }
-    let scaling_step = &grammar.frames.scaling_step;
-    if !(*scaling_step.get_ref() > 0.0 && *scaling_step.get_ref() <= 1.0) {
-        report(
-            scaling_step.span(),
-            both!(
-                "scaling_step = {} is out of range",
-                "scaling_step = {} вне границ",
-                scaling_step.get_ref()
-            ),
-            both!("expected above 0, up to 1", "ожидалось больше 0 и не больше 1"),
-        );
     }
     if let Some(largest) = output.largest_inverse_feed.as_ref().filter(|largest| *largest.get_ref() < 1.0) {
         let message = both!("largest_inverse_feed is below 1", "largest_inverse_feed меньше 1");

@@ -17,7 +17,7 @@ mod shipped;
 mod table;
 mod texts;
 
-pub use action::{ACTION_NAMES, action_name, action_named};
+pub use action::{action_name, action_named, action_names};
 pub use assumptions::assumption;
 pub use control::{
     Action, Called, CodeEntry, Codes, Command, ControlCall, CornerForm, CurveCode, CycleBack, CycleLevels,

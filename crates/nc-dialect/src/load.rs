@@ -11,12 +11,12 @@ use diagnostic::{Code, Diagnostic, Text, both};
 use nc_syntax::{GCode, Letters, Marks, Paren};
 use toml::Spanned;
 
-use crate::action::{ACTION_NAMES, action_named, nearest};
+use crate::action::{action_named, action_names, nearest};
 use crate::checks::{self, wide};
 use crate::inherited;
 use crate::russian;
 use crate::table::{
-    Alone, CodeRow, CommandRow, FlowRules, Frames, Grammar, LatheRow, LeadName, MRow, OutputRules,
+    self, Alone, CodeRow, CommandRow, FlowRules, Frames, Grammar, LatheRow, LeadName, MRow, OutputRules,
     PercentRule, RoundBrackets, StartUnit, TurningRules, UnderG40, UnderG49, WithoutH, WordRow, WrittenOut,
     ZeroRepeats,
 };
@@ -211,35 +211,13 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
         ..
     } = grammar;
     let Rows { words, dwell_time, codes, m_codes, commands, path_control, lathe, turning } = rows;
-    let mut letters = text.letters.into_inner().into_bytes();
-    letters.sort_unstable();
-    let mut long_words: Vec<(String, u8)> =
-        text.long_words.into_iter().map(|(name, letter)| (name, letter.into_inner() as u8)).collect();
-    long_words.sort();
     let peck_mm = [cycles.peck_clearance_mm, cycles.chip_retreat_mm].map(Spanned::into_inner);
     Dialect {
         name: name.to_owned(),
         title,
         extends,
         assumptions,
-        marks: Marks {
-            paren: match text.round_brackets {
-                RoundBrackets::None => Paren::None,
-                RoundBrackets::Comment => Paren::Comment { nested: false },
-                RoundBrackets::NestedComment => Paren::Comment { nested: true },
-                RoundBrackets::Command => Paren::Command,
-            },
-            semicolon: text.semicolon,
-            end_of_block: text.end_of_block.and_then(byte),
-            percent_words: text.percent == PercentRule::NameAndWords,
-            skip: text.block_delete.and_then(byte),
-            colon: text.colon,
-            long_words,
-            labels: text.labels,
-            equals_words: text.equals_words,
-            letters,
-            spaces_inside: numbers.spaces_inside,
-        },
+        marks: marks(text, numbers.spaces_inside),
         refused_words: words,
         dwell_time,
         numbers: Numbers {
@@ -278,6 +256,33 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
         calls: Vec::new(),
         frames: frame_rules(frames),
         output: output_rules(output, peck_mm),
+    }
+}
+
+/// How the text is spelled.
+fn marks(text: table::Text, spaces_inside: bool) -> Marks {
+    let mut letters = text.letters.into_inner().into_bytes();
+    letters.sort_unstable();
+    let mut long_words: Vec<(String, u8)> =
+        text.long_words.into_iter().map(|(name, letter)| (name, letter.into_inner() as u8)).collect();
+    long_words.sort();
+    Marks {
+        paren: match text.round_brackets {
+            RoundBrackets::None => Paren::None,
+            RoundBrackets::Comment => Paren::Comment { nested: false },
+            RoundBrackets::NestedComment => Paren::Comment { nested: true },
+            RoundBrackets::Command => Paren::Command,
+        },
+        semicolon: text.semicolon,
+        end_of_block: text.end_of_block.and_then(byte),
+        percent_words: text.percent == PercentRule::NameAndWords,
+        skip: text.block_delete.and_then(byte),
+        colon: text.colon,
+        long_words,
+        labels: text.labels,
+        equals_words: text.equals_words,
+        letters,
+        spaces_inside,
     }
 }
 
@@ -427,7 +432,11 @@ fn action(code: GCode, key: &Spanned<String>, row: &CodeRow) -> Result<Action, D
             both!("`{}` is not something a code does", "`{}` — такого функции не делают", does.get_ref()),
         )
         .at(wide(does.span()), both!("{code} cannot do this", "{code} этого не может"))
-        .help(both!("{nearest}known are: {}", "{nearest:#}известны: {}", ACTION_NAMES.join(", ")))
+        .help(both!(
+            "{nearest}known are: {}",
+            "{nearest:#}известны: {}",
+            action_names().collect::<Vec<_>>().join(", ")
+        ))
     })
 }
 

@@ -194,15 +194,7 @@ impl<'a> Run<'a, '_> {
         match letter {
             b'D' | b'H' | b'M' | b'S' | b'T' => Ok(number),
             b'B' | b'E' | b'F' => Err(say(refusal::argument_without_point(letter as char, number))),
-            _ => {
-                let numbers = &self.dialect.numbers;
-                let decimals = if self.inch {
-                    numbers.least_increment_decimals_inch
-                } else {
-                    numbers.least_increment_decimals_mm
-                };
-                Ok(number / f64::from(10_u32.pow(u32::from(decimals.min(9)))))
-            }
+            _ => Ok(number / f64::from(10_u32.pow(u32::from(self.least_increment_decimals().min(9))))),
         }
     }
 

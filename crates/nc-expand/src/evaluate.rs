@@ -11,7 +11,7 @@ use nc_syntax::Macros;
 use units::math;
 
 use crate::expression::{Expression, Function, Operator};
-use crate::value::{Value, Variable};
+use crate::value::{Digits, Value, Variable};
 
 /// LinuxCNC: values nearer than this are EQ (its TOLERANCE_EQUAL), and an index may be off by as much.
 pub(crate) const LINUXCNC_EQUAL: f64 = 1e-4;
@@ -62,7 +62,7 @@ impl Rules {
         expression: &Expression,
         variables: &impl Variables,
     ) -> Result<Value, Fault> {
-        let (value, rounded) = match expression {
+        let (value, digits) = match expression {
             Expression::Number(number) => return Ok(Value::Number(*number)),
             Expression::Variable(variable) => return variables.value(*variable),
             Expression::Indirect(index) => {
@@ -74,17 +74,17 @@ impl Rules {
             }
             Expression::Exists(variable) => {
                 return Ok(match variables.exists(*variable) {
-                    Some(exists) => Value::Number(f64::from(u8::from(exists))),
+                    Some(exists) => Value::Number(f64::from(exists)),
                     None => Value::Unknown(*variable),
                 });
             }
             Expression::Negative(inside) => match self.evaluate(inside, variables)? {
                 unknown @ Value::Unknown(_) => return Ok(unknown),
-                value => (0.0 - number(value), value.is_rounded()),
+                value => (0.0 - number(value), value.digits()),
             },
             Expression::Unary(function, inside) => match self.evaluate(inside, variables)? {
                 unknown @ Value::Unknown(_) => return Ok(unknown),
-                value => self.function(*function, number(value), value.is_rounded())?,
+                value => self.function(*function, number(value), value.digits())?,
             },
             Expression::Binary(operator, left, right) => {
                 let left = self.evaluate(left, variables)?;
@@ -95,11 +95,9 @@ impl Rules {
                     }
                     // An empty variable is not the number 0 where equality is asked for.
                     (Operator::Equal | Operator::NotEqual, a, b) if a == Value::Null || b == Value::Null => {
-                        (truth((a == b) == (*operator == Operator::Equal)), false)
+                        (f64::from((a == b) == (*operator == Operator::Equal)), Digits::Exact)
                     }
-                    (_, a, b) => {
-                        self.binary(*operator, number(a), number(b), a.is_rounded() || b.is_rounded())?
-                    }
+                    (_, a, b) => self.binary(*operator, number(a), number(b), a.digits().max(b.digits()))?,
                 }
             }
         };
@@ -109,7 +107,7 @@ impl Rules {
                 "результат больше любого числа"
             )));
         }
-        Ok(if rounded { Value::Rounded(value) } else { Value::Number(value) })
+        Ok(digits.of(value))
     }
 
     /// Whether a condition holds.
@@ -118,7 +116,7 @@ impl Rules {
     /// A value that is zero but for rounding.
     pub(crate) fn truth(self, value: Value) -> Result<bool, Fault> {
         let number = number(value);
-        if number != 0.0 && self.undecided(number, 0.0, value.is_rounded()) {
+        if number != 0.0 && self.undecided(number, 0.0, value.digits()) {
             return Err(Fault::TooClose(number, 0.0));
         }
         Ok(number != 0.0)
@@ -126,12 +124,12 @@ impl Rules {
 
     /// Two values that another control may see in another order: any that are near on Fanuc, on LinuxCNC those
     /// that its mathematics library has rounded (its sines are computed in the processor's longest format).
-    fn undecided(self, a: f64, b: f64, rounded: bool) -> bool {
-        match (self.fanuc(), rounded) {
-            (true, true) => near(a, b, FANUC_NEAR),
-            (true, false) => a != b && near(a, b, FANUC_NEAR),
-            (false, true) => near(a, b, LINUXCNC_NEAR),
-            (false, false) => false,
+    fn undecided(self, a: f64, b: f64, digits: Digits) -> bool {
+        match (self.fanuc(), digits) {
+            (true, Digits::Rounded) => near(a, b, FANUC_NEAR),
+            (true, Digits::Exact) => a != b && near(a, b, FANUC_NEAR),
+            (false, Digits::Rounded) => near(a, b, LINUXCNC_NEAR),
+            (false, Digits::Exact) => false,
         }
     }
 
@@ -149,31 +147,31 @@ impl Rules {
     }
 
     /// A function's value, and whether its last digits are in doubt.
-    fn function(self, function: Function, v: f64, rounded: bool) -> Result<(f64, bool), Fault> {
+    fn function(self, function: Function, v: f64, digits: Digits) -> Result<(f64, Digits), Fault> {
         let arithmetic = |message: Text| Err(Fault::Arithmetic(message));
         Ok(match function {
-            Function::Abs => (v.abs(), rounded),
-            Function::Sin => (math::sin(v.to_radians()), true),
-            Function::Cos => (math::cos(v.to_radians()), true),
-            Function::Tan => (math::tan(v.to_radians()), true),
-            Function::Atan => (math::atan(v).to_degrees(), true),
+            Function::Abs => (v.abs(), digits),
+            Function::Sin => (math::sin(v.to_radians()), Digits::Rounded),
+            Function::Cos => (math::cos(v.to_radians()), Digits::Rounded),
+            Function::Tan => (math::tan(v.to_radians()), Digits::Rounded),
+            Function::Atan => (math::atan(v).to_degrees(), Digits::Rounded),
             Function::Asin | Function::Acos if !(-1.0..=1.0).contains(&v) => {
                 return arithmetic(both!(
                     "no angle has the sine or cosine {v}",
                     "угла с синусом или косинусом {v} нет"
                 ));
             }
-            Function::Asin => (math::asin(v).to_degrees(), true),
-            Function::Acos => (math::acos(v).to_degrees(), true),
-            Function::Exp => (math::exp(v), true),
+            Function::Asin => (math::asin(v).to_degrees(), Digits::Rounded),
+            Function::Acos => (math::acos(v).to_degrees(), Digits::Rounded),
+            Function::Exp => (math::exp(v), Digits::Rounded),
             Function::Ln if v <= 0.0 => return arithmetic(both!("the logarithm of {v}", "логарифм {v}")),
-            Function::Ln => (math::ln(v), true),
+            Function::Ln => (math::ln(v), Digits::Rounded),
             Function::Sqrt if v < 0.0 => {
                 return arithmetic(both!("the square root of {v}", "квадратный корень из {v}"));
             }
-            Function::Sqrt => (v.sqrt(), rounded),
+            Function::Sqrt => (v.sqrt(), digits),
             Function::Fix | Function::Fup => {
-                if self.undecided(v, v.round(), rounded) {
+                if self.undecided(v, v.round(), digits) {
                     return Err(Fault::TooClose(v, v.round()));
                 }
                 let whole = match (function, self.fanuc()) {
@@ -182,14 +180,14 @@ impl Rules {
                     (_, true) if v < 0.0 => v.floor(),
                     _ => v.ceil(),
                 };
-                (whole, false)
+                (whole, Digits::Exact)
             }
             Function::Round => match self.round_decimals {
                 Some(decimals) => {
                     let steps = f64::from(10_u32.pow(u32::from(decimals.min(9))));
-                    (self.half_away(v * steps, rounded)? / steps, false)
+                    (self.half_away(v * steps, digits)? / steps, Digits::Exact)
                 }
-                None => (self.half_away(v, rounded)?, false),
+                None => (self.half_away(v, digits)?, Digits::Exact),
             },
             Function::Bcd | Function::Bin => {
                 let whole = whole(&Text::pair("BCD and BIN", "BCD и BIN"), v)?;
@@ -209,22 +207,22 @@ impl Rules {
                     place *= to;
                     left /= from;
                 }
-                (sum as f64, false)
+                (sum as f64, Digits::Exact)
             }
         })
     }
 
     /// The nearest whole number, halves away from zero.
-    fn half_away(self, v: f64, rounded: bool) -> Result<f64, Fault> {
+    fn half_away(self, v: f64, digits: Digits) -> Result<f64, Fault> {
         let half = v.trunc() + 0.5 * v.signum();
-        if self.undecided(v, half, rounded) {
+        if self.undecided(v, half, digits) {
             return Err(Fault::TooClose(v, half));
         }
         Ok(v.round())
     }
 
     /// An operator's value, and whether its last digits are in doubt.
-    fn binary(self, operator: Operator, a: f64, b: f64, rounded: bool) -> Result<(f64, bool), Fault> {
+    fn binary(self, operator: Operator, a: f64, b: f64, digits: Digits) -> Result<(f64, Digits), Fault> {
         let arithmetic = |message: Text| Err(Fault::Arithmetic(message));
         let value = match operator {
             Operator::Add => a + b,
@@ -238,7 +236,7 @@ impl Rules {
                 (whole(&Text::pair("MOD", "MOD"), a)? % whole(&Text::pair("MOD", "MOD"), b)?) as f64
             }
             Operator::Modulo => {
-                if self.undecided(a / b, (a / b).round(), rounded) {
+                if self.undecided(a / b, (a / b).round(), digits) {
                     return Err(Fault::TooClose(a, (a / b).round() * b));
                 }
                 let rest = a % b;
@@ -247,7 +245,7 @@ impl Rules {
             Operator::Power if a < 0.0 && b.fract() != 0.0 => {
                 return arithmetic(both!("{a} to the power of {b}", "{a} в степени {b}"));
             }
-            Operator::Power => return Ok((math::powf(a, b), true)),
+            Operator::Power => return Ok((math::powf(a, b), Digits::Rounded)),
             Operator::Atan2 if self.flow.one_value_atan => {
                 return arithmetic(both!(
                     "ATAN of two values: this control would divide the angle of the first",
@@ -256,25 +254,25 @@ impl Rules {
             }
             Operator::Atan2 => {
                 // Where the angle jumps by a turn, the sign of a zero decides.
-                let jumps = a != 0.0 || rounded;
+                let jumps = a != 0.0 || digits == Digits::Rounded;
                 let cut = if self.flow.full_circle_atan { b >= 0.0 } else { b <= 0.0 };
                 if cut && jumps && near(a, 0.0, if self.fanuc() { FANUC_NEAR } else { LINUXCNC_NEAR }) {
                     return Err(Fault::TooClose(a, 0.0));
                 }
                 let degrees = math::atan2(a, b).to_degrees();
                 let turned = self.flow.full_circle_atan && degrees < 0.0;
-                return Ok((if turned { degrees + 360.0 } else { degrees }, true));
+                return Ok((if turned { degrees + 360.0 } else { degrees }, Digits::Rounded));
             }
             logic @ (Operator::And | Operator::Or | Operator::Xor) => {
-                return Ok((self.logic(logic, a, b, rounded)?, false));
+                return Ok((self.logic(logic, a, b, digits)?, Digits::Exact));
             }
-            comparison => return Ok((self.compare(comparison, a, b, rounded)?, false)),
+            comparison => return Ok((self.compare(comparison, a, b, digits)?, Digits::Exact)),
         };
-        Ok((value, rounded))
+        Ok((value, digits))
     }
 
     /// Fanuc: bit by bit. LinuxCNC: everything but 0 is true.
-    fn logic(self, operator: Operator, a: f64, b: f64, rounded: bool) -> Result<f64, Fault> {
+    fn logic(self, operator: Operator, a: f64, b: f64, digits: Digits) -> Result<f64, Fault> {
         if self.fanuc() {
             let (a, b) = (
                 whole(&Text::pair("AND, OR and XOR", "AND, OR и XOR"), a)?,
@@ -286,23 +284,23 @@ impl Rules {
                 _ => a ^ b,
             } as f64);
         }
-        let holds = |v| self.truth(if rounded { Value::Rounded(v) } else { Value::Number(v) });
+        let holds = |v| self.truth(digits.of(v));
         let (a, b) = (holds(a)?, holds(b)?);
-        Ok(truth(match operator {
+        Ok(f64::from(match operator {
             Operator::And => a && b,
             Operator::Or => a || b,
             _ => a != b,
         }))
     }
 
-    fn compare(self, operator: Operator, a: f64, b: f64, rounded: bool) -> Result<f64, Fault> {
+    fn compare(self, operator: Operator, a: f64, b: f64, digits: Digits) -> Result<f64, Fault> {
         let equality = matches!(operator, Operator::Equal | Operator::NotEqual);
         // LinuxCNC's EQ has a tolerance of its own that rounding does not reach.
-        if (self.fanuc() || !equality) && self.undecided(a, b, rounded) {
+        if (self.fanuc() || !equality) && self.undecided(a, b, digits) {
             return Err(Fault::TooClose(a, b));
         }
         let equal = if self.fanuc() { a == b } else { (a - b).abs() < LINUXCNC_EQUAL };
-        Ok(truth(match operator {
+        Ok(f64::from(match operator {
             Operator::Equal => equal,
             Operator::NotEqual => !equal,
             Operator::Greater => a > b,
@@ -311,10 +309,6 @@ impl Rules {
             _ => a <= b,
         }))
     }
-}
-
-fn truth(holds: bool) -> f64 {
-    f64::from(u8::from(holds))
 }
 
 /// An empty variable counts as 0.

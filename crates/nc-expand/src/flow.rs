@@ -112,14 +112,13 @@ pub(crate) enum Taken {
 }
 
 impl Taken {
-    pub(crate) fn contains(self, letter: u8, comma: bool, text: &[u8]) -> bool {
+    pub(crate) fn contains(self, letter: u8, text: &[u8]) -> bool {
         let code = |number: &[u8]| {
             let digits: Vec<u8> = text[1..].iter().copied().filter(u8::is_ascii_digit).collect();
             let at = digits.iter().position(|digit| *digit != b'0').unwrap_or(0);
             digits[at..].starts_with(number)
         };
         match (self, letter) {
-            _ if comma => false,
             (_, b'N') => false,
             (Self::Macro, _) => true,
             (Self::End, b'M') => code(b"17"),

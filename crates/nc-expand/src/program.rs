@@ -189,12 +189,7 @@ impl<'a> Source<'a> {
             let statement = &self.statements[at];
             if statement.section != section {
                 section = statement.section;
-                if let Some((start, _)) = loops.pop() {
-                    return Err(self.unmatched(
-                        start,
-                        both!("this loop has no END in its program", "у этого цикла нет END в его программе"),
-                    ));
-                }
+                self.require_closed(&loops)?;
             }
             let Kind::Complex(complex) = &statement.kind else { continue };
             match &complex.control {
@@ -238,12 +233,7 @@ impl<'a> Source<'a> {
                 _ => {}
             }
         }
-        if let Some((start, _)) = loops.pop() {
-            return Err(self.unmatched(
-                start,
-                both!("this loop has no END in its program", "у этого цикла нет END в его программе"),
-            ));
-        }
+        self.require_closed(&loops)?;
         match open.pop() {
             None => Ok(()),
             Some(left) => Err(self.unmatched(
@@ -347,6 +337,13 @@ impl<'a> Source<'a> {
         if let Some(Control::O(o)) = self.statements.get_mut(at as usize).and_then(control) {
             change(o);
         }
+    }
+
+    /// Refuses a loop that is still open at the end of its program.
+    fn require_closed(&self, loops: &[(u32, u32)]) -> Result<(), Box<Diagnostic>> {
+        let Some((start, _)) = loops.last() else { return Ok(()) };
+        let message = both!("this loop has no END in its program", "у этого цикла нет END в его программе");
+        Err(self.unmatched(*start, message))
     }
 
     fn unmatched(&self, at: u32, message: Text) -> Box<Diagnostic> {

@@ -281,7 +281,7 @@ impl<'a> Run<'a, '_> {
             for (name, holds) in [(&b"_imperial"[..], inch), (b"_metric", !inch)] {
                 let id = self.names.id(name);
                 self.store.learn(&self.names);
-                self.store.set_named(id, Value::Number(f64::from(u8::from(holds))));
+                self.store.set_named(id, Value::Number(f64::from(holds)));
             }
         }
     }
@@ -366,7 +366,7 @@ impl<'a> Run<'a, '_> {
         if complex.has_words {
             let base: &[u8] = complex.residual.as_deref().unwrap_or(bytes);
             let number = self.dropped_number(statement, visit);
-            let text = self.edited(statement, complex, base, number.is_some())?;
+            let text = self.edited(statement, complex, base, complex.number.filter(|_| number.is_some()))?;
             let number = number.and_then(|number| value_of_number(bytes, number));
             self.join(place);
             self.out.comment(shown, from);

@@ -298,7 +298,7 @@ impl Compiler<'_, '_> {
                     continue;
                 }
             };
-            if call.is_some_and(|taken| taken.contains(letter, comma, rest.text(item.span))) {
+            if !comma && call.is_some_and(|taken| taken.contains(letter, rest.text(item.span))) {
                 cut.push(item.span);
                 continue;
             }

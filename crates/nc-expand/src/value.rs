@@ -23,9 +23,26 @@ pub(crate) enum Value {
 }
 
 impl Value {
-    /// True where the last digits are in doubt.
-    pub(crate) const fn is_rounded(self) -> bool {
-        matches!(self, Self::Rounded(_))
+    pub(crate) const fn digits(self) -> Digits {
+        if matches!(self, Self::Rounded(_)) { Digits::Rounded } else { Digits::Exact }
+    }
+}
+
+/// The last digits of a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Digits {
+    /// The same on every control.
+    Exact,
+    /// In doubt: they depend on the control's library.
+    Rounded,
+}
+
+impl Digits {
+    pub(crate) const fn of(self, value: f64) -> Value {
+        match self {
+            Self::Exact => Value::Number(value),
+            Self::Rounded => Value::Rounded(value),
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Computed words as text.
 
 use nc_dialect::Action;
-use nc_syntax::{GCode, Macros};
+use nc_syntax::{GCode, Macros, Span};
 
 use crate::evaluate::Rules;
 use crate::faults::{self, Stop};
@@ -11,17 +11,16 @@ use crate::statement::{Complex, ComputedWord, Statement};
 use crate::value::Value;
 
 impl Run<'_, '_> {
-    /// The block's words with their numbers.
+    /// The block's words with their numbers, but for the block `number` that is dropped.
     pub(crate) fn edited(
         &mut self,
         statement: &Statement,
         complex: &Complex,
         base: &[u8],
-        drop_number: bool,
+        mut number: Option<Span>,
     ) -> Result<Vec<u8>, Stop> {
         let mut text = Vec::with_capacity(base.len() + 32);
         let mut from = 0_usize;
-        let mut number = complex.number.filter(|_| drop_number);
         let cycle = statement.flags.cycle.unwrap_or(self.cycle);
         for word in &complex.words {
             if let Some(span) =
@@ -50,15 +49,16 @@ impl Run<'_, '_> {
         Ok(text)
     }
 
+    /// In the unit in force.
+    pub(crate) fn least_increment_decimals(&self) -> u8 {
+        let numbers = &self.dialect.numbers;
+        if self.inch { numbers.least_increment_decimals_inch } else { numbers.least_increment_decimals_mm }
+    }
+
     /// One word with its number; an empty variable leaves no word.
     fn word(&mut self, text: &mut Vec<u8>, word: &ComputedWord, cycle: bool) -> Result<(), Stop> {
         let fanuc = self.dialect.flow.macros == Macros::Fanuc;
-        let numbers = &self.dialect.numbers;
-        let decimals = if self.inch {
-            numbers.least_increment_decimals_inch
-        } else {
-            numbers.least_increment_decimals_mm
-        };
+        let decimals = self.least_increment_decimals();
         let rules = Rules { flow: self.dialect.flow, round_decimals: fanuc.then_some(decimals) };
         let value = match rules.evaluate(&word.value, &self.store).map_err(Stop::Fault)? {
             Value::Number(value) | Value::Rounded(value) => value,

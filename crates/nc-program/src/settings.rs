@@ -1,6 +1,6 @@
 //! What the codes of a block set before anything moves, whatever their order in the block.
 
-use diagnostic::{Refusal, both};
+use diagnostic::{Refusal, Text, both};
 use nc_dialect::{Action, PlaneCode};
 use nc_syntax::{GCode, Letters, Span};
 use toolpath::{CycleKind, Kinematics, Plane};
@@ -117,8 +117,9 @@ pub(crate) fn apply<'d>(
     }
     tip::switch(env, words, before, state)?;
     tilted::end(words, before, state);
-    if let Some(span) = wanted.compensation_off {
-        tool_length::under_compensation_off(env, words, span, wanted.length.is_some(), state)?;
+    // A length that is written beside G40 is in force, or off, whatever G40 does to an earlier one.
+    if let (Some(span), None) = (wanted.compensation_off, wanted.length) {
+        tool_length::under_compensation_off(env, words, span, state)?;
     }
     switches(words, state, &wanted)?;
     motion(env, state, &wanted);
@@ -239,17 +240,20 @@ fn switches(words: &Words<'_, '_, '_>, state: &mut Modal, wanted: &Wanted<'_>) -
     Ok(())
 }
 
+/// What says where words lead, and is another one now.
+fn changed(before: &Modal, after: &Modal) -> Option<Text> {
+    [
+        (before.plane != after.plane, Text::pair("plane", "плоскость")),
+        (before.units != after.units, Text::pair("unit", "единица")),
+        (before.work_offset != after.work_offset, Text::pair("work offset", "смещение нуля")),
+    ]
+    .into_iter()
+    .find_map(|(is_another, what)| is_another.then_some(what))
+}
+
 /// What may not change while a rotation, scaling or mirror is in force.
 fn transformed(words: &Words<'_, '_, '_>, before: &Modal, after: &Modal) -> Outcome<()> {
-    let what = if before.plane != after.plane {
-        both!("plane", "плоскость")
-    } else if before.units != after.units {
-        both!("unit", "единица")
-    } else if before.work_offset != after.work_offset {
-        both!("work offset", "смещение нуля")
-    } else {
-        return Ok(());
-    };
+    let Some(what) = changed(before, after) else { return Ok(()) };
     let span = words.codes.first().map_or_else(|| words.span(Letters::of(b"H")), |code| code.span);
     Err(words.refuse(refusal::changes_under_transform(&what, &before.transform.name()), span))
 }
@@ -413,12 +417,8 @@ fn motion(env: &Environment<'_>, state: &mut Modal, wanted: &Wanted<'_>) {
 /// Levels of a running cycle are axis commands of the frame they were written in: what another frame
 /// would make of them is told by no manual.
 fn cycle_frame(words: &Words<'_, '_, '_>, before: &Modal, after: &Modal) -> Outcome<()> {
-    let what = if before.plane != after.plane {
-        both!("plane", "плоскость")
-    } else if before.units != after.units {
-        both!("unit", "единица")
-    } else if before.work_offset != after.work_offset {
-        both!("work offset", "смещение нуля")
+    let what = if let Some(what) = changed(before, after) {
+        what
     } else if before.tool_length != after.tool_length {
         both!("tool length", "коррекция на длину")
     } else if before.shifts != after.shifts || before.transform != after.transform {

@@ -9,7 +9,7 @@
 
 use diagnostic::{Diagnostic, Refusal, Text, both};
 use nc_syntax::Span;
-use toolpath::{Kinematics, Plane, TiltedPlane};
+use toolpath::{AngleValue, Kinematics, Plane, TiltedPlane};
 
 use crate::brackets::arguments;
 use crate::codes;
@@ -17,7 +17,7 @@ use crate::environment::Environment;
 use crate::frame_state::refresh;
 use crate::modal::{Axis, Modal, Units};
 use crate::position::require_frame;
-use crate::tilted::{declared, lose, not_certain};
+use crate::tilted::{Aligning, declared, lose, not_certain};
 use crate::words::{Outcome, Words};
 use nc_syntax::Letters;
 
@@ -52,8 +52,8 @@ struct Swivel {
     behind_mm: [f64; 3],
     /// Nothing is turned or shifted.
     is_none: bool,
-    /// The higher angle of the reference axis, or the lower; `None`: nothing turns.
-    higher: Option<bool>,
+    /// `None`: nothing turns.
+    value: Option<AngleValue>,
 }
 
 impl Call<'_, '_, '_, '_> {
@@ -234,8 +234,12 @@ impl Call<'_, '_, '_, '_> {
             ));
         }
         let turn = TiltedPlane::turn_by_axes(order, angles_deg);
-        let higher = (direction != 0).then_some(direction > 0);
-        Ok(Swivel { adds, before_mm, turn, behind_mm, is_none, higher })
+        let value = match direction {
+            0 => None,
+            1.. => Some(AngleValue::Higher),
+            _ => Some(AngleValue::Lower),
+        };
+        Ok(Swivel { adds, before_mm, turn, behind_mm, is_none, value })
     }
 }
 
@@ -285,8 +289,8 @@ pub(crate) fn execute(
     state.kinematics = Kinematics::Plane(plane);
     // Where nothing is tilted and all axes stand at 0 every control lets them stand.
     let rests = swivel.is_none && state.axes.rotary == [Axis::At(0.0); 3];
-    if let Some(higher) = swivel.higher.filter(|_| !rests) {
-        turn(env, words, span, &plane, higher, state)?;
+    if let Some(value) = swivel.value.filter(|_| !rests) {
+        turn(env, words, span, &plane, value, state)?;
     }
     lose(words, state);
     Ok(())
@@ -298,14 +302,14 @@ fn turn(
     words: &Words<'_, '_, '_>,
     span: Span,
     plane: &TiltedPlane,
-    higher: bool,
+    value: AngleValue,
     state: &mut Modal,
 ) -> Outcome<()> {
     let stand = state.axes.rotary.map(Axis::known);
     let chain = &env.setup.rotary_chain;
     let angles = chain
-        .angles_by_value(plane.normal(), higher, &env.setup.tilt_rule, stand)
-        .map_err(|why| not_certain(words, span, why, true))?;
+        .angles_by_value(plane.normal(), value, &env.setup.tilt_rule, stand)
+        .map_err(|why| not_certain(words, span, why, Aligning::Swivel))?;
     for axis in (0..3).filter(|axis| env.setup.has_rotary[*axis]) {
         state.axes.rotary[axis] = Axis::At(angles[axis]);
     }

@@ -5,7 +5,7 @@
 //! That it does so wherever the rotary axes stand no manual promises; so nothing moves in a plane on which the tool
 //! does not stand upright.
 
-use diagnostic::{Diagnostic, Refusal, both};
+use diagnostic::{Diagnostic, Refusal, Text, both};
 use nc_dialect::Action;
 use nc_syntax::{Letters, Span};
 use smallvec::SmallVec;
@@ -295,7 +295,7 @@ pub(crate) fn align(
     };
     let stand = state.axes.rotary.map(Axis::known);
     let angles = env.setup.rotary_chain.angles_for(plane.normal(), &env.setup.tilt_rule, stand);
-    let angles = angles.map_err(|why| not_certain(words, span, why, false))?;
+    let angles = angles.map_err(|why| not_certain(words, span, why, Aligning::Code))?;
     for axis in (0..3).filter(|axis| env.setup.has_rotary[*axis]) {
         state.axes.rotary[axis] = Axis::At(angles[axis]);
     }
@@ -303,122 +303,127 @@ pub(crate) fn align(
     Ok(())
 }
 
-/// Why the angles are not certain to which a code turns the rotary axes; `by_value`: it chooses the higher or lower
-/// one.
+/// What turns the rotary axes to a plane.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Aligning {
+    /// A code: the pair of angles that the control prefers.
+    Code,
+    /// CYCLE800: the higher or lower angle, by `_DIR`.
+    Swivel,
+}
+
+/// Why the angles are not certain to which the rotary axes turn.
 pub(crate) fn not_certain(
     words: &Words<'_, '_, '_>,
     span: Span,
     why: NoAngles,
-    by_value: bool,
+    by: Aligning,
 ) -> Box<Diagnostic> {
-    let code = if by_value { "CYCLE800".to_owned() } else { words.text(span) };
-    let before = if by_value { "CYCLE800" } else { "G68.2" };
-    let name = |axis: usize| AXIS_NAMES[3 + axis];
-    let (label, help) = match why {
-        NoAngles::NotTwoAxes => (
-            both!(
-                "this machine has not two rotary axes that tilt the tool",
-                "у этого станка нет двух поворотных осей, наклоняющих инструмент"
-            ),
-            if by_value {
-                both!(
-                    "name both under `chain` in the profile, or post without tilted planes",
-                    "назовите обе в ключе `chain` профиля или выводите программу без наклонных плоскостей"
-                )
-            } else {
-                both!(
-                    "turn the axes by their own words before G68.2, and leave the code out",
-                    "поверните оси их собственными словами до G68.2 и не пишите эту функцию"
-                )
-            },
-        ),
-        NoAngles::OutOfReach => (
-            both!(
-                "no angles within travel stand the tool upright on the plane, or none of the profile's branch",
-                "в пределах хода нет углов, при которых инструмент перпендикулярен плоскости, или нет таких на ветви, названной в профиле"
-            ),
-            both!(
-                "check the plane, `travel_deg` of the rotary axes and `branch` under `[kinematics]`",
-                "проверьте плоскость, `travel_deg` поворотных осей и `branch` в разделе `[kinematics]`"
-            ),
-        ),
-        NoAngles::TwoWays if by_value => (
-            both!(
-                "two pairs of angles stand the tool upright on the plane, and no axis tells them apart",
-                "инструмент перпендикулярен плоскости при двух парах углов, и ни одна ось их не различает"
-            ),
-            both!(
-                "say on which axis `_DIR` takes the higher or lower angle, as set up with the swivel data: `direction_reference = \"A\"` under `[kinematics]` in the profile",
-                "скажите, на какой оси `_DIR` выбирает больший или меньший угол (опорная ось в данных поворота): `direction_reference = \"A\"` в разделе `[kinematics]` профиля"
-            ),
-        ),
-        NoAngles::TwoWays => (
-            both!(
-                "two pairs of angles stand the tool upright on the plane",
-                "инструмент перпендикулярен плоскости при двух парах углов"
-            ),
-            both!(
-                "say which one the control takes: `branch = \"A+\"` under `[kinematics]` in the profile, where A is above 0 then",
-                "скажите, какую берёт стойка: `branch = \"A+\"` в разделе `[kinematics]` профиля, если тогда A больше 0"
-            ),
-        ),
-        NoAngles::Free(axis) | NoAngles::Start(axis, _) => (
-            both!(
-                "the tool stands along {}, which may stand anywhere then",
-                "инструмент стоит вдоль {}, и эта ось может быть где угодно",
-                name(axis)
-            ),
-            both!(
-                "turn {} by its own word before {before}, with `turn = \"shortest\"` under `[kinematics]` where the control then leaves it there",
-                "поверните {} её собственным словом до {before}; если стойка там её и оставит, впишите `turn = \"shortest\"` в раздел `[kinematics]`",
-                name(axis)
-            ),
-        ),
-        NoAngles::Turns(axis) => (
-            both!("{} has travel for several turns", "ход {} — несколько оборотов", name(axis)),
-            both!(
-                "say which one the control takes: `turn = \"shortest\"` or `turn = \"principal\"` under `[kinematics]` in the profile",
-                "скажите, какой берёт стойка: `turn = \"shortest\"` или `turn = \"principal\"` в разделе `[kinematics]` профиля"
-            ),
-        ),
-        NoAngles::HalfTurn(axis) => (
-            both!(
-                "{} is half a turn away, to either side",
-                "до нужного угла {} пол-оборота, в обе стороны",
-                name(axis)
-            ),
-            both!(
-                "turn {} some way by its own word before {before}",
-                "поверните {} хотя бы отчасти её собственным словом до {before}",
-                name(axis)
-            ),
-        ),
-        NoAngles::Travel(axis) => (
-            both!(
-                "by whole turns {} could have a higher or a lower angle than either",
-                "через целые обороты угол {} мог бы быть и больше, и меньше обоих",
-                name(axis)
-            ),
-            both!(
-                "give its travel: `travel_deg = [lowest, highest]` under `[rotary.{}]` in the profile",
-                "задайте её ход: `travel_deg = [наименьший, наибольший]` в разделе `[rotary.{}]` профиля",
-                name(axis)
-            ),
-        ),
-        NoAngles::Unknown(axis) => (
-            both!("where {} stands before is not known", "где до этого стоит {}, неизвестно", name(axis)),
-            both!(
-                "write a rapid that names {} before {before}",
-                "напишите до {before} быстрый ход, в котором названа {}",
-                name(axis)
-            ),
-        ),
+    let (code, before) = match by {
+        Aligning::Swivel => ("CYCLE800".to_owned(), "CYCLE800"),
+        Aligning::Code => (words.text(span), "G68.2"),
     };
     let message = both!(
         "where {code} turns the rotary axes is not certain",
         "куда {code} повернёт поворотные оси, неясно"
     );
+    let (label, help) = (left_open(why, by), settled_by(why, by, before));
     words.refuse(Refusal { code: codes::PLANE_ANGLES, message, label, help }, span)
+}
+
+/// What leaves the angles open.
+fn left_open(why: NoAngles, by: Aligning) -> Text {
+    let name = |axis: usize| AXIS_NAMES[3 + axis];
+    match why {
+        NoAngles::NotTwoAxes => both!(
+            "this machine has not two rotary axes that tilt the tool",
+            "у этого станка нет двух поворотных осей, наклоняющих инструмент"
+        ),
+        NoAngles::OutOfReach => both!(
+            "no angles within travel stand the tool upright on the plane, or none of the profile's branch",
+            "в пределах хода нет углов, при которых инструмент перпендикулярен плоскости, или нет таких на ветви, названной в профиле"
+        ),
+        NoAngles::TwoWays if by == Aligning::Swivel => both!(
+            "two pairs of angles stand the tool upright on the plane, and no axis tells them apart",
+            "инструмент перпендикулярен плоскости при двух парах углов, и ни одна ось их не различает"
+        ),
+        NoAngles::TwoWays => both!(
+            "two pairs of angles stand the tool upright on the plane",
+            "инструмент перпендикулярен плоскости при двух парах углов"
+        ),
+        NoAngles::Free(axis) | NoAngles::Start(axis, _) => both!(
+            "the tool stands along {}, which may stand anywhere then",
+            "инструмент стоит вдоль {}, и эта ось может быть где угодно",
+            name(axis)
+        ),
+        NoAngles::Turns(axis) => {
+            both!("{} has travel for several turns", "ход {} — несколько оборотов", name(axis))
+        }
+        NoAngles::HalfTurn(axis) => both!(
+            "{} is half a turn away, to either side",
+            "до нужного угла {} пол-оборота, в обе стороны",
+            name(axis)
+        ),
+        NoAngles::Travel(axis) => both!(
+            "by whole turns {} could have a higher or a lower angle than either",
+            "через целые обороты угол {} мог бы быть и больше, и меньше обоих",
+            name(axis)
+        ),
+        NoAngles::Unknown(axis) => {
+            both!("where {} stands before is not known", "где до этого стоит {}, неизвестно", name(axis))
+        }
+    }
+}
+
+/// What to write, in the profile or `before` the code, so that they are certain.
+fn settled_by(why: NoAngles, by: Aligning, before: &str) -> Text {
+    let name = |axis: usize| AXIS_NAMES[3 + axis];
+    match why {
+        NoAngles::NotTwoAxes if by == Aligning::Swivel => both!(
+            "name both under `chain` in the profile, or post without tilted planes",
+            "назовите обе в ключе `chain` профиля или выводите программу без наклонных плоскостей"
+        ),
+        NoAngles::NotTwoAxes => both!(
+            "turn the axes by their own words before G68.2, and leave the code out",
+            "поверните оси их собственными словами до G68.2 и не пишите эту функцию"
+        ),
+        NoAngles::OutOfReach => both!(
+            "check the plane, `travel_deg` of the rotary axes and `branch` under `[kinematics]`",
+            "проверьте плоскость, `travel_deg` поворотных осей и `branch` в разделе `[kinematics]`"
+        ),
+        NoAngles::TwoWays if by == Aligning::Swivel => both!(
+            "say on which axis `_DIR` takes the higher or lower angle, as set up with the swivel data: `direction_reference = \"A\"` under `[kinematics]` in the profile",
+            "скажите, на какой оси `_DIR` выбирает больший или меньший угол (опорная ось в данных поворота): `direction_reference = \"A\"` в разделе `[kinematics]` профиля"
+        ),
+        NoAngles::TwoWays => both!(
+            "say which one the control takes: `branch = \"A+\"` under `[kinematics]` in the profile, where A is above 0 then",
+            "скажите, какую берёт стойка: `branch = \"A+\"` в разделе `[kinematics]` профиля, если тогда A больше 0"
+        ),
+        NoAngles::Free(axis) | NoAngles::Start(axis, _) => both!(
+            "turn {} by its own word before {before}, with `turn = \"shortest\"` under `[kinematics]` where the control then leaves it there",
+            "поверните {} её собственным словом до {before}; если стойка там её и оставит, впишите `turn = \"shortest\"` в раздел `[kinematics]`",
+            name(axis)
+        ),
+        NoAngles::Turns(_) => both!(
+            "say which one the control takes: `turn = \"shortest\"` or `turn = \"principal\"` under `[kinematics]` in the profile",
+            "скажите, какой берёт стойка: `turn = \"shortest\"` или `turn = \"principal\"` в разделе `[kinematics]` профиля"
+        ),
+        NoAngles::HalfTurn(axis) => both!(
+            "turn {} some way by its own word before {before}",
+            "поверните {} хотя бы отчасти её собственным словом до {before}",
+            name(axis)
+        ),
+        NoAngles::Travel(axis) => both!(
+            "give its travel: `travel_deg = [lowest, highest]` under `[rotary.{}]` in the profile",
+            "задайте её ход: `travel_deg = [наименьший, наибольший]` в разделе `[rotary.{}]` профиля",
+            name(axis)
+        ),
+        NoAngles::Unknown(axis) => both!(
+            "write a rapid that names {} before {before}",
+            "напишите до {before} быстрый ход, в котором названа {}",
+            name(axis)
+        ),
+    }
 }
 
 /// G69 and CYCLE800() end the plane, before the motion of their block.

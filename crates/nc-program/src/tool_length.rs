@@ -220,11 +220,9 @@ pub(crate) fn under_compensation_off(
     env: &Environment<'_>,
     words: &Words<'_, '_, '_>,
     span: Span,
-    written: bool,
     state: &mut Modal,
 ) -> Outcome<()> {
-    // One that is written beside it is in force, or off, whatever it does to an earlier one.
-    if state.tool_length.is_none() || written {
+    if state.tool_length.is_none() {
         return Ok(());
     }
     match env.dialect.length_under_g40 {

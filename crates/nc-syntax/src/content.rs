@@ -4,6 +4,12 @@ use diagnostic::{Code, Diagnostic, Text, both};
 
 use crate::lexer::is_blank;
 
+const UTF_16: Text = Text::pair("text in UTF-16", "текст в UTF-16");
+const UTF_16_TO_8: Text = Text::pair(
+    "save it as plain text: `iconv -f UTF-16 -t UTF-8 IN > OUT`",
+    "сохраните как обычный текст: `iconv -f UTF-16 -t UTF-8 IN > OUT`",
+);
+
 /// First bytes of files that people hand over by mistake, and what to do about it.
 const MAGIC: [(&[u8], Text, Text); 13] = [
     (
@@ -88,22 +94,8 @@ const MAGIC: [(&[u8], Text, Text); 13] = [
         Text::pair("an old office document", "старый офисный документ"),
         Text::pair("save it as plain text", "сохраните как обычный текст"),
     ),
-    (
-        b"\xFF\xFE",
-        Text::pair("text in UTF-16", "текст в UTF-16"),
-        Text::pair(
-            "save it as plain text: `iconv -f UTF-16 -t UTF-8 IN > OUT`",
-            "сохраните как обычный текст: `iconv -f UTF-16 -t UTF-8 IN > OUT`",
-        ),
-    ),
-    (
-        b"\xFE\xFF",
-        Text::pair("text in UTF-16", "текст в UTF-16"),
-        Text::pair(
-            "save it as plain text: `iconv -f UTF-16 -t UTF-8 IN > OUT`",
-            "сохраните как обычный текст: `iconv -f UTF-16 -t UTF-8 IN > OUT`",
-        ),
-    ),
+    (b"\xFF\xFE", UTF_16, UTF_16_TO_8),
+    (b"\xFE\xFF", UTF_16, UTF_16_TO_8),
 ];
 
 /// How much of a file is looked at.

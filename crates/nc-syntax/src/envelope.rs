@@ -78,13 +78,16 @@ impl<'d> EnvelopeFinder<'d> {
     }
 
     /// The next part of the program, which ends at the end of a line or of the program.
-    pub fn see(&mut self, part: &[u8]) {
-        let starts = self.length == 0;
-        let mut marks = memchr_iter(b'%', part).filter(|at| first_on_line(part, *at, starts));
+    pub fn see(&mut self, mut part: &[u8]) {
+        if self.length == 0 && part.starts_with(BYTE_ORDER_MARK) {
+            part = &part[BYTE_ORDER_MARK.len()..];
+            self.length = BYTE_ORDER_MARK.len() as u64;
+        }
+        let mut marks = memchr_iter(b'%', part).filter(|at| first_on_line(part, *at));
         if self.first.is_none() {
             let first = marks.next();
             let before = &part[..first.unwrap_or(part.len())];
-            self.blocks_before = self.blocks_before || holds_blocks(before, starts, &self.lexer);
+            self.blocks_before = self.blocks_before || holds_blocks(before, &self.lexer);
             self.first = first.map(|at| self.length + at as u64);
         }
         self.last = marks.next_back().map(|at| self.length + at as u64).or(self.last);
@@ -104,7 +107,7 @@ impl<'d> EnvelopeFinder<'d> {
             }
             None => part,
         };
-        self.blocks_behind = self.blocks_behind || holds_blocks(behind, false, &self.lexer);
+        self.blocks_behind = self.blocks_behind || holds_blocks(behind, &self.lexer);
     }
 
     const fn opening(&self) -> Option<u64> {
@@ -129,20 +132,15 @@ impl<'d> EnvelopeFinder<'d> {
     }
 }
 
-fn first_on_line(text: &[u8], at: usize, starts: bool) -> bool {
+fn first_on_line(text: &[u8], at: usize) -> bool {
     let before = text[..at].iter().rposition(|byte| !is_blank(*byte));
-    before.is_none_or(|before| {
-        matches!(text[before], b'\n' | b'\r') || (starts && text[..=before] == *BYTE_ORDER_MARK)
-    })
+    before.is_none_or(|before| matches!(text[before], b'\n' | b'\r'))
 }
 
 /// True where some line reads as a block: words a program has and nothing that cannot be read.
-fn holds_blocks(text: &[u8], starts: bool, lexer: &Lexer<'_>) -> bool {
+fn holds_blocks(text: &[u8], lexer: &Lexer<'_>) -> bool {
     let mut items: Vec<Item> = Vec::new();
     let mut at = skip_blanks(text, 0);
-    if starts && text[at..].starts_with(BYTE_ORDER_MARK) {
-        at += BYTE_ORDER_MARK.len();
-    }
     while at < text.len() {
         let end = memchr2(b'\n', b'\r', &text[at..]).map_or(text.len(), |length| at + length);
         let line = &text[at..end.min(at + crate::MAX_BLOCK_BYTES)];

@@ -1,6 +1,6 @@
 //! Messages about bytes that are not words.
 
-use diagnostic::{Code, Diagnostic, both};
+use diagnostic::{Code, Diagnostic, Text, both};
 
 use crate::{Block, Invalid, MAX_BLOCK_BYTES, Span};
 
@@ -62,49 +62,7 @@ impl Block<'_> {
                     "добавьте недостающую скобку или уберите эту"
                 ),
             ),
-            Invalid::Text if waits(&shown) => (
-                105,
-                both!(
-                    "`{shown}` waits for another turret or channel",
-                    "`{shown}` ждёт другой суппорт или канал"
-                ),
-                both!(
-                    "this program is one of several that run together",
-                    "эта программа — одна из нескольких, идущих вместе"
-                ),
-                both!(
-                    "correct the program of each turret apart, each with its own profile, without the waits, and put \
-                     them back where they stood",
-                    "исправьте программу каждого суппорта отдельно, со своим профилем и без ожиданий, \
-                     а затем верните их на место"
-                ),
-            ),
-            Invalid::Text => match cyrillic_twin(&shown) {
-                Some((cyrillic, latin)) => (
-                    105,
-                    both!(
-                        "`{shown}` starts with a Cyrillic `{cyrillic}`",
-                        "`{shown}` начинается с русской буквы `{cyrillic}`"
-                    ),
-                    both!(
-                        "it looks like a Latin letter, and no control reads it",
-                        "она похожа на латинскую, но ни одна стойка её не прочтёт"
-                    ),
-                    both!("type the Latin `{latin}`", "наберите латинскую `{latin}`"),
-                ),
-                None => (
-                    105,
-                    both!(
-                        "`{shown}` is not a word, a comment or a command of this dialect",
-                        "`{shown}` — не слово, не комментарий и не команда этого диалекта"
-                    ),
-                    both!("expected a letter and a number", "ожидались буква и число"),
-                    both!(
-                        "if it is a remark, put it in a comment; if another control reads it, choose that one with `--dialect`",
-                        "пояснение заключите в комментарий; если это язык другой стойки, выберите её ключом `--dialect`"
-                    ),
-                ),
-            },
+            Invalid::Text => not_of_the_dialect(&shown),
             Invalid::TooLong => (
                 106,
                 both!(
@@ -124,6 +82,52 @@ impl Block<'_> {
             .at(self.file_span(Span { start: span.start, end }), label)
             .help(help)
     }
+}
+
+/// What to say of bytes that are no word, comment or command.
+fn not_of_the_dialect(shown: &str) -> (u16, Text, Text, Text) {
+    if waits(shown) {
+        return (
+            105,
+            both!("`{shown}` waits for another turret or channel", "`{shown}` ждёт другой суппорт или канал"),
+            both!(
+                "this program is one of several that run together",
+                "эта программа — одна из нескольких, идущих вместе"
+            ),
+            both!(
+                "correct the program of each turret apart, each with its own profile, without the waits, and put \
+                     them back where they stood",
+                "исправьте программу каждого суппорта отдельно, со своим профилем и без ожиданий, \
+                     а затем верните их на место"
+            ),
+        );
+    }
+    if let Some((cyrillic, latin)) = cyrillic_twin(shown) {
+        return (
+            105,
+            both!(
+                "`{shown}` starts with a Cyrillic `{cyrillic}`",
+                "`{shown}` начинается с русской буквы `{cyrillic}`"
+            ),
+            both!(
+                "it looks like a Latin letter, and no control reads it",
+                "она похожа на латинскую, но ни одна стойка её не прочтёт"
+            ),
+            both!("type the Latin `{latin}`", "наберите латинскую `{latin}`"),
+        );
+    }
+    (
+        105,
+        both!(
+            "`{shown}` is not a word, a comment or a command of this dialect",
+            "`{shown}` — не слово, не комментарий и не команда этого диалекта"
+        ),
+        both!("expected a letter and a number", "ожидались буква и число"),
+        both!(
+            "if it is a remark, put it in a comment; if another control reads it, choose that one with `--dialect`",
+            "пояснение заключите в комментарий; если это язык другой стойки, выберите её ключом `--dialect`"
+        ),
+    )
 }
 
 /// A mark at which controls with several channels wait for one another: `!1`, `WAITM(1,1,2)`.

@@ -144,12 +144,11 @@ impl Survey {
     pub(crate) fn of<R: Read, E: From<Unread>>(
         source: R,
         dialect: &Dialect,
-        hashes: bool,
+        mut hasher: Option<blake3::Hasher>,
         mut seen: impl FnMut(&Chunk) -> Result<(), E>,
     ) -> Result<Self, E> {
         let mut chunks = Chunks::new(source, CHUNK_BYTES);
         let mut finder = EnvelopeFinder::new(dialect);
-        let mut hasher = hashes.then(blake3::Hasher::new);
         let mut survey = Self {
             envelope: finder.finish(),
             numbers: BlockNumbers::new(),

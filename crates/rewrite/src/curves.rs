@@ -11,7 +11,7 @@ use toolpath::Motion;
 
 use crate::notices::refusal;
 use crate::pass::Pass;
-use crate::words::Original;
+use crate::words::{Original, Stands};
 
 /// Letters of control points, knots, weights and the order.
 const OWN: [u8; 10] = *b"XYZIJKPLQR";
@@ -84,7 +84,7 @@ impl Pass<'_> {
                 let mut editing = self.editing(context, letters, motion);
                 editing.original = Original::Curve;
                 for piece in &corrected.pieces {
-                    let edited = editing.edit(piece, pieces.is_empty(), false);
+                    let edited = editing.edit(piece, Stands::at(pieces.len()));
                     pieces.push(edited);
                 }
             }

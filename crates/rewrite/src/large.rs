@@ -27,6 +27,12 @@ pub struct Manner {
     pub hashes: bool,
 }
 
+impl Manner {
+    fn hasher(self) -> Option<blake3::Hasher> {
+        self.hashes.then(blake3::Hasher::new)
+    }
+}
+
 /// A text by its length and hash.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Digest {
@@ -126,7 +132,7 @@ impl<R: Read + Send, O: Fn() -> R + Sync> Source<'_, O> {
         if nc_syntax::looks_like_program(self.head).is_err() {
             return Err(LargeEnd::AsAWhole);
         }
-        let survey = Survey::of((self.open)(), self.job.dialect, self.manner.hashes, |_| {
+        let survey = Survey::of((self.open)(), self.job.dialect, self.manner.hasher(), |_| {
             progress(0.0).map_err(LargeEnd::Stopped)
         })?;
         if survey.corrected_before && !self.manner.force { Err(LargeEnd::AsAWhole) } else { Ok(survey) }
@@ -147,7 +153,7 @@ impl<R: Read + Send, O: Fn() -> R + Sync> Source<'_, O> {
             threads: self.manner.threads.max(1),
             chunk_bytes: CHUNK_BYTES,
         };
-        let mut sink = Sink::new(&mut *out, self.manner.hashes, self.mark(plan.envelope));
+        let mut sink = Sink::new(&mut *out, self.manner.hasher(), self.mark(plan.envelope));
         let total = survey.bytes.max(1) as f64;
         let stopped = Mutex::new(None);
         let goes_on = |done: u64| match progress(done as f64 / total) {

@@ -261,6 +261,54 @@ fn far_zero(axis: char, [low_mm, high_mm]: [f64; 2], context: &Context) -> Optio
     (zero_mm < low_mm - span_mm || zero_mm > high_mm + span_mm).then_some(zero_mm)
 }
 
+/// A motion, its block, and what is in force there.
+type At<'a> = (&'a Motion, &'a Block<'a>, &'a Context);
+
+/// What to say of a motion that leaves the volume.
+fn outside_volume(
+    axis: char,
+    value_mm: f64,
+    [low_mm, high_mm]: [f64; 2],
+    (motion, block, context): At<'_>,
+) -> Diagnostic {
+    let span = block.word(axis as u8).map_or_else(|| block.file_range(), |word| block.file_span(word.span));
+    let what = if matches!(motion, Motion::Hole(_)) {
+        both!("this hole", "это отверстие")
+    } else {
+        both!("this feed motion", "этот рабочий ход")
+    };
+    Diagnostic::error(OUTSIDE, both!("{what} leaves the calibrated volume", "{what:#} выходит из калиброванного объёма"))
+                .at(span, both!("axis {axis} would be commanded to {value_mm:.3} mm, calibrated is {low_mm} to {high_mm} mm", "ось {axis} пришлось бы вывести в {value_mm:.3} мм, а калибровано от {low_mm} до {high_mm} мм"))
+                .help(match far_zero(axis, [low_mm, high_mm], context) {
+                    Some(zero_mm) => both!(
+                        "the program's zero is at {axis} {zero_mm:.3} mm: is the work offset (profile, `--work-offset` or `--linuxcnc-ini`) of this machine, and in millimetres?",
+                        "нуль программы в {axis} {zero_mm:.3} мм: смещение нуля (профиль, `--work-offset` или `--linuxcnc-ini`) от этого станка и в миллиметрах?"
+                    ),
+                    None => both!("place the workpiece inside the volume: `--work-offset` with {axis} moved by {:+.3} mm or further, or accept the nearest point's correction with `--outside clamp`", "поместите деталь в объём: `--work-offset`, где {axis} сдвинута на {:+.3} мм или дальше; или примите поправку ближайшей точки: `--outside clamp`",
+                        if value_mm < low_mm { low_mm - value_mm } else { high_mm - value_mm }
+                    ),
+                })
+}
+
+/// What to say of an axis that needs a word and has none.
+fn unnamed(axis: usize, distance_um: f64, said: Text, (motion, block, context): At<'_>) -> Diagnostic {
+    let (name, um) = (AXIS_NAMES[axis], distance_um.ceil());
+    let since = context.unnamed[axis].map_or(Text::EMPTY, |lost| both!(" since {}", " {:#}", lost.since()));
+    let all = (0..3).filter(|i| context.unnamed[*i].is_some() || *i == axis);
+    let words: Vec<String> = all.map(|i| stands_at(i, motion, context)).collect();
+    Diagnostic::error(UNNAMED, said)
+                .at(
+                    block.file_range(),
+                    both!("{name} is not named{since}; a word for it would rest on a guess of where its zero is", "{name} не названа{since:#}; её слово опиралось бы на догадку, где её нуль"),
+                )
+                .help(if context.unnamed[axis].is_some_and(|lost| lost.line == block.line) {
+                    both!("write what changes {name} in a block of its own, and behind it a rapid that names {name}", "напишите то, что меняет {name}, отдельным кадром, а за ним быстрый ход, в котором названа {name}")
+                } else {
+                    let words = words.join(" ");
+                    both!("before this block say once where the tool is to be, as in `G90 G0 {words}`; or accept it so with `--accept {um}`", "скажите один раз перед этим кадром, где быть инструменту, например `G90 G0 {words}`; или примите такое отклонение: `--accept {um}`")
+                })
+}
+
 /// What to say of a motion that cannot be corrected.
 pub(crate) fn refusal(
     error: &CorrectionError,
@@ -272,19 +320,7 @@ pub(crate) fn refusal(
     let word = |letter: u8| block.word(letter).map(|word| block.file_span(word.span));
     let diagnostic = match error {
         CorrectionError::Solve(SolveError::OutsideVolume { axis, value_mm, low_mm, high_mm }) => {
-            let span = word(*axis as u8).unwrap_or(whole);
-            let what = if matches!(motion, Motion::Hole(_)) { both!("this hole", "это отверстие") } else { both!("this feed motion", "этот рабочий ход") };
-            Diagnostic::error(OUTSIDE, both!("{what} leaves the calibrated volume", "{what:#} выходит из калиброванного объёма"))
-                .at(span, both!("axis {axis} would be commanded to {value_mm:.3} mm, calibrated is {low_mm} to {high_mm} mm", "ось {axis} пришлось бы вывести в {value_mm:.3} мм, а калибровано от {low_mm} до {high_mm} мм"))
-                .help(match far_zero(*axis, [*low_mm, *high_mm], context) {
-                    Some(zero_mm) => both!(
-                        "the program's zero is at {axis} {zero_mm:.3} mm: is the work offset (profile, `--work-offset` or `--linuxcnc-ini`) of this machine, and in millimetres?",
-                        "нуль программы в {axis} {zero_mm:.3} мм: смещение нуля (профиль, `--work-offset` или `--linuxcnc-ini`) от этого станка и в миллиметрах?"
-                    ),
-                    None => both!("place the workpiece inside the volume: `--work-offset` with {axis} moved by {:+.3} mm or further, or accept the nearest point's correction with `--outside clamp`", "поместите деталь в объём: `--work-offset`, где {axis} сдвинута на {:+.3} мм или дальше; или примите поправку ближайшей точки: `--outside clamp`",
-                        if value_mm < low_mm { low_mm - value_mm } else { high_mm - value_mm }
-                    ),
-                })
+            outside_volume(*axis, *value_mm, [*low_mm, *high_mm], (motion, block, context))
         }
         CorrectionError::Solve(error @ SolveError::OutsideVectors { .. }) => {
             Diagnostic::error(OUTSIDE, error.text())
@@ -319,23 +355,7 @@ pub(crate) fn refusal(
         CorrectionError::TooManyPecks { .. } => Diagnostic::error(TOO_MANY_PECKS, error.text())
             .at(word(b'Q').unwrap_or(whole), both!("far below what a drill bites", "столько сверло не снимает"))
             .help(both!("correct Q: it is the depth of one peck", "исправьте Q: это глубина одного прохода")),
-        CorrectionError::Unnamed { axis, distance_um } => {
-            let (name, um) = (AXIS_NAMES[*axis], distance_um.ceil());
-            let since = context.unnamed[*axis].map_or(Text::EMPTY, |lost| both!(" since {}", " {:#}", lost.since()));
-            let all = (0..3).filter(|i| context.unnamed[*i].is_some() || i == axis);
-            let words: Vec<String> = all.map(|i| stands_at(i, motion, context)).collect();
-            Diagnostic::error(UNNAMED, error.text())
-                .at(
-                    whole,
-                    both!("{name} is not named{since}; a word for it would rest on a guess of where its zero is", "{name} не названа{since:#}; её слово опиралось бы на догадку, где её нуль"),
-                )
-                .help(if context.unnamed[*axis].is_some_and(|lost| lost.line == block.line) {
-                    both!("write what changes {name} in a block of its own, and behind it a rapid that names {name}", "напишите то, что меняет {name}, отдельным кадром, а за ним быстрый ход, в котором названа {name}")
-                } else {
-                    let words = words.join(" ");
-                    both!("before this block say once where the tool is to be, as in `G90 G0 {words}`; or accept it so with `--accept {um}`", "скажите один раз перед этим кадром, где быть инструменту, например `G90 G0 {words}`; или примите такое отклонение: `--accept {um}`")
-                })
-        }
+        CorrectionError::Unnamed { axis, distance_um } => unnamed(*axis, *distance_um, error.text(), (motion, block, context)),
         CorrectionError::TurnedFrame { .. } => Diagnostic::error(nc_program::codes::FRAME, error.text())
             .at(whole, both!("each word moves several axes here, so that none of them can be held where it stands", "здесь каждое слово двигает несколько осей, и ни одну не удержать на месте"))
             .help(both!("let the CAM write the rotated coordinates, or accept more with `--tolerance`", "выводите из CAM повёрнутые координаты или допустите больше ключом `--tolerance`")),

@@ -20,7 +20,7 @@ use crate::notices::{SPIRAL_MM, hole_skipped, radii_apart_mm, refusal};
 use crate::state::State;
 use crate::tally::Tally;
 use crate::words::{
-    Editing, MotionCodes, Original, Pieces, finer_than_words, letters, lost, retreats, stated,
+    Editing, MotionCodes, Original, Pieces, Stands, finer_than_words, letters, lost, retreats, stated,
 };
 
 /// A pass over blocks.
@@ -289,11 +289,7 @@ impl Pass<'_> {
                 pieces.push(nc_emit::Piece { motion: context.motion_code, words: nc_emit::WordEdits::new() });
             }
             pieces.extend(
-                corrected
-                    .pieces
-                    .iter()
-                    .enumerate()
-                    .map(|(i, piece)| editing.edit(piece, k == 0 && i == 0, false)),
+                corrected.pieces.iter().enumerate().map(|(i, piece)| editing.edit(piece, Stands::at(k + i))),
             );
             if k == 0
                 && let Some(first) = pieces.first_mut()

@@ -24,8 +24,7 @@ pub(crate) struct Written {
 }
 
 impl<W: Write> Sink<W> {
-    pub(crate) fn new(out: W, hashes: bool, mark: (u64, Vec<u8>)) -> Self {
-        let hasher = hashes.then(blake3::Hasher::new);
+    pub(crate) fn new(out: W, hasher: Option<blake3::Hasher>, mark: (u64, Vec<u8>)) -> Self {
         Self { out, hasher, bytes: 0, same: 0, changed: false, mark: Some(mark) }
     }
 
@@ -105,7 +104,7 @@ mod tests {
     fn put(parts: &[(&[u8], &[u8])]) -> (Vec<u8>, bool) {
         let input: Vec<u8> = parts.iter().flat_map(|part| part.0.to_vec()).collect();
         let mut out = Vec::new();
-        let mut sink = Sink::new(&mut out, false, (3, b"(M)\n".to_vec()));
+        let mut sink = Sink::new(&mut out, None, (3, b"(M)\n".to_vec()));
         for (before, after) in parts {
             sink.put(before, after, || Ok(&input[..])).unwrap();
         }

@@ -405,7 +405,7 @@ mod tests {
         let start = State::new(job, &numbers);
         let plan = Plan { job, envelope: finder.finish(), start, threads, chunk_bytes };
         let mut out = Vec::new();
-        let mut sink = Sink::new(&mut out, false, (0, Vec::new()));
+        let mut sink = Sink::new(&mut out, None, (0, Vec::new()));
         let tally = match correct(&plan, text, &mut sink, &|| Ok(text), &|_| true) {
             Ok(tally) => tally,
             Err(End::Refused(_, diagnostics)) => return Err(diagnostics),

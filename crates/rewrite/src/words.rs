@@ -175,14 +175,30 @@ pub(crate) struct Editing<'a> {
     pub lost: WordEdits,
 }
 
+/// How a piece stands for its block.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Stands {
+    /// Nothing else does.
+    Alone,
+    /// It is the block itself, whose other words are still there.
+    First,
+    /// Behind others.
+    Further,
+}
+
+impl Stands {
+    /// Of one of several pieces.
+    pub(crate) const fn at(index: usize) -> Self {
+        if index == 0 { Self::First } else { Self::Further }
+    }
+}
+
 impl Editing<'_> {
-    /// One piece; `first`: it is the block itself, whose other words are still there; `only`: nothing
-    /// else stands for the block.
-    pub(crate) fn edit(&self, piece: &correction::Piece, first: bool, only: bool) -> Piece {
+    pub(crate) fn edit(&self, piece: &correction::Piece, stands: Stands) -> Piece {
         let mut edited = Piece { motion: None, words: WordEdits::new() };
         let mut push = |letter: u8, word: Goal, decimals: u8| {
             let edit = match word {
-                Goal::Stays if first && self.letters.contains(letter) => WordEdit::Remove,
+                Goal::Stays if stands != Stands::Further && self.letters.contains(letter) => WordEdit::Remove,
                 Goal::Stays => return,
                 Goal::AsStated => WordEdit::Keep,
                 Goal::Steps(counts) => WordEdit::Write { counts, decimals },
@@ -230,7 +246,7 @@ impl Editing<'_> {
                     }
                     Centre::Radius(radius) => push(b'R', radius, self.decimals[u]),
                 }
-                if !only {
+                if stands != Stands::Alone {
                     // P counts whole turns, which the pieces now make themselves.
                     push(b'P', Goal::Stays, 0);
                 }
@@ -248,7 +264,7 @@ impl Editing<'_> {
                 None
             }
         };
-        let rate = self.by_time.or(self.inverse_time.filter(|_| !only));
+        let rate = self.by_time.or(self.inverse_time.filter(|_| stands != Stands::Alone));
         if let (Some(rate), PieceKind::Line | PieceKind::Arc { .. }) = (rate, piece.kind) {
             let steps = f64::from(10u32.pow(u32::from(self.decimals_feed)));
             let counts = units::decimal::counts(rate / piece.share.max(1e-9), steps).unwrap_or(i64::MAX);
@@ -274,7 +290,7 @@ impl Editing<'_> {
                 let own = (rotary_end_deg(motion), written);
                 self.direction = Some((named, direction_goals(chain, goals, info, at_deg, own)));
             }
-            self.edit(piece, k == 0, pieces.len() == 1)
+            self.edit(piece, if pieces.len() == 1 { Stands::Alone } else { Stands::at(k) })
         };
         pieces.iter().enumerate().map(edit).collect()
     }

@@ -29,7 +29,7 @@ pub use motion::{Arc, Division, Feed, Kinematics, Motion, Mover, Shape};
 pub use nurbs::{Bezier, MOST_DEGREE, Nurbs, NurbsFault};
 pub use plane::Plane;
 pub use position::{Partial, Position};
-pub use tilted::{NoAngles, RotaryChain, RotaryLink, TiltRule, TiltedPlane, WholeTurns, unit};
+pub use tilted::{AngleValue, NoAngles, RotaryChain, RotaryLink, TiltRule, TiltedPlane, WholeTurns, unit};
 pub use turning::{DrillPecks, DrillR, FlankFrom, TurningParameters};
 
 /// Names of the linear and rotary axes, in the order of every array here.

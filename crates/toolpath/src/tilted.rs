@@ -147,6 +147,15 @@ pub struct RotaryLink {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RotaryChain(pub Vec<RotaryLink>);
 
+/// Which angle of the reference axis a swivel cycle takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AngleValue {
+    /// `_DIR` of 1.
+    Higher,
+    /// `_DIR` of -1.
+    Lower,
+}
+
 /// By which rule a control chooses among the angles that bring the tool to a plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TiltRule {
@@ -464,6 +473,7 @@ impl RotaryChain {
     /// has the higher angle, or the lower; the only one where the other is beyond travel.
     ///
     /// ```
+    /// use toolpath::AngleValue::{Higher, Lower};
     /// use toolpath::{RotaryChain, RotaryLink, TiltRule, WholeTurns};
     ///
     /// let link = |axis: usize, most_deg: f64| {
@@ -472,8 +482,8 @@ impl RotaryChain {
     /// };
     /// let table = RotaryChain(vec![link(2, 200.0), link(0, 110.0)]);
     /// let rule = TiltRule { reference: Some(0), turns: Some(WholeTurns::Principal), ..TiltRule::default() };
-    /// let ask = |higher: bool| table.angles_by_value([0.0, 1.0, 0.0], higher, &rule, [None; 3]).unwrap();
-    /// assert!((ask(true)[0] - 90.0).abs() < 1e-12 && (ask(false)[0] + 90.0).abs() < 1e-12);
+    /// let ask = |value| table.angles_by_value([0.0, 1.0, 0.0], value, &rule, [None; 3]).unwrap();
+    /// assert!((ask(Higher)[0] - 90.0).abs() < 1e-12 && (ask(Lower)[0] + 90.0).abs() < 1e-12);
     /// ```
     ///
     /// # Errors
@@ -482,7 +492,7 @@ impl RotaryChain {
     pub fn angles_by_value(
         &self,
         direction: [f64; 3],
-        higher: bool,
+        value: AngleValue,
         rule: &TiltRule,
         stand_deg: [Option<f64>; 3],
     ) -> Result<[f64; 3], NoAngles> {
@@ -522,7 +532,7 @@ impl RotaryChain {
                 if (one_deg - other_deg).abs() < NEARER_DEG {
                     return Err(NoAngles::TwoWays);
                 }
-                if (one_deg > other_deg) == higher { *one } else { *other }
+                if (one_deg > other_deg) == (value == AngleValue::Higher) { *one } else { *other }
             }
         }
     }
@@ -530,6 +540,7 @@ impl RotaryChain {
 
 #[cfg(test)]
 mod tests {
+    use super::AngleValue::{Higher, Lower};
     use super::*;
 
     fn link(axis: usize, direction: Three, carries_workpiece: bool, most_deg: f64) -> RotaryLink {
@@ -640,11 +651,11 @@ mod tests {
         // Tilted about X by 30: A 30 at C 0, or A -30 at half a turn of C, which is as near to either side.
         let chain = RotaryChain(vec![link(2, [0.0, 0.0, 1.0], true, 360.0), link(0, X, true, 120.0)]);
         let rule = TiltRule { reference: Some(0), turns: Some(WholeTurns::Shortest), branch: None };
-        let ask = |higher: bool| {
+        let ask = |value| {
             let tilted = [0.0, -0.5, 0.75f64.sqrt()];
-            chain.angles_by_value(tilted, higher, &rule, [Some(0.0), None, Some(0.0)])
+            chain.angles_by_value(tilted, value, &rule, [Some(0.0), None, Some(0.0)])
         };
-        let [one, other] = [ask(true), ask(false)];
+        let [one, other] = [ask(Higher), ask(Lower)];
         let (taken, tied) = if one.is_ok() { (one, other) } else { (other, one) };
         let taken = taken.expect("certain");
         assert!(taken[2].abs() < 1e-9 && (taken[0].abs() - 30.0).abs() < 1e-9, "{taken:?}");
@@ -656,28 +667,23 @@ mod tests {
         let chain = RotaryChain(vec![link(2, UP, true, 200.0), link(0, X, true, 110.0)]);
         let tilted = chain.tool_direction([30.0, 0.0, 40.0]);
         let rule = TiltRule { reference: Some(0), turns: Some(WholeTurns::Principal), branch: None };
-        let ask = |chain: &RotaryChain, higher: bool, rule: TiltRule| {
-            chain.angles_by_value(tilted, higher, &rule, [None; 3])
+        let ask = |chain: &RotaryChain, value, rule: TiltRule| {
+            chain.angles_by_value(tilted, value, &rule, [None; 3])
         };
         let near = |angles: [f64; 3], a: f64, c: f64| {
             assert!((angles[0] - a).abs() < 1e-9 && (angles[2] - c).abs() < 1e-9, "{angles:?}");
         };
-        near(ask(&chain, true, rule).unwrap(), 30.0, 40.0);
-        near(ask(&chain, false, rule).unwrap(), -30.0, -140.0);
-        assert_eq!(ask(&chain, true, TiltRule { reference: None, ..rule }), Err(NoAngles::TwoWays));
+        near(ask(&chain, Higher, rule).unwrap(), 30.0, 40.0);
+        near(ask(&chain, Lower, rule).unwrap(), -30.0, -140.0);
+        assert_eq!(ask(&chain, Higher, TiltRule { reference: None, ..rule }), Err(NoAngles::TwoWays));
         // C could stand at -140 and at 220: which of its angles is the higher one nobody says.
-        assert_eq!(
-            ask(
-                &RotaryChain(vec![link(2, UP, true, 300.0), link(0, X, true, 110.0)]),
-                true,
-                TiltRule { reference: Some(2), ..rule }
-            ),
-            Err(NoAngles::Travel(2))
-        );
+        let wide = RotaryChain(vec![link(2, UP, true, 300.0), link(0, X, true, 110.0)]);
+        let of_c = TiltRule { reference: Some(2), ..rule };
+        assert_eq!(ask(&wide, Higher, of_c), Err(NoAngles::Travel(2)));
         // Where only one way is within travel it is taken, whichever was asked for.
         let mut short = chain;
         short.0[1].travel_deg = [-5.0, 110.0];
-        near(ask(&short, false, TiltRule { reference: None, ..rule }).unwrap(), 30.0, 40.0);
+        near(ask(&short, Lower, TiltRule { reference: None, ..rule }).unwrap(), 30.0, 40.0);
     }
 
     #[test]

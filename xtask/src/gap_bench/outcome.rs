@@ -144,11 +144,19 @@ mod tests {
 
     use super::*;
 
-    /// A case of a kind with an answer made of a verdict and causes (`first|rival|rival`).
-    fn outcome(kind: Kind, noise: Option<NoiseKind>, verdict: &str, causes: &[&str]) -> Outcome {
+    /// A case of a kind; one without a name takes seconds to find.
+    fn case(kind: Kind, noise: Option<NoiseKind>) -> Case {
         let list = catalogue(1200, 1);
         let fits = |k: Kind, n: NoiseKind| k == kind && noise.is_none_or(|wanted| n == wanted);
-        let case = list.iter().find(|s| fits(s.kind, s.noise)).unwrap().build();
+        list.iter().find(|s| fits(s.kind, s.noise)).unwrap().build()
+    }
+
+    fn outcome(kind: Kind, noise: Option<NoiseKind>, verdict: &str, causes: &[&str]) -> Outcome {
+        answered(case(kind, noise), verdict, causes)
+    }
+
+    /// A case with an answer made of a verdict and causes (`first|rival|rival`).
+    fn answered(case: Case, verdict: &str, causes: &[&str]) -> Outcome {
         let truth = case.truth.effects.first().map_or("none".to_owned(), |e| e.id.clone());
         let causes: Vec<String> = causes
             .iter()
@@ -198,10 +206,10 @@ mod tests {
     #[test]
     fn what_has_no_name_must_stay_unknown() {
         for kind in [Kind::Outside, Kind::Removed] {
-            assert!(outcome(kind, None, "PARTIAL", &["step.X"]).right());
-            assert!(outcome(kind, None, "UNKNOWN", &[]).right());
-            assert!(outcome(kind, None, "NAMED", &["step.X"]).confidently_wrong());
-            assert!(!outcome(kind, None, "NO GAP", &[]).right());
+            let case = case(kind, None);
+            let said = |verdict, causes: &[&str]| answered(case.clone(), verdict, causes);
+            assert!(said("PARTIAL", &["step.X"]).right() && said("UNKNOWN", &[]).right());
+            assert!(said("NAMED", &["step.X"]).confidently_wrong() && !said("NO GAP", &[]).right());
         }
     }
 

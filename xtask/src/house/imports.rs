@@ -54,6 +54,13 @@ pub(crate) struct Tree {
 /// No chain of doors is longer; names that lead to themselves end there.
 const DEEPEST: usize = 16;
 
+/// The module in which another stands.
+#[derive(Clone, Copy)]
+struct Above {
+    module: usize,
+    is_test: bool,
+}
+
 impl Tree {
     /// Reads a crate from its root file on.
     ///
@@ -62,7 +69,7 @@ impl Tree {
     pub(crate) fn read(project: &Path, root: &Path) -> anyhow::Result<Self> {
         let mut tree = Self { files: Vec::new(), modules: Vec::new() };
         let below = root.parent().unwrap_or(Path::new("")).to_owned();
-        tree.read_file(project, root, &below, 0, false)?;
+        tree.read_file(project, root, &below, Above { module: 0, is_test: false })?;
         Ok(tree)
     }
 
@@ -72,15 +79,14 @@ impl Tree {
         project: &Path,
         path: &Path,
         below: &Path,
-        parent: usize,
-        is_test: bool,
+        above: Above,
     ) -> anyhow::Result<usize> {
         let text = std::fs::read_to_string(project.join(path))
             .with_context(|| format!("{}: unreadable", path.display()))?;
         let file = syn::parse_file(&text).with_context(|| format!("{}: not Rust", path.display()))?;
         self.files.push(path.to_owned());
         let beside = path.parent().unwrap_or(Path::new(""));
-        self.read_module(project, &file.items, self.files.len() - 1, [below, beside], parent, is_test)
+        self.read_module(project, &file.items, self.files.len() - 1, [below, beside], above)
     }
 
     fn read_module(
@@ -89,33 +95,33 @@ impl Tree {
         items: &[Item],
         file: usize,
         [below, beside]: [&Path; 2],
-        parent: usize,
-        is_test: bool,
+        above: Above,
     ) -> anyhow::Result<usize> {
         let own = self.modules.len();
         let (names, globs) = (BTreeMap::new(), Vec::new());
+        let Above { module: parent, is_test } = above;
         self.modules.push(Module { file, parent, names, globs, mentioned: BTreeSet::new(), is_test });
         for item in items {
             let Item::Mod(module) = item else {
                 self.modules[own].take(item);
                 continue;
             };
-            let is_test = is_test || for_tests(&module.attrs);
+            let inside = Above { module: own, is_test: is_test || for_tests(&module.attrs) };
             let name = module.ident.to_string();
             let child = match (&module.content, stated_path(module)) {
                 (Some((_, items)), _) => {
                     let inner = below.join(&name);
-                    self.read_module(project, items, file, [&inner, &inner], own, is_test)?
+                    self.read_module(project, items, file, [&inner, &inner], inside)?
                 }
                 (None, Some(path)) => {
                     let path = beside.join(path);
                     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-                    self.read_file(project, &path, &folder, own, is_test)?
+                    self.read_file(project, &path, &folder, inside)?
                 }
                 (None, None) => {
                     let (flat, nested) = (below.join(format!("{name}.rs")), below.join(&name).join("mod.rs"));
                     let path = if project.join(&flat).exists() { flat } else { nested };
-                    self.read_file(project, &path, &below.join(&name), own, is_test)?
+                    self.read_file(project, &path, &below.join(&name), inside)?
                 }
             };
             self.modules[own].names.insert(name, Name::Module(child));

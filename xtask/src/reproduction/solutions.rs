@@ -16,12 +16,8 @@ fn command(engine: &dyn Engine, target: Vector) -> Vector {
     engine.solve(&at(target)).expect("inside the volume").linear_mm
 }
 
-fn yes(same: bool) -> String {
-    if same { "yes" } else { "**no**" }.to_owned()
-}
-
-fn same(ours: &Vector, printed: &Vector) -> bool {
-    (ours - printed).amax() <= 0.500_000_1e-3
+fn same_digits(ours: &Vector, printed: &Vector) -> String {
+    if (ours - printed).amax() <= 0.500_000_1e-3 { "yes" } else { "**no**" }.to_owned()
 }
 
 pub(super) fn tangential() -> String {
@@ -38,7 +34,7 @@ pub(super) fn tangential() -> String {
     ];
     let cells = rows.map(|(name, ours, printed)| {
         let printed = Vector::from(printed);
-        vec![name.to_owned(), vector(&printed, 3), vector(&ours, 6), yes(same(&ours, &printed))]
+        vec![name.to_owned(), vector(&printed, 3), vector(&ours, 6), same_digits(&ours, &printed)]
     });
     let mut text = String::from(
         "## Tangential methods\n\nTarget (130, 140, 106), traverses of the 315 mm cube, cosines without their signs.\n\n",
@@ -128,9 +124,6 @@ pub(super) fn cosines() -> String {
 
 pub(super) fn kmtpp() -> String {
     let fifty = Vector::repeat(50.0);
-    let with = |tables: &[ParametricTable; 3], gain: f64, step: f64| {
-        KmtppPublished::new(tables.clone(), &traverses(315), gain, step).expect("shipped tables")
-    };
     let mut text = String::from(
         "## KMTPP\n\n\
          `kmtpp-published` is the listing of §4.3: nearest table row, Gᵀ in the sum, base rounded to a node. The last column is the same \
@@ -144,7 +137,8 @@ pub(super) fn kmtpp() -> String {
                name: String,
                m: f64,
                printed: Vector| {
-        let engine = with(tables, gain, step);
+        let engine =
+            KmtppPublished::new(tables.clone(), &traverses(315), gain, step).expect("shipped tables");
         let solution = engine.solve(&at(target)).expect("inside the volume");
         let trace = engine.trace(&target).expect("inside the volume");
         vec![
@@ -153,7 +147,7 @@ pub(super) fn kmtpp() -> String {
             solution.iterations.to_string(),
             vector(&printed, 3),
             vector(&solution.linear_mm, 3),
-            yes(same(&solution.linear_mm, &printed)),
+            same_digits(&solution.linear_mm, &printed),
             vector(&(solution.linear_mm + trace.last_mm - trace.node_mm), 3),
         ]
     };

@@ -219,15 +219,24 @@ fn from_forms(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<
 /// A place in steps, a class of readings, and which way the axes came.
 type Returning = ([i64; 6], usize, [i8; 3]);
 
-/// Second differences along a run, robustly: a smooth residual cancels, noise does not.
-fn from_neighbours(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], serial: Serial) -> Option<Noise> {
-    let mut lines: BTreeMap<(usize, usize, [i8; 3]), Vec<f64>> = BTreeMap::new();
+/// Weighed residuals in the order of the rows, by run, class and way.
+pub(crate) fn along_runs(
+    rows: &[Row],
+    scalars: &[Scalar],
+    residuals_um: &[f64],
+) -> BTreeMap<(usize, usize, [i8; 3]), Vec<f64>> {
+    let mut lines: BTreeMap<_, Vec<f64>> = BTreeMap::new();
     for (scalar, r) in scalars.iter().zip(residuals_um) {
         let row = &rows[scalar.row];
         let line = lines.entry((row.run, scalar.class, row.command.direction)).or_default();
         line.push(r * scalar.weight.sqrt());
     }
-    let mut differences: Vec<f64> = lines
+    lines
+}
+
+/// Second differences along a run, robustly: a smooth residual cancels, noise does not.
+fn from_neighbours(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], serial: Serial) -> Option<Noise> {
+    let mut differences: Vec<f64> = along_runs(rows, scalars, residuals_um)
         .values()
         .flat_map(|line| line.windows(3).map(|w| (w[1] - 0.5 * (w[0] + w[2])).abs() / 1.5_f64.sqrt()))
         .collect();

@@ -4,6 +4,7 @@ use machine_model::Vector;
 use machine_model::effects::{EffectGeometry, EffectKind, Shape};
 use units::math;
 
+use crate::effects::{self, Along};
 use crate::equations::observation::{Reading, Row, Scalar};
 
 /// One column; its value is the displacement in µm per unit of its coefficient.
@@ -130,19 +131,12 @@ impl Term {
     /// where it depends on more.
     pub(crate) fn axis(&self) -> Option<usize> {
         let Self::Effect { kind, index, .. } = *self else { return None };
-        match kind {
-            EffectKind::Scale(axis)
-            | EffectKind::Backlash(axis)
-            | EffectKind::LostMotion { axis, .. }
-            | EffectKind::Squareness(_, axis)
-            | EffectKind::Positioning(axis)
-            | EffectKind::Straightness { axis, .. }
-            | EffectKind::Pitch(axis)
-            | EffectKind::Local(axis)
-            | EffectKind::Joint(axis) => Some(axis),
-            EffectKind::Sag(axis) if index < 3 => Some(axis),
-            _ => None,
-        }
+        let alone = match effects::of(kind).search.along {
+            Along::Line | Along::Curve | Along::Reversal | Along::Place => true,
+            Along::Droop => index < 3,
+            Along::Angle | Along::Elsewhere => false,
+        };
+        kind.axis().filter(|_| alone)
     }
 
     /// False where the component is zero for every row, known without looking.

@@ -2,6 +2,7 @@
 
 use machine_model::{Vector, Volume};
 
+use crate::effects::is_straight;
 use crate::equations::align::FREE_OFFSETS;
 use crate::equations::columns::Source;
 use crate::equations::gram::Gram;
@@ -12,7 +13,6 @@ use crate::judgement::answer::Shrinkage;
 use crate::judgement::assembly::Assembly;
 use crate::judgement::shrinkage::{Alternative, LEAST_WEIGHT, Strength, transported};
 use crate::library::candidates::Part;
-use crate::search::bounds::is_straight;
 use crate::search::crossval::{Folding, Folds};
 
 impl Assembly<'_> {

@@ -87,11 +87,10 @@ impl Assembly<'_> {
         let shapes = kind.shape_names();
         let entry = self.term(place).entry();
         parameters.extend(
-            entry.into_iter().filter(|(n, _)| shapes.contains(n)).map(|(name, value)| Parameter {
-                name: name.to_owned(),
-                value,
-                u95: None,
-            }),
+            entry
+                .into_iter()
+                .filter(|(n, _)| shapes.clone().any(|name| name == *n))
+                .map(|(name, value)| Parameter { name: name.to_owned(), value, u95: None }),
         );
         parameters
     }

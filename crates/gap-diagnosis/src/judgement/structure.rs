@@ -1,12 +1,10 @@
 //! Is what is left noise?
 
 use diagnostic::Text;
-use std::collections::BTreeMap;
-
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::equations::f_test::f_tail;
-use crate::equations::noise::{Noise, NoiseSource, median};
+use crate::equations::noise::{Noise, NoiseSource, along_runs, median};
 use crate::equations::observation::{Measurements, Row, Scalar};
 
 /// Probability that noise alone leaves this residual: the smaller of a variance ratio against repeats (where
@@ -30,12 +28,7 @@ pub(crate) fn lack_of_fit(
 
 /// Lag-one correlation of residuals along the runs, one-sided: structure is smooth, noise is not.
 fn neighbours_p(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> f64 {
-    let mut lines: BTreeMap<(usize, usize, [i8; 3]), Vec<f64>> = BTreeMap::new();
-    for (scalar, r) in scalars.iter().zip(residuals_um) {
-        let row = &rows[scalar.row];
-        let line = lines.entry((row.run, scalar.class, row.command.direction)).or_default();
-        line.push(r * scalar.weight.sqrt());
-    }
+    let lines = along_runs(rows, scalars, residuals_um);
     let (mut product, mut square, mut pairs, mut count) = (0.0, 0.0, 0.0, 0.0);
     for line in lines.values().filter(|l| l.len() > 3) {
         let mean = line.iter().sum::<f64>() / line.len() as f64;

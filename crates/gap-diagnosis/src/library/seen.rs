@@ -2,6 +2,7 @@
 
 use machine_model::effects::{EffectKind, Shape};
 
+use crate::effects::curve_axis;
 use crate::equations::noise::median;
 use crate::equations::observation::{Measurements, Reading, Row};
 use crate::library::sampling::Sampling;
@@ -167,18 +168,6 @@ fn one_lever(data: &Measurements, about: usize, axis: usize) -> bool {
         }
     }
     range.iter().all(|(low, high)| high - low <= SAME * low.abs().max(high.abs()).max(1.0) || high < low)
-}
-
-/// The axis along which an effect is a curve.
-pub(crate) const fn curve_axis(kind: EffectKind) -> Option<usize> {
-    match kind {
-        EffectKind::Positioning(axis)
-        | EffectKind::Straightness { axis, .. }
-        | EffectKind::Angular { axis, .. }
-        | EffectKind::Pitch(axis)
-        | EffectKind::Sag(axis) => Some(axis),
-        _ => None,
-    }
 }
 
 fn distinct(rows: &[Row], value: &dyn Fn(&Row) -> Option<f64>) -> usize {

@@ -10,12 +10,10 @@ use std::rc::Rc;
 use machine_model::Vector;
 use machine_model::effects::{EffectGeometry, EffectKind, legendre};
 
+use crate::effects::{self, Why, is_straight};
 use crate::equations::noise::median;
 use crate::equations::observation::{Measurements, Row, Scalar};
 use crate::equations::term::Term;
-
-/// Why a cause cannot be meant, in English and in Russian.
-pub(crate) type Why = [&'static str; 2];
 
 /// A cause may displace by so many times the largest reading: twice is what two causes that overlap can need.
 const LARGEST: f64 = 2.0;
@@ -149,66 +147,17 @@ impl Bounds {
     }
 }
 
-/// What is straight does not swing between places.
-pub(crate) const fn is_straight(kind: EffectKind) -> bool {
-    matches!(kind, EffectKind::Scale(_) | EffectKind::Squareness(..))
-}
-
-/// Logarithm of how plausible coefficients are before anything is measured, as far as it parts effects that look alike: what
-/// assembly leaves between axes, and what an instrument's temperature does to a scale, is hundreds of µrad and µm/m; an angle of
-/// a carriage changes by tens of µrad on its way (20 arc seconds are a bad one), and a screw errs by some µm within a turn.
+/// Logarithm of how plausible coefficients are before anything is measured, as far as it parts effects that look alike.
 pub(crate) fn log_prior(values: &[(Term, f64)]) -> f64 {
-    let usual = |kind: &EffectKind| match kind {
-        EffectKind::Angular { .. } => 100.0,
-        EffectKind::Scale(_) | EffectKind::Squareness(..) => 500.0,
-        EffectKind::Pitch(_) => 10.0,
-        _ => f64::INFINITY,
-    };
     let of = |(term, value): &(Term, f64)| match term {
-        Term::Effect { kind, .. } => -0.5 * (value / usual(kind)).powi(2),
+        Term::Effect { kind, .. } => -0.5 * (value / effects::of(*kind).search.usual).powi(2),
         _ => 0.0,
     };
     values.iter().map(of).sum()
 }
 
-/// Numbers that no machine has, far beyond what wear, crashes and bad assembly do.
+/// Numbers that no machine has.
 fn implausible(kind: EffectKind, terms: &[(Term, f64)]) -> Option<Why> {
-    let (largest, reason) = match kind {
-        EffectKind::Backlash(_) | EffectKind::LostMotion { .. } => {
-            (500.0, ["a play of a millimetre is felt by hand", "люфт в миллиметр чувствуется рукой"])
-        }
-        EffectKind::Pitch(_) => (
-            200.0,
-            [
-                "no screw errs by 0.2 mm within a turn",
-                "винтов с погрешностью 0.2 мм в пределах оборота не бывает",
-            ],
-        ),
-        EffectKind::Squareness(..) => (
-            20_000.0,
-            [
-                "axes that lean by 20 mm per metre are seen by eye",
-                "наклон осей на 20 мм на метр виден на глаз",
-            ],
-        ),
-        EffectKind::Scale(_) => (
-            10_000.0,
-            [
-                "a scale wrong by 10 mm per metre is a wrong unit",
-                "погрешность масштаба 10 мм на метр — это не та единица",
-            ],
-        ),
-        EffectKind::ServoLag(_) | EffectKind::ServoMismatch(..) => {
-            (1000.0, ["no servo runs a second behind", "следящий привод не отстаёт на секунду"])
-        }
-        EffectKind::ProbeLobing => (
-            200.0,
-            [
-                "no probe has a pre-travel of 0.2 mm",
-                "предварительного хода 0.2 мм у измерительных головок не бывает",
-            ],
-        ),
-        _ => return None,
-    };
-    terms.iter().any(|(_, value)| value.abs() > largest).then_some(reason)
+    let (most, why) = effects::of(kind).search.most?;
+    terms.iter().any(|(_, value)| value.abs() > most).then_some(why)
 }

@@ -3,12 +3,13 @@
 use diagnostic::Text;
 use machine_model::effects::EffectKind;
 
+use crate::effects::Why;
 use crate::equations::fit::Solution;
 use crate::equations::observation::Scalar;
 use crate::equations::serial::Serial;
 use crate::equations::set_up::Clamping;
 use crate::library::candidates::{Library, Part};
-use crate::search::bounds::{Why, log_prior};
+use crate::search::bounds::log_prior;
 use crate::search::space::{Fit, Space};
 
 /// What the search arrived at.

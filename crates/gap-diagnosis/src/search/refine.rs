@@ -8,6 +8,7 @@ use machine_model::Vector;
 use machine_model::effects::{EffectKind, Shape};
 use nalgebra::{DMatrix, Matrix3, Matrix3xX};
 
+use crate::effects::{self, Searched};
 use crate::equations::columns::Source;
 use crate::equations::gram::dot;
 use crate::equations::linear::explained;
@@ -204,28 +205,30 @@ impl<'a> Stage<'a> {
         indices: &[usize],
         narrowest_mm: f64,
     ) -> Option<Shape> {
-        let (axis, timed) = match kind {
-            EffectKind::Pitch(a) | EffectKind::Local(a) => (a, false),
-            EffectKind::Warmup(a) | EffectKind::Step(a) => (a, true),
-            EffectKind::Joint(a) | EffectKind::Spike(a) => (a, false),
-            _ => return None,
-        };
-        let variable = |row: &Row| match kind {
-            _ if timed => row.conditions.time_s,
+        let searched = effects::of(kind).search.searched;
+        if searched == Searched::Nothing {
+            return None;
+        }
+        let axis = kind.axis().unwrap_or_default();
+        let variable = |row: &Row| match searched {
+            Searched::Nothing => None,
+            Searched::TimeConstants | Searched::Moment => row.conditions.time_s,
             // Both ways round, beyond anything it fades over where it is not known.
-            EffectKind::Spike(_) => {
+            Searched::Way => {
                 let way = row.conditions.since_turn_mm[axis].unwrap_or(1e9);
                 Some((1.0 + way) * f64::from(row.command.direction[axis]))
             }
-            _ => Some(row.command.linear_mm[axis]),
+            Searched::Period | Searched::Centre | Searched::CentreAndWidth => {
+                Some(row.command.linear_mm[axis])
+            }
         };
         let rest = self.rest(own, variable);
         let gain = |shape: &Shape| self.gain(&rest, kind, shape, indices);
-        if let EffectKind::Step(_) = kind {
+        if searched == Searched::Moment {
             return step_time(&self.source, shape, gain);
         }
         let length_mm = range(&self.source, axis);
-        let frees = free_numbers(kind, shape, length_mm, narrowest_mm);
+        let frees = free_numbers(searched, shape, length_mm, narrowest_mm);
         let mut best = *shape;
         let mut value = gain(&best);
         let mut steps: Vec<f64> = frees.iter().map(|f| f.step).collect();
@@ -263,37 +266,37 @@ struct Free {
     high: f64,
 }
 
-fn free_numbers(kind: EffectKind, shape: &Shape, length_mm: f64, narrowest_mm: f64) -> Vec<Free> {
-    match kind {
-        EffectKind::Pitch(_) => vec![Free {
+fn free_numbers(searched: Searched, shape: &Shape, length_mm: f64, narrowest_mm: f64) -> Vec<Free> {
+    match searched {
+        Searched::Period => vec![Free {
             get: |s| s.pitch_mm,
             set: |s, v| s.pitch_mm = v,
             step: 0.15 * shape.pitch_mm * shape.pitch_mm / length_mm.max(shape.pitch_mm),
             low: 0.2,
             high: f64::INFINITY,
         }],
-        EffectKind::Warmup(_) => vec![Free {
+        Searched::TimeConstants => vec![Free {
             get: |s| s.tau_s,
             set: |s, v| (s.tau_s, s.tau2_s) = (v, v * (s.tau2_s / s.tau_s)),
             step: 0.4 * shape.tau_s,
             low: 1.0,
             high: f64::INFINITY,
         }],
-        EffectKind::Joint(_) => vec![Free {
+        Searched::Centre => vec![Free {
             get: |s| s.centre_mm,
             set: |s, v| s.centre_mm = v,
             step: shape.width_mm,
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,
         }],
-        EffectKind::Spike(_) => vec![Free {
+        Searched::Way => vec![Free {
             get: |s| s.width_mm,
             set: |s, v| s.width_mm = v,
             step: 0.3 * shape.width_mm,
             low: 0.3,
             high: 30.0,
         }],
-        EffectKind::Local(_) => vec![
+        Searched::CentreAndWidth => vec![
             Free {
                 get: |s| s.centre_mm,
                 set: |s, v| s.centre_mm = v,
@@ -310,7 +313,7 @@ fn free_numbers(kind: EffectKind, shape: &Shape, length_mm: f64, narrowest_mm: f
                 high: LOCAL_WIDEST * length_mm,
             },
         ],
-        _ => Vec::new(),
+        Searched::Nothing | Searched::Moment => Vec::new(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use machine_model::effects::{EffectKind, Shape};
 
+use crate::effects::{self, Searched};
 use crate::equations::fit::residuals;
 use crate::equations::term::Term;
 use crate::library::candidates::Variant;
@@ -92,19 +93,17 @@ impl State<'_, '_> {
             let kind = self.library.kind(part);
             let own = self.library.form(part).columns.clone();
             let Some((shape, indices)) = self.shape_of(&own) else { continue };
-            let narrowest = match kind {
-                EffectKind::Local(axis) => self.library.sampling[axis].narrowest_mm,
-                _ => 0.0,
-            };
+            let axis = kind.axis().unwrap_or_default();
+            let narrowest = self.library.sampling[axis].narrowest_mm;
             let Some(better) = stage.refined(&own, kind, &shape, &indices, narrowest) else { continue };
             if better == shape {
                 continue;
             }
-            let variants = match kind {
-                EffectKind::Pitch(axis) => self.library.pitch(axis, better.pitch_mm),
-                EffectKind::Local(_) => self.library.place(kind, better.centre_mm, better.width_mm),
-                EffectKind::Joint(_) => self.library.join(kind, better.centre_mm, better.width_mm),
-                _ => {
+            let variants = match effects::of(kind).search.searched {
+                Searched::Period => self.library.pitch(axis, better.pitch_mm),
+                Searched::CentreAndWidth => self.library.place(kind, better.centre_mm, better.width_mm),
+                Searched::Centre => self.library.join(kind, better.centre_mm, better.width_mm),
+                Searched::Nothing | Searched::TimeConstants | Searched::Moment | Searched::Way => {
                     let columns = self.library.add_columns(kind, better, &indices);
                     vec![Variant::textbook(columns)]
                 }

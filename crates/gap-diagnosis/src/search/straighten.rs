@@ -2,9 +2,9 @@
 
 use machine_model::effects::EffectKind;
 
+use crate::effects::{curve_axis, is_straight};
 use crate::library::candidates::Part;
-use crate::library::seen::curve_axis;
-use crate::search::bounds::{is_straight, log_prior};
+use crate::search::bounds::log_prior;
 use crate::search::climb::MOST_CAUSES;
 use crate::search::moves::without;
 use crate::search::space::Fit;

@@ -6,13 +6,13 @@
 
 use machine_model::effects::{EffectKind, Shape};
 
+use crate::effects::Why;
+use crate::effects::curve_axis;
 use crate::equations::f_test::f_tail;
 use crate::equations::linear::{Products, explained};
 use crate::equations::observation::Row;
 use crate::equations::term::Term;
 use crate::library::candidates::{Library, Part};
-use crate::library::seen::curve_axis;
-use crate::search::bounds::Why;
 use crate::search::crossval::{Folding, Folds};
 use crate::search::doubt::inflations;
 use crate::search::explanation::{Reason, Refused};

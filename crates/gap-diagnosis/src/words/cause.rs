@@ -3,9 +3,9 @@
 use diagnostic::{Text, both};
 use machine_model::Vector;
 
+use crate::effects::{self, Size};
 use crate::equations::term::Term;
 use crate::judgement::assembly::Assembly;
-use crate::words::effect::{self, Size};
 
 /// What stands in the place of a remedy where the causes do not explain the gap, or unseen rows refute them.
 pub(crate) const DO_NOT_ACT: Text = Text::pair(
@@ -51,7 +51,7 @@ impl Assembly<'_> {
         let id = kind.to_string();
         let of = id.split_once('.').map_or("", |(_, of)| of.trim_start_matches('E'));
         let (a, b) = of.split_at_checked(1).unwrap_or_default();
-        (effect::of(kind).words)(&Size {
+        (effects::of(kind).words)(&Size {
             of,
             a,
             b,

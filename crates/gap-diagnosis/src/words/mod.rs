@@ -1,7 +1,6 @@
 //! The answer in words.
 
 pub(crate) mod cause;
-mod effect;
 pub(crate) mod name;
 pub(crate) mod notes;
 pub(crate) mod report;

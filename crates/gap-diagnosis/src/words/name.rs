@@ -3,7 +3,7 @@
 use diagnostic::{Text, both};
 use machine_model::effects::EffectKind;
 
-use crate::words::effect::{self, FAULTS};
+use crate::effects::{self, FAULTS};
 
 /// A name of an effect that fits beside a bar: in English its id.
 ///
@@ -21,7 +21,7 @@ pub fn effect_name(kind: &EffectKind) -> Text {
     let of = id.split_once('.').map_or("", |(_, of)| of);
     let russian = match kind {
         EffectKind::Tracker(fault) => format!("трекер: {}", FAULTS[*fault][0]),
-        other => format!("{} {of}", effect::of(*other).name).trim_end().to_owned(),
+        other => format!("{} {of}", effects::of(*other).name).trim_end().to_owned(),
     };
     Text::new(id, russian)
 }
@@ -134,7 +134,7 @@ mod tests {
             let name = effect_name(&kind);
             let russian = name.in_language(Language::Russian);
             assert!(!is_latin(russian) && russian.chars().count() <= 24, "{kind}: {russian}");
-            for key in kind.coefficient_names().iter().chain(kind.shape_names()) {
+            for key in kind.coefficient_names().iter().copied().chain(kind.shape_names()) {
                 let name = number_name(key);
                 let russian = name.in_language(Language::Russian);
                 assert!(!is_latin(russian) && russian.contains(','), "{kind}: {key}: {russian}");

@@ -2,6 +2,7 @@
 
 use diagnostic::{Text, both};
 
+use crate::effects;
 use crate::equations::align::{rms, row_lengths};
 use crate::equations::observation::Measurements;
 use crate::judgement::answer::{Cause, Diagnosis, Gap, Leftover, Verdict};
@@ -14,7 +15,6 @@ use crate::judgement::verdict::{Evidence, Unseen, verdict};
 use crate::options::Options;
 use crate::search::formula::formulas;
 use crate::words::cause::{DO_NOT_ACT, NO_NAME_YET, NO_PLAY, TURNED};
-use crate::words::effect;
 use crate::words::sentence::sentence;
 
 /// What the rows that were fitted say, before others are asked.
@@ -148,7 +148,7 @@ impl Assembly<'_> {
                 rms_before_um,
                 rms_after_um,
                 shrink_predicted: Some(self.shrink(index + 1, holdout)),
-                remedy: effect::of(kind).remedy.clone(),
+                remedy: effects::of(kind).remedy.clone(),
             };
             if cause.is_turned_play() {
                 cause.remedy = NO_PLAY;

@@ -9,8 +9,8 @@ pub(super) struct Spec {
     pub(super) family: &'static str,
     /// Names of the coefficients, with their unit; the displacement is linear in them.
     pub(super) coefficients: &'static [&'static str],
-    /// Names of the [`super::Shape`] fields that it uses.
-    pub(super) shape: &'static [&'static str],
+    /// Names of the [`super::Shape`] fields that it uses, each with the first of the coefficients that need it.
+    pub(super) shape: &'static [(&'static str, usize)],
     pub(super) origin: Origin,
     pub(super) direction: Direction,
 }
@@ -35,8 +35,10 @@ pub(super) enum Direction {
     Matters,
 }
 
-const INTERVAL: [&str; 2] = ["from_mm", "to_mm"];
-const PLACE: [&str; 2] = ["centre_mm", "width_mm"];
+const INTERVAL: [(&str, usize); 2] = [("from_mm", 0), ("to_mm", 0)];
+/// Of what is even without it.
+const VARYING: [(&str, usize); 2] = [("from_mm", 1), ("to_mm", 1)];
+const PLACE: [(&str, usize); 2] = [("centre_mm", 0), ("width_mm", 0)];
 const XYZ: [&str; 3] = ["x_um", "y_um", "z_um"];
 
 /// Of a curve along an axis; its slope comes last, for that is mostly the business of a scale, a squareness or the
@@ -79,7 +81,7 @@ impl Spec {
         Self { family, coefficients, shape: &[], origin, direction }
     }
 
-    const fn shaped(self, shape: &'static [&'static str]) -> Self {
+    const fn shaped(self, shape: &'static [(&'static str, usize)]) -> Self {
         Self { shape, ..self }
     }
 
@@ -100,14 +102,16 @@ impl Spec {
                 Self::new("thermal", &["expansion_um_per_m_k", "shift_um_per_k", "expansion2_um_per_m_k2"])
             }
             Kind::Warmup(_) => {
-                Self::new("warmup", &["amplitude_um", "amplitude2_um"]).shaped(&["tau_s", "tau2_s"])
+                Self::new("warmup", &["amplitude_um", "amplitude2_um"]).shaped(&[("tau_s", 0), ("tau2_s", 1)])
             }
-            Kind::Backlash(_) => Self::new("backlash", &HALF_WIDTH).shaped(&INTERVAL).directed(),
-            Kind::LostMotion { .. } => Self::new("lost-motion", &HALF_WIDTH).shaped(&INTERVAL).directed(),
+            Kind::Backlash(_) => Self::new("backlash", &HALF_WIDTH).shaped(&VARYING).directed(),
+            Kind::LostMotion { .. } => Self::new("lost-motion", &HALF_WIDTH).shaped(&VARYING).directed(),
             Kind::Squareness(..) => Self::new("squareness", &["angle_urad"]),
             Kind::Positioning(_) => Self::new("positioning", &CURVE).shaped(&INTERVAL),
             Kind::Straightness { .. } => Self::new("straightness", &CURVE).shaped(&INTERVAL),
-            Kind::Pitch(_) => Self::new("pitch", &PITCH).shaped(&["pitch_mm", "from_mm", "to_mm"]),
+            Kind::Pitch(_) => {
+                Self::new("pitch", &PITCH).shaped(&[("pitch_mm", 0), ("from_mm", 6), ("to_mm", 6)])
+            }
             Kind::Angular { .. } => Self::new("angular", &ANGULAR).shaped(&INTERVAL),
             Kind::Sag(_) => {
                 Self::new("sag", &["droop3_um", "droop2_um", "droop4_um", "tilt_urad"]).shaped(&INTERVAL)
@@ -128,10 +132,10 @@ impl Spec {
                     .directed()
             }
             Kind::InstrumentDrift => Self::new("instrument-drift", &DRIFT).arising(Instrument),
-            Kind::Step(_) => Self::new("step", &["shift_um"]).shaped(&["time_s"]),
+            Kind::Step(_) => Self::new("step", &["shift_um"]).shaped(&[("time_s", 0)]),
             Kind::Local(_) => Self::new("local", &XYZ).shaped(&PLACE),
             Kind::Joint(_) => Self::new("joint", &XYZ).shaped(&PLACE),
-            Kind::Spike(_) => Self::new("spike", &["spike_um"]).shaped(&["width_mm"]).directed(),
+            Kind::Spike(_) => Self::new("spike", &["spike_um"]).shaped(&[("width_mm", 0)]).directed(),
             Kind::Contraction => Self::new(
                 "contraction",
                 &["path_um_per_m_s2", "x_um_per_m_s2", "y_um_per_m_s2", "z_um_per_m_s2"],
@@ -156,9 +160,8 @@ impl EffectKind {
     }
 
     /// Names of the [`super::Shape`] fields the effect uses.
-    #[must_use]
-    pub const fn shape_names(&self) -> &'static [&'static str] {
-        Spec::of(*self).shape
+    pub fn shape_names(&self) -> impl Iterator<Item = &'static str> + Clone {
+        Spec::of(*self).shape.iter().map(|(name, _)| *name)
     }
 
     /// True where the effect is a fault of the measuring instrument, not of the machine.

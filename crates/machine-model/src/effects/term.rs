@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::spec::Spec;
 use super::{Conditions, EffectGeometry, EffectKind, MissingCondition, Shape, UnknownEffect};
 use crate::{Command, Vector};
 
@@ -118,14 +119,14 @@ impl EffectTerm {
             }
             if let Some(index) = names.iter().position(|n| n == name) {
                 coefficients[index] = *value;
-            } else if shapes.contains(&name.as_str()) {
+            } else if shapes.clone().any(|known| known == name) {
                 let positive = ["tau_s", "tau2_s", "pitch_mm", "width_mm"].contains(&name.as_str());
                 if positive && *value <= 0.0 {
                     return Err(wrong("it must be above zero"));
                 }
                 *shape.field(name) = *value;
             } else {
-                let known: Vec<&str> = names.iter().chain(shapes).copied().collect();
+                let known: Vec<&str> = names.iter().copied().chain(shapes).collect();
                 return Err(EffectError::UnknownParameter {
                     id: id.to_owned(),
                     name: name.clone(),
@@ -141,18 +142,9 @@ impl EffectTerm {
     /// Shape parameters that the coefficients given make necessary.
     fn complete(&self, id: &str, parameters: &[(String, f64)]) -> Result<(), EffectError> {
         let given = |name: &str| parameters.iter().any(|(n, _)| n == name);
-        let used = |name: &str| match (self.kind, name) {
-            (EffectKind::Backlash(_) | EffectKind::LostMotion { .. }, _) => {
-                self.coefficients.iter().skip(1).any(|c| *c != 0.0)
-            }
-            (EffectKind::Warmup(_), "tau2_s") => self.coefficients.get(1).is_some_and(|c| *c != 0.0),
-            (EffectKind::Pitch(_), "from_mm" | "to_mm") => {
-                self.coefficients.iter().skip(6).any(|c| *c != 0.0)
-            }
-            _ => true,
-        };
-        for name in self.kind.shape_names().iter().copied() {
-            if used(name) && !given(name) {
+        for (name, first) in Spec::of(self.kind).shape.iter().copied() {
+            let used = first == 0 || self.coefficients.iter().skip(first).any(|c| *c != 0.0);
+            if used && !given(name) {
                 return Err(EffectError::Missing { id: id.to_owned(), name });
             }
         }
@@ -200,7 +192,7 @@ impl EffectTerm {
     #[must_use]
     pub fn entry(&self) -> Vec<(&'static str, f64)> {
         let mut shape = self.shape;
-        let shapes = self.kind.shape_names().iter().map(|name| (*name, *shape.field(name)));
+        let shapes = self.kind.shape_names().map(|name| (name, *shape.field(name)));
         let mut all: Vec<_> =
             shapes.filter(|(name, v)| *v != 0.0 || *name == "from_mm" || *name == "to_mm").collect();
         if all.iter().all(|(name, v)| (*name == "from_mm" || *name == "to_mm") && *v == 0.0) {

@@ -1,7 +1,7 @@
 //! What a profile says of programs and of the control that runs them.
 
 use diagnostic::{Text, both};
-use toolpath::{DrillPecks, DrillR, FlankFrom};
+use toolpath::{DrillPecks, DrillR, FlankFrom, TurningParameters};
 
 use super::Lines;
 use crate::profile::{AfterChange, BareLengths, Profile};
@@ -65,93 +65,7 @@ impl Profile {
     /// What the control's cycles of lathes do.
     fn write_cycles(&self, out: &mut Lines) {
         let turning = &self.program.turning;
-        let said = [
-            (
-                Text::pair("chamfer of threads", "сбег резьбы"),
-                turning.thread_chamfer_leads,
-                Text::pair(" leads", " ходов"),
-            ),
-            (
-                Text::pair("its angle", "его угол"),
-                turning.thread_chamfer_deg,
-                Text::pair(" degrees", " градусов"),
-            ),
-            (
-                Text::pair("escape of roughing", "отвод при черновой"),
-                turning.roughing_escape_mm,
-                Text::pair(" mm", " мм"),
-            ),
-            (
-                Text::pair("return of pecks", "отвод между врезаниями"),
-                turning.groove_return_mm,
-                Text::pair(" mm", " мм"),
-            ),
-            (
-                Text::pair("finishing passes of threads", "чистовых проходов резьбы"),
-                turning.thread_finishing_passes,
-                Text::pair("", ""),
-            ),
-            (
-                Text::pair("their least infeed", "их наименьшее врезание"),
-                turning.thread_least_mm,
-                Text::pair(" mm", " мм"),
-            ),
-            (
-                Text::pair("their allowance", "их припуск"),
-                turning.thread_allowance_mm,
-                Text::pair(" mm", " мм"),
-            ),
-            (
-                Text::pair("return in drilling", "отвод при сверлении"),
-                turning.drill_return_mm,
-                Text::pair(" mm", " мм"),
-            ),
-            (
-                Text::pair("feed out of bored holes", "подача на выходе из расточки"),
-                turning.bore_return_percent,
-                Text::pair(" % of F", " % от F"),
-            ),
-        ];
-        let mut said: Vec<Text> = said
-            .into_iter()
-            .filter_map(|(what, value, unit)| Some(both!("{what} {}{unit}", "{what:#} {}{unit:#}", value?)))
-            .collect();
-        if let Some(from) = turning.thread_flank_from {
-            said.push(match from {
-                FlankFrom::Start => {
-                    Text::pair("flanks count from the start", "боковые стороны считаются от начала")
-                }
-                FlankFrom::FirstPass => Text::pair(
-                    "flanks count from the first pass",
-                    "боковые стороны считаются от первого прохода",
-                ),
-                FlankFrom::LastPass => Text::pair(
-                    "flanks count from the last pass",
-                    "боковые стороны считаются от последнего прохода",
-                ),
-            });
-        }
-        if let Some(pecks) = turning.drill_pecks {
-            said.push(match pecks {
-                DrillPecks::Chip => Text::pair("pecks break the chip", "врезания дробят стружку"),
-                DrillPecks::Full => Text::pair("pecks go back to R", "после врезания отвод до R"),
-            });
-        }
-        if let Some(r) = turning.drill_r {
-            said.push(match r {
-                DrillR::Place => Text::pair("R of holes is a place", "R отверстий — координата"),
-                DrillR::Way => Text::pair("R of holes is a way", "R отверстий — расстояние"),
-            });
-        }
-        if turning.plain_drawing {
-            said.push(Text::pair("A, C and R of lines without a comma", "A, C и R прямых без запятой"));
-        }
-        if turning.nose_in_finishing {
-            said.push(Text::pair(
-                "G41 and G42 of contours in finishing alone",
-                "G41 и G42 контуров только при чистовой",
-            ));
-        }
+        let said: Vec<Text> = cycle_figures(turning).chain(cycle_manners(turning)).collect();
         if !said.is_empty() {
             out.line(both!("cycles       {}", "циклы        {:#}", Text::join(&said, ", ")));
         }
@@ -201,4 +115,94 @@ impl Profile {
             }
         }
     }
+}
+
+/// Numbers of the control's cycles of lathes.
+fn cycle_figures(turning: &TurningParameters) -> impl Iterator<Item = Text> {
+    [
+        (
+            Text::pair("chamfer of threads", "сбег резьбы"),
+            turning.thread_chamfer_leads,
+            Text::pair(" leads", " ходов"),
+        ),
+        (
+            Text::pair("its angle", "его угол"),
+            turning.thread_chamfer_deg,
+            Text::pair(" degrees", " градусов"),
+        ),
+        (
+            Text::pair("escape of roughing", "отвод при черновой"),
+            turning.roughing_escape_mm,
+            Text::pair(" mm", " мм"),
+        ),
+        (
+            Text::pair("return of pecks", "отвод между врезаниями"),
+            turning.groove_return_mm,
+            Text::pair(" mm", " мм"),
+        ),
+        (
+            Text::pair("finishing passes of threads", "чистовых проходов резьбы"),
+            turning.thread_finishing_passes,
+            Text::pair("", ""),
+        ),
+        (
+            Text::pair("their least infeed", "их наименьшее врезание"),
+            turning.thread_least_mm,
+            Text::pair(" mm", " мм"),
+        ),
+        (Text::pair("their allowance", "их припуск"), turning.thread_allowance_mm, Text::pair(" mm", " мм")),
+        (
+            Text::pair("return in drilling", "отвод при сверлении"),
+            turning.drill_return_mm,
+            Text::pair(" mm", " мм"),
+        ),
+        (
+            Text::pair("feed out of bored holes", "подача на выходе из расточки"),
+            turning.bore_return_percent,
+            Text::pair(" % of F", " % от F"),
+        ),
+    ]
+    .into_iter()
+    .filter_map(|(what, value, unit)| Some(both!("{what} {}{unit}", "{what:#} {}{unit:#}", value?)))
+}
+
+/// What the control's cycles of lathes do of several things that they could.
+fn cycle_manners(turning: &TurningParameters) -> Vec<Text> {
+    let mut said = Vec::new();
+    if let Some(from) = turning.thread_flank_from {
+        said.push(match from {
+            FlankFrom::Start => {
+                Text::pair("flanks count from the start", "боковые стороны считаются от начала")
+            }
+            FlankFrom::FirstPass => {
+                Text::pair("flanks count from the first pass", "боковые стороны считаются от первого прохода")
+            }
+            FlankFrom::LastPass => Text::pair(
+                "flanks count from the last pass",
+                "боковые стороны считаются от последнего прохода",
+            ),
+        });
+    }
+    if let Some(pecks) = turning.drill_pecks {
+        said.push(match pecks {
+            DrillPecks::Chip => Text::pair("pecks break the chip", "врезания дробят стружку"),
+            DrillPecks::Full => Text::pair("pecks go back to R", "после врезания отвод до R"),
+        });
+    }
+    if let Some(r) = turning.drill_r {
+        said.push(match r {
+            DrillR::Place => Text::pair("R of holes is a place", "R отверстий — координата"),
+            DrillR::Way => Text::pair("R of holes is a way", "R отверстий — расстояние"),
+        });
+    }
+    if turning.plain_drawing {
+        said.push(Text::pair("A, C and R of lines without a comma", "A, C и R прямых без запятой"));
+    }
+    if turning.nose_in_finishing {
+        said.push(Text::pair(
+            "G41 and G42 of contours in finishing alone",
+            "G41 и G42 контуров только при чистовой",
+        ));
+    }
+    said
 }

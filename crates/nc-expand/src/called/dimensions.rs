@@ -3,7 +3,7 @@
 use diagnostic::{Refusal, Text, both};
 use nc_dialect::{Action, Called};
 use nc_program::Owner;
-use nc_program::modal::Modal;
+use nc_program::modal::{Distance, Modal};
 use nc_syntax::{Block, ItemKind, Reader, Span, Value};
 use units::math;
 
@@ -251,15 +251,15 @@ fn kept(words: &Words<'_, '_>, without: [u8; 5]) -> Vec<u8> {
 }
 
 /// The number that a word without AC and IC needs.
-fn place(modal: &Modal, letter: u8, value: f64, by: bool) -> Option<f64> {
+fn place(modal: &Modal, letter: u8, value: f64, by: Distance) -> Option<f64> {
     let at = modal.places();
     if let Some(axis) = AXES.iter().position(|axis| *axis == letter) {
         return match (by, modal.says_places()) {
-            (false, true) | (true, false) => Some(value),
-            (true, true) => Some(at[axis]? + value),
-            (false, false) => Some(value - at[axis]?),
+            (Distance::Absolute, true) | (Distance::Incremental, false) => Some(value),
+            (Distance::Incremental, true) => Some(at[axis]? + value),
+            (Distance::Absolute, false) => Some(value - at[axis]?),
         };
     }
     let axis = usize::from(letter - b'I');
-    if by { Some(value) } else { Some(value - at[axis]?) }
+    if by == Distance::Incremental { Some(value) } else { Some(value - at[axis]?) }
 }

@@ -5,7 +5,7 @@ use nc_dialect::Action;
 use nc_program::Owner;
 
 use super::hole::{Hole, Move};
-use super::{Writer, names_axes};
+use super::{Unsaid, Writer, names_axes};
 use crate::came::Fault;
 use crate::codes;
 use crate::known::{Motion, motion};
@@ -25,20 +25,20 @@ impl Writer<'_> {
             Some((here, Owner::Motion | Owner::DwellP))
                 if names_axes(words) && matches!(motion(&here), Motion::Line | Motion::Arc) =>
             {
-                self.needs(words, true, true)
+                self.needs(words, Unsaid { feed: true, spindle: true })
             }
             _ => Ok(()),
         }
     }
 
-    /// Refuses a cut at a feed or with a spindle that a cycle left open.
-    pub(super) fn needs(&self, words: &Words<'_, '_>, feed: bool, spindle: bool) -> Result<(), Fault> {
-        let (message, help) = if self.unsaid.feed && feed {
+    /// Refuses a cut that needs a feed or a spindle which a cycle left unsaid.
+    pub(super) fn needs(&self, words: &Words<'_, '_>, needed: Unsaid) -> Result<(), Fault> {
+        let (message, help) = if self.unsaid.feed && needed.feed {
             (
                 both!("which feed holds behind CYCLE85", "какая подача действует после CYCLE85"),
                 both!("write F in this block", "напишите в этом кадре F"),
             )
-        } else if self.unsaid.spindle && spindle {
+        } else if self.unsaid.spindle && needed.spindle {
             (
                 both!("whether the spindle turns behind CYCLE86", "вращается ли шпиндель после CYCLE86"),
                 both!("write M3 or M4 before this block", "напишите M3 или M4 до этого кадра"),
@@ -63,7 +63,7 @@ impl Writer<'_> {
         if !self.modal().says_places() {
             return Err(words.fault(refusal::CYCLE_UNDER_G91, words.whole()));
         }
-        self.needs(words, hole.takes_feed, !hole.leaves_spindle)?;
+        self.needs(words, Unsaid { feed: hole.takes_feed, spindle: !hole.leaves_spindle })?;
         self.unsaid.feed |= hole.leaves_feed;
         self.unsaid.spindle |= hole.leaves_spindle;
         let axis = plane[2];

@@ -23,7 +23,7 @@ mod pattern;
 
 use nc_dialect::{Action, Called, Dialect};
 use nc_program::Owner;
-use nc_program::modal::Modal;
+use nc_program::modal::{Distance, Modal};
 use nc_syntax::{Block, Item, ItemKind, Span, Value};
 
 use crate::came::{Came, Fault};
@@ -60,13 +60,13 @@ pub(crate) fn is_dimension(letter: u8, text: &[u8]) -> bool {
     dimension(letter, text).is_some()
 }
 
-/// What is in the brackets of `X=AC(…)` or `X=IC(…)`, and whether it is an increment.
-fn dimension(letter: u8, text: &[u8]) -> Option<(&str, bool)> {
+/// What is in the brackets of `X=AC(…)` or `X=IC(…)`, and what it counts from.
+fn dimension(letter: u8, text: &[u8]) -> Option<(&str, Distance)> {
     let (name, inside) = siemens::function_of(text).filter(|_| b"XYZIJK".contains(&letter))?;
     let inside = std::str::from_utf8(&text[inside]).ok()?.trim();
     match &name.to_ascii_uppercase()[..] {
-        b"AC" => Some((inside, false)),
-        b"IC" => Some((inside, true)),
+        b"AC" => Some((inside, Distance::Absolute)),
+        b"IC" => Some((inside, Distance::Incremental)),
         _ => None,
     }
 }

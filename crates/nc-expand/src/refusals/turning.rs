@@ -362,3 +362,17 @@ pub(crate) fn parameter_of_the_control(what: &Text, key: &str, value: &str) -> R
         ),
     }
 }
+
+/// `along`: 0 for X, 1 for Z.
+pub(crate) fn groove_without_step(along: usize) -> Refusal {
+    Refusal {
+        code: codes::TURNING_CYCLE,
+        message: both!("a groove wider than the tool without its step", "канавка шире резца без шага"),
+        label: both!("how far from one place to the next?", "на сколько смещаться?"),
+        help: if along == 0 {
+            both!("write P, the step along X (radius)", "напишите P — шаг вдоль X (по радиусу)")
+        } else {
+            both!("write Q, the step along Z", "напишите Q — шаг вдоль Z")
+        },
+    }
+}

@@ -244,7 +244,7 @@ impl Writer<'_, '_, '_> {
             let (from_plane, to_plane) = (self.plane(at), self.plane(to));
             let (arc, round) = match code {
                 Code::Clockwise | Code::CounterClockwise => {
-                    let arc = self.arc(&block, from_plane, to_plane, code == Code::Clockwise)?;
+                    let arc = self.arc(&block, from_plane, to_plane, code)?;
                     (Some(arc), block.texts(b"IKR"))
                 }
                 _ => (None, Vec::new()),
@@ -391,7 +391,7 @@ impl Writer<'_, '_, '_> {
         words: &Words<'_, '_>,
         from: Point,
         to: Point,
-        clockwise: bool,
+        code: Code,
     ) -> Result<Arc, Fault> {
         let refuse = |label: Text| {
             Err(words.fault(
@@ -412,7 +412,7 @@ impl Writer<'_, '_, '_> {
                     ));
                 }
                 // Left of the way lies the centre of G3 with a positive radius.
-                let left = if clockwise == (radius < 0.0) { 1.0 } else { -1.0 };
+                let left = if (code == Code::Clockwise) == (radius < 0.0) { 1.0 } else { -1.0 };
                 let height = left * math_sqrt(square) / length;
                 [0.5 * (from[0] + to[0]) + height * chord[1], 0.5 * (from[1] + to[1]) - height * chord[0]]
             }
@@ -423,12 +423,12 @@ impl Writer<'_, '_, '_> {
             _ => return refuse(both!("R, or I and K, were expected", "ожидалось R или I и K")),
         };
         let angle = |p: Point| math::atan2(p[0] - centre[0], p[1] - centre[1]);
-        let turn = std::f64::consts::TAU;
-        let sweep = (angle(to) - angle(from)).rem_euclid(turn);
-        let sweep_rad = if clockwise {
-            if sweep == 0.0 { -turn } else { sweep - turn }
+        let whole = std::f64::consts::TAU;
+        let sweep = (angle(to) - angle(from)).rem_euclid(whole);
+        let sweep_rad = if code == Code::Clockwise {
+            if sweep == 0.0 { -whole } else { sweep - whole }
         } else if sweep == 0.0 {
-            turn
+            whole
         } else {
             sweep
         };

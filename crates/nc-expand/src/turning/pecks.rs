@@ -7,7 +7,7 @@
 //! block, the relief at the bottom, is refused: at the first groove there is no room for it, and what a control does
 //! there the manual leaves open.
 
-use diagnostic::{Refusal, both};
+use diagnostic::both;
 use nc_dialect::TurningCycle;
 use nc_syntax::Span;
 use toolpath::{Retreat, peck_depths, whole_pecks};
@@ -15,7 +15,6 @@ use toolpath::{Retreat, peck_depths, whole_pecks};
 use super::place::{Code, Spot};
 use super::writer::Writer;
 use crate::came::Fault;
-use crate::codes;
 use crate::refusals::turning as refusal;
 
 /// Pecks of one cycle at all its places; more are a wrong step.
@@ -51,22 +50,7 @@ impl Writer<'_, '_, '_> {
         };
         let (peck, across) = (step(down), step(along));
         if whole[along] != 0 && words.number(letters[along]).is_none() {
-            return Err(words.fault(
-                Refusal {
-                    code: codes::TURNING_CYCLE,
-                    message: both!(
-                        "a groove wider than the tool without its step",
-                        "канавка шире резца без шага"
-                    ),
-                    label: both!("how far from one place to the next?", "на сколько смещаться?"),
-                    help: if along == 0 {
-                        both!("write P, the step along X (radius)", "напишите P — шаг вдоль X (по радиусу)")
-                    } else {
-                        both!("write Q, the step along Z", "напишите Q — шаг вдоль Z")
-                    },
-                },
-                span,
-            ));
+            return Err(words.fault(refusal::groove_without_step(along), span));
         }
         let (pecks, places) = (1 + whole[down].abs() / peck.max(1), 1 + whole[along].abs() / across.max(1));
         if whole[down] == 0 || pecks.saturating_mul(places) > MOST {

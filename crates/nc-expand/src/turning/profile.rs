@@ -186,7 +186,7 @@ impl Profile {
         while done != distance {
             let smallest = self.segments.iter().map(|segment| 0.5 * segment.size()).fold(1e9, f64::min);
             let step = smallest.min((distance - done).abs()) * distance.signum();
-            self.step_off(step, distance > 0.0)?;
+            self.step_off(step)?;
             done += step;
             steps += 1;
             if steps > MOST || self.segments.is_empty() {
@@ -204,7 +204,7 @@ impl Profile {
     }
 
     /// One step of an offset.
-    fn step_off(&mut self, step: f64, counter: bool) -> Result<(), Misfit> {
+    fn step_off(&mut self, step: f64) -> Result<(), Misfit> {
         for segment in &mut self.segments {
             segment.push(step);
         }
@@ -216,7 +216,7 @@ impl Profile {
             if start[0] - end[0] > GAP {
                 before.push(-step);
                 after.push(-step);
-                let round = Some(Round { centre: middle(before.end, after.start), counter });
+                let round = Some(Round { centre: middle(before.end, after.start), counter: step > 0.0 });
                 self.segments.insert(k + 1, Segment { start, end, round });
                 k += 1;
             }

@@ -155,13 +155,13 @@ impl Writer<'_, '_, '_> {
             if arc && !clockwise && !says_itself {
                 return refuse(refusal::ARC_WITHOUT_G3);
             }
-            let round = if arc {
+            let round = if let Some(code) = motion.filter(|_| arc) {
                 let radius = words.length(b'R', self.here.units);
                 let half = 0.5 * units::math::hypot(to[0] - at[0], to[1] - at[1]);
                 if radius.is_some_and(|radius| radius * radius - half * half < HALF_CIRCLE || radius < 0.0) {
                     return refuse(refusal::ARC_WHOSE_R_NOT_CERTAIN);
                 }
-                Some(Round { centre: self.arc(&words, at, to, clockwise)?.centre(), counter: !clockwise })
+                Some(Round { centre: self.arc(&words, at, to, code)?.centre(), counter: !clockwise })
             } else {
                 None
             };

@@ -12,18 +12,18 @@ pub(super) fn weight_refused(words: &Words<'_, '_, '_>, letter: Letters) -> Box<
     words.refuse(refusal::WEIGHT_NOT_ABOVE_ZERO, words.span(letter))
 }
 
+/// `range`: of the orders that a first block may say.
 pub(super) fn order_refused(
     words: &Words<'_, '_, '_>,
     letter: u8,
-    late: bool,
-    [least, most]: [u32; 2],
+    range: Option<[u32; 2]>,
 ) -> Box<Diagnostic> {
     let span = words.span(Letters::of(&[letter]));
-    let letter = letter as char;
-    if late {
-        return words.refuse(refusal::order_behind_first_block(letter), span);
-    }
-    words.refuse(refusal::order_of_curve(least, most), span)
+    let refusal = match range {
+        Some([least, most]) => refusal::order_of_curve(least, most),
+        None => refusal::order_behind_first_block(letter as char),
+    };
+    words.refuse(refusal, span)
 }
 
 pub(super) fn of_fault(words: &Words<'_, '_, '_>, span: Span, fault: &NurbsFault) -> Box<Diagnostic> {

@@ -6,7 +6,7 @@ use nc_syntax::{Letters, Span};
 use toolpath::{MOST_DEGREE, Nurbs, NurbsFault, Position};
 
 use super::faults::{every_knot, of_fault, order_refused, weight_refused};
-use super::parts::{POINT_LETTERS, cut, not_skipped, plane_axes};
+use super::parts::{POINT_LETTERS, cut, is_curve, not_skipped, plane_axes};
 use super::points::both_axes;
 use crate::codes;
 use crate::environment::Environment;
@@ -26,8 +26,8 @@ pub(super) fn knot(
     state: &mut Modal,
     moved: &mut Moved,
     form: CurveCode,
-    written: bool,
 ) -> Outcome<()> {
+    let written = words.codes.iter().any(is_curve);
     let span = words.span(POINT_LETTERS);
     not_incremental(words, state, span)?;
     not_skipped(words, span)?;
@@ -42,7 +42,8 @@ pub(super) fn knot(
     let first = before.curve.is_none();
     let mut begun = match state.curve.take() {
         Some(begun) => begun,
-        None => Box::new(begin(words, form, start, axes, written, span)?),
+        None if !written => return Err(words.refuse(refusal::WORDS_BEHIND_END_OF_CURVE, span)),
+        None => Box::new(begin(words, form, start, axes, span)?),
     };
     if written && !first && !axes.is_empty() {
         let message = both!("a curve begins inside another", "кривая начинается внутри другой");
@@ -52,8 +53,8 @@ pub(super) fn knot(
             words.refuse(Refusal { code: codes::CURVE, message, label, help: every_knot(&begun) }, span)
         );
     }
-    order(words, &mut begun, first, in_plane, span)?;
-    next_knot(words, &mut begun, in_plane, span)?;
+    order(words, &mut begun, form, span)?;
+    next_knot(words, &mut begun, form, span)?;
     if !axes.is_empty() {
         let weight = weight_of(words, &begun, axes)?;
         let place = end(words, state, &frame)?;
@@ -97,12 +98,8 @@ fn begin(
     form: CurveCode,
     start: Position,
     axes: Letters,
-    written: bool,
     span: Span,
 ) -> Outcome<CurveBegun> {
-    if !written {
-        return Err(words.refuse(refusal::WORDS_BEHIND_END_OF_CURVE, span));
-    }
     if axes.is_empty() {
         return Err(words.refuse(refusal::CURVE_WITHOUT_FIRST_CONTROL_POINT, span));
     }
@@ -113,17 +110,12 @@ fn begin(
 }
 
 /// P in the first block.
-fn order(
-    words: &Words<'_, '_, '_>,
-    begun: &mut CurveBegun,
-    first: bool,
-    in_plane: bool,
-    span: Span,
-) -> Outcome<()> {
+fn order(words: &Words<'_, '_, '_>, begun: &mut CurveBegun, form: CurveCode, span: Span) -> Outcome<()> {
+    let (first, in_plane) = (begun.knots.is_empty(), form == CurveCode::PlaneKnots);
     if let Some(order) = words.whole(b'P')? {
         let most = if in_plane { MOST_DEGREE as u32 + 1 } else { 4 };
         if !first || !(2..=most).contains(&order) {
-            return Err(order_refused(words, b'P', !first, [2, most]));
+            return Err(order_refused(words, b'P', first.then_some([2, most])));
         }
         begun.degree = order as usize - 1;
     } else if first && in_plane {
@@ -133,11 +125,11 @@ fn order(
 }
 
 /// K, not before the one in front of it.
-fn next_knot(words: &Words<'_, '_, '_>, begun: &mut CurveBegun, in_plane: bool, span: Span) -> Outcome<()> {
+fn next_knot(words: &Words<'_, '_, '_>, begun: &mut CurveBegun, form: CurveCode, span: Span) -> Outcome<()> {
     let Some(knot) = words.coordinate(b'K', false) else {
         return Err(words.refuse(refusal::BLOCK_WITHOUT_KNOT, span));
     };
-    if !in_plane {
+    if form == CurveCode::Knots {
         begun.as_pointed(words)?;
     }
     if begun.knots.last().is_some_and(|last| knot < *last) {

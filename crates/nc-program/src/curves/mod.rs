@@ -44,9 +44,7 @@ pub(crate) fn execute(
         CurveCode::Cubic | CurveCode::Quadratic => bezier::bezier(env, words, before, state, form, moved),
         CurveCode::Points => points::point(env, words, before, state, moved),
         CurveCode::End => points::whole_by_end(words, state, moved, span),
-        CurveCode::Knots | CurveCode::PlaneKnots => {
-            knots::knot(env, words, before, state, moved, form, written.is_some())
-        }
+        CurveCode::Knots | CurveCode::PlaneKnots => knots::knot(env, words, before, state, moved, form),
     }
 }
 

@@ -52,7 +52,7 @@ pub(super) fn point(
     if let Some(order) = words.whole(b'L')? {
         let degree = usize::try_from(order).unwrap_or(usize::MAX).wrapping_sub(1);
         if !first || !(2..=MOST_DEGREE).contains(&degree) {
-            return Err(order_refused(words, b'L', !first, [3, MOST_DEGREE as u32 + 1]));
+            return Err(order_refused(words, b'L', first.then_some([3, MOST_DEGREE as u32 + 1])));
         }
         begun.degree = degree;
     }

@@ -7,7 +7,7 @@ use jobs::causes::Causes;
 use jobs::settings::Settings;
 use machine_model::Models;
 use path_comparison::{Comparison, Trace};
-use report::viewer::scene::Place;
+use report::viewer::scene::{Place, Scene};
 use report::viewer::thinning::Thinning;
 use report::viewer::{Figures, Kind, Viewer, line_of};
 
@@ -33,10 +33,77 @@ pub(super) fn write(
 ) -> Result<(), Failure> {
     let causes = Causes::of(&settings.profile, settings.engine.id(), &conditions(&shared.job)?)?;
     let others: Vec<Models<'_>> = causes.as_ref().map_or_else(Vec::new, Causes::without);
+    let (mut scene, called) = drawn(program, comparison, settings, &others, facts)?;
+    scene.causes = viewer::causes(causes.as_ref());
+    if scene.causes.is_empty() {
+        scene.remainder_um = 0.0;
+    }
+
+    let called_text: Vec<_> =
+        called.iter().map(|(_, _, text)| measurement_files::utf8_or_1251(text)).collect();
+    let files: Vec<Vec<&str>> = std::iter::once(facts.text)
+        .chain(called_text.iter().map(|text| text.as_ref()))
+        .map(|text| text.lines().collect())
+        .collect();
+    let blocks = viewer::blocks(&scene, |line| {
+        let file = files.iter().enumerate().rev().find(|(file, _)| line >= line_of(*file, 0))?;
+        file.1.get(usize::try_from(line - line_of(file.0, 1)).ok()?).copied()
+    });
+    let names: Vec<String> = called.into_iter().map(|(_, name, _)| name).collect();
+    let counts = [scene.places.len(), scene.of].map(|count| count.to_string());
+    let um = |mm: f64| mm * 1e3;
+    let page = Viewer {
+        kind: Kind::Check,
+        language: messages.language(),
+        scene: &scene,
+        has_after: true,
+        blocks: &blocks,
+        files: &names,
+        figures: Figures {
+            names: vec![
+                ("output", crate::file::without_folders(facts.output)),
+                ("machine", facts.machine),
+                ("drawn", &counts[0]),
+                ("of", &counts[1]),
+            ],
+            numbers: vec![
+                ("before", um(comparison.before.largest_mm)),
+                ("after", um(comparison.after.largest_mm)),
+                ("limit", um(facts.limit_mm)),
+                ("path", scene.path_bound_um),
+                ("displaced", scene.displaced_bound_um),
+                ("remainder", scene.remainder_um),
+            ],
+        },
+        facts: &[
+            ("fact_input", facts.input.to_owned()),
+            ("fact_output", facts.output.to_owned()),
+            ("fact_machine", facts.machine.to_owned()),
+            ("fact_profile", format!("{} (BLAKE3 {})", facts.profile, facts.profile_hash)),
+            ("fact_calibrated", facts.origin.said().in_language(messages.language()).to_owned()),
+            ("fact_engine", facts.engine.to_owned()),
+            ("fact_typed", crate::origin::command()),
+            ("fact_command", format!("vpost {} check", env!("CARGO_PKG_VERSION"))),
+        ],
+    };
+    viewer::write(path, page)
+}
+
+/// All motions at feed rate with what the machine and each cause make of them, and the files that the program called.
+///
+/// * `program` – as posted: its name and bytes
+/// * `others` – the machine without each cause
+fn drawn(
+    program: (&str, &[u8]),
+    comparison: &Comparison,
+    settings: &Settings,
+    others: &[Models<'_>],
+    facts: &Facts<'_>,
+) -> Result<(Scene, Vec<jobs::check::CalledFile>), Failure> {
     let traces = &comparison.traces;
     let mut thinning = Thinning::new(size_mm(traces), comparison.before.largest_mm * 1e3, 2 + others.len());
     let (mut read, mut end, mut remainder_um, mut refused) = (0, None, 0.0f64, None);
-    let called = jobs::check::courses(program, settings, &others, &mut |file, course| {
+    let called = jobs::check::courses(program, settings, others, &mut |file, course| {
         let Some(trace) = traces.get(read).filter(|_| refused.is_none()) else { return };
         let machines = 1 + others.len();
         let joins = |place: &[f64; 3]| end.is_some_and(|end| apart_mm(place, &end) < SAME_MM);
@@ -87,57 +154,8 @@ pub(super) fn write(
         );
         return Err(viewer::no_path(facts.input, &what, help));
     }
-    scene.causes = viewer::causes(causes.as_ref());
-    scene.remainder_um = if scene.causes.is_empty() { 0.0 } else { remainder_um };
-
-    let called_text: Vec<_> =
-        called.iter().map(|(_, _, text)| measurement_files::utf8_or_1251(text)).collect();
-    let files: Vec<Vec<&str>> = std::iter::once(facts.text)
-        .chain(called_text.iter().map(|text| text.as_ref()))
-        .map(|text| text.lines().collect())
-        .collect();
-    let blocks = viewer::blocks(&scene, |line| {
-        let file = files.iter().enumerate().rev().find(|(file, _)| line >= line_of(*file, 0))?;
-        file.1.get(usize::try_from(line - line_of(file.0, 1)).ok()?).copied()
-    });
-    let names: Vec<String> = called.into_iter().map(|(_, name, _)| name).collect();
-    let counts = [scene.places.len(), scene.of].map(|count| count.to_string());
-    let um = |mm: f64| mm * 1e3;
-    let page = Viewer {
-        kind: Kind::Check,
-        language: messages.language(),
-        scene: &scene,
-        has_after: true,
-        blocks: &blocks,
-        files: &names,
-        figures: Figures {
-            names: vec![
-                ("output", crate::file::without_folders(facts.output)),
-                ("machine", facts.machine),
-                ("drawn", &counts[0]),
-                ("of", &counts[1]),
-            ],
-            numbers: vec![
-                ("before", um(comparison.before.largest_mm)),
-                ("after", um(comparison.after.largest_mm)),
-                ("limit", um(facts.limit_mm)),
-                ("path", scene.path_bound_um),
-                ("displaced", scene.displaced_bound_um),
-                ("remainder", scene.remainder_um),
-            ],
-        },
-        facts: &[
-            ("fact_input", facts.input.to_owned()),
-            ("fact_output", facts.output.to_owned()),
-            ("fact_machine", facts.machine.to_owned()),
-            ("fact_profile", format!("{} (BLAKE3 {})", facts.profile, facts.profile_hash)),
-            ("fact_calibrated", facts.origin.said().in_language(messages.language()).to_owned()),
-            ("fact_engine", facts.engine.to_owned()),
-            ("fact_typed", crate::origin::command()),
-            ("fact_command", format!("vpost {} check", env!("CARGO_PKG_VERSION"))),
-        ],
-    };
-    viewer::write(path, page)
+    scene.remainder_um = remainder_um;
+    Ok((scene, called))
 }
 
 /// The diagonal of the box around all motions, mm.

@@ -14,6 +14,8 @@ const FEEDS_MM_MIN: [f64; 2] = [500.0, 3000.0];
 const LONG_MM: f64 = 150.0;
 /// The third is aside.
 const ASIDE_MM: f64 = 80.0;
+/// Two axes each.
+const PLANES: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
 /// Axes run for so long before the lines are repeated, seconds.
 const WARM_UP_S: f64 = 1800.0;
 
@@ -56,11 +58,10 @@ pub(in crate::diagnose) fn lines(volume: Volume, tool_mm: Vector) -> Result<Vec<
     };
     let through = |y: f64, z: f64| (share(0.0, y, z), share(1.0, 1.0 - y, 1.0 - z));
     let names = ["X", "Y", "Z"];
-    let planes = [(0, 1), (0, 2), (1, 2)];
     // With the tool as it is: axes, diagonals, and the axes begun from the other end, so that place and order are not the
     // same thing.
     plan.axes("middle", &|axis| along(axis, 0.5), Kind::AtRest, tool_mm, 1);
-    for (a, b) in planes {
+    for (a, b) in PLANES {
         for (other, word) in [(false, "diagonal"), (true, "other diagonal")] {
             let name = format!("{}{} {word}", names[a], names[b]);
             plan.add(&name, across(a, b, other), Kind::AtRest, tool_mm, 1);
@@ -70,7 +71,7 @@ pub(in crate::diagnose) fn lines(volume: Volume, tool_mm: Vector) -> Result<Vec<
     plan.axes("reversed", &|axis| backwards(along(axis, 0.5)), Kind::AtRest, tool_mm, 2);
     for feed in FEEDS_MM_MIN {
         plan.axes(&format!("at F{feed}"), &|axis| along(axis, 0.5), Kind::Flying(feed), tool_mm, 1);
-        for (a, b) in planes {
+        for (a, b) in PLANES {
             for (other, word) in [(false, ""), (true, " other")] {
                 let name = format!("{}{} at F{feed}{word}", names[a], names[b]);
                 plan.add(&name, across(a, b, other), Kind::Flying(feed), tool_mm, 1);

@@ -23,6 +23,62 @@ impl Report<'_> {
         messages: &Messages,
     ) -> Result<(), Failure> {
         let (d, facts) = (self.diagnosis, self.facts);
+        let scene = self.scene();
+        let name = &facts.measurements.name;
+        if scene.places.is_empty() {
+            let what =
+                both!("no row says anything of the machine", "ни одна строка ничего не говорит о станке");
+            let help = both!(
+                "measure what `--next` or `--plan` says, or leave `--viewer` out",
+                "измерьте то, что называет `--next` или `--plan`, или обойдитесь без `--viewer`"
+            );
+            return Err(viewer::no_path(name, &what, help));
+        }
+        let lines: Vec<&str> = text.lines().collect();
+        let blocks =
+            viewer::blocks(&scene, |line| lines.get(usize::try_from(line.checked_sub(1)?).ok()?).copied());
+        let (count, verdict) = (scene.of.to_string(), d.verdict.words());
+        let page = Viewer {
+            kind: Kind::Diagnosis,
+            language: messages.language(),
+            scene: &scene,
+            has_after: !d.causes.is_empty(),
+            blocks: &blocks,
+            files: &[],
+            figures: Figures {
+                names: vec![
+                    ("verdict_en", verdict.in_language(Language::English)),
+                    ("verdict_ru", verdict.in_language(Language::Russian)),
+                    ("machine", &facts.machine),
+                    ("file", name),
+                    ("drawn", &count),
+                    ("of", &count),
+                ],
+                numbers: vec![
+                    ("before", d.gap.rms_um),
+                    ("after", d.leftover.rms_um),
+                    ("remainder", scene.remainder_um),
+                ],
+            },
+            facts: &[
+                ("fact_measurements", format!("{name} (BLAKE3 {})", facts.measurements.hash)),
+                (
+                    "fact_machine",
+                    format!("{}, {}", facts.machine, facts.chain.as_deref().unwrap_or_default()),
+                ),
+                ("fact_calibrated", facts.origin.said().in_language(messages.language()).to_owned()),
+                ("fact_profile", format!("{} (BLAKE3 {})", facts.profile.name, facts.profile.hash)),
+                ("fact_engine", facts.engine.clone()),
+                ("fact_typed", crate::origin::command()),
+                ("fact_command", format!("vpost {} diagnose", env!("CARGO_PKG_VERSION"))),
+            ],
+        };
+        viewer::write(path, page)
+    }
+
+    /// The rows as told, as measured, and without each cause.
+    fn scene(&self) -> Scene {
+        let d = self.diagnosis;
         let rows = Rows::new(d, self.data);
         let mut scene = Scene {
             causes: d
@@ -77,57 +133,8 @@ impl Report<'_> {
             }
             scene.places.push(place);
         }
-        let name = &facts.measurements.name;
-        if scene.places.is_empty() {
-            let what =
-                both!("no row says anything of the machine", "ни одна строка ничего не говорит о станке");
-            let help = both!(
-                "measure what `--next` or `--plan` says, or leave `--viewer` out",
-                "измерьте то, что называет `--next` или `--plan`, или обойдитесь без `--viewer`"
-            );
-            return Err(viewer::no_path(name, &what, help));
-        }
         // Rows are measured one by one: a file holds thousands, and all of them are drawn.
         scene.of = scene.places.len();
-        let lines: Vec<&str> = text.lines().collect();
-        let blocks =
-            viewer::blocks(&scene, |line| lines.get(usize::try_from(line.checked_sub(1)?).ok()?).copied());
-        let (count, verdict) = (scene.of.to_string(), d.verdict.words());
-        let page = Viewer {
-            kind: Kind::Diagnosis,
-            language: messages.language(),
-            scene: &scene,
-            has_after: !d.causes.is_empty(),
-            blocks: &blocks,
-            files: &[],
-            figures: Figures {
-                names: vec![
-                    ("verdict_en", verdict.in_language(Language::English)),
-                    ("verdict_ru", verdict.in_language(Language::Russian)),
-                    ("machine", &facts.machine),
-                    ("file", name),
-                    ("drawn", &count),
-                    ("of", &count),
-                ],
-                numbers: vec![
-                    ("before", d.gap.rms_um),
-                    ("after", d.leftover.rms_um),
-                    ("remainder", scene.remainder_um),
-                ],
-            },
-            facts: &[
-                ("fact_measurements", format!("{name} (BLAKE3 {})", facts.measurements.hash)),
-                (
-                    "fact_machine",
-                    format!("{}, {}", facts.machine, facts.chain.as_deref().unwrap_or_default()),
-                ),
-                ("fact_calibrated", facts.origin.said().in_language(messages.language()).to_owned()),
-                ("fact_profile", format!("{} (BLAKE3 {})", facts.profile.name, facts.profile.hash)),
-                ("fact_engine", facts.engine.clone()),
-                ("fact_typed", crate::origin::command()),
-                ("fact_command", format!("vpost {} diagnose", env!("CARGO_PKG_VERSION"))),
-            ],
-        };
-        viewer::write(path, page)
+        scene
     }
 }
