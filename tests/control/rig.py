@@ -19,7 +19,7 @@ OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59")
 @dataclasses.dataclass
 class Control:
     """What a machine builder sets: zeros of work offsets (machine mm by name), axes, kinematics, speeds (mm/s, mm/s2),
-    lengths of tools (mm by number), further lines of the HAL file, settings by section, files by name."""
+    lengths of tools (mm by number), further lines of the HAL file, settings by section, subprograms by name."""
 
     zeros_mm: dict
     axes: str = "XYZ"
@@ -28,7 +28,7 @@ class Control:
     lengths_mm: dict = dataclasses.field(default_factory=dict)
     hal: tuple = ()
     settings: dict = dataclasses.field(default_factory=dict)
-    files: dict = dataclasses.field(default_factory=dict)
+    called: dict = dataclasses.field(default_factory=dict)
 
     def joints_hal(self):
         """Axes that follow their commands, which the sampler records before the line."""
@@ -58,7 +58,7 @@ def ini(folder, control):
         "EMC": {"VERSION": "1.1", "MACHINE": "rig", "DEBUG": 0},
         "DISPLAY": {"DISPLAY": folder / "drive.py"},
         "TASK": {"TASK": "milltask", "CYCLE_TIME": 0.001},
-        "RS274NGC": {"PARAMETER_FILE": folder / "rig.var"},
+        "RS274NGC": {"PARAMETER_FILE": folder / "rig.var", "SUBROUTINE_PATH": folder / "called"},
         "EMCMOT": {"EMCMOT": "motmod", "COMM_TIMEOUT": 4.0, "SERVO_PERIOD": 1000000},
         "EMCIO": {"EMCIO": "io", "CYCLE_TIME": 0.1, "TOOL_TABLE": folder / "tool.tbl"},
         "HAL": {"HALFILE": [folder / "rig.hal", folder / "joints.hal"]},
@@ -110,8 +110,9 @@ def run(programs, control):
         (folder / "joints.hal").write_text(control.joints_hal())
         (folder / "rig.var").write_text(control.parameters())
         (folder / "tool.tbl").write_text(control.tools())
-        for name, text in control.files.items():
-            (folder / name).write_text(text)
+        (folder / "called").mkdir()
+        for name, text in control.called.items():
+            (folder / "called" / name).write_text(text)
         (folder / "home").mkdir()
         for name, text in programs.items():
             (folder / f"{name}.ngc").write_bytes(text)
