@@ -279,7 +279,8 @@ def ramps(post):
 KINDS = {
     kind.__name__: kind
     for kind in (plate, slots, helix, other_planes, raster, spline, holes, pecks, row_of_holes, tools, zeros)
-    + (increments, inches, inverse_time, cutter, subprogram, shifted, numbered, switches, stops, machine_places, radii, ramps)
+    + (increments, inches, inverse_time, cutter, subprogram, shifted, numbered, switches, stops)
+    + (machine_places, radii, ramps)
 }
 
 
