@@ -37,6 +37,7 @@ from machine import Machine, played
 SAME_MM = 6e-4  # half the last digit of a word, and of what the interpreter prints
 SAME_INCH = 1.1e-4
 FIRM = 0.7  # of half a play: the interpreter prints inches to 2.5 um
+HIGHER_MM = 7.5
 TIMID = 0.05
 RIG_MM = 1.5e-3
 RIG_MODES = ["G61", "G61.1", "G64 P0.01"]
@@ -77,12 +78,12 @@ class Played(Machine):
 class Restarted:
     """What `vpost restart` makes of a line."""
 
-    def __init__(self, vpost, program, line, profile, folder):
-        made = folder / "restarted.ngc"
-        made.unlink(missing_ok=True)
+    def __init__(self, vpost, program, line, profile, safe=None):
         command = [vpost, "restart", program, "--line", str(line), "-m", profile]
+        command += ["--safe-z", f"{safe:.3f}"] if safe is not None else []
         ran = subprocess.run(command, capture_output=True)
         self.line, self.said, self.text = line, ran.stderr.decode(errors="replace"), ran.stdout
+        self.safe, self.status = safe, ran.returncode
         if ran.returncode not in (0, 1):
             raise Wrong(f"exit status {ran.returncode}: {self.said}")
         self.refused = ran.returncode == 1
@@ -131,9 +132,9 @@ def safe_height(run):
     return max(heights) if heights else None
 
 
-def approach(run, whole):
-    """What comes before the line: from above, down where it goes on, the spindle on."""
-    end, safe = whole.at, safe_height(whole)
+def approach(run, whole, safe):
+    """What comes before the line: from above, down where it goes on, the spindle on. `safe` is program mm."""
+    end = whole.at
     shift = run.shift()
     raised = False
     for move in run.moves:
@@ -186,7 +187,7 @@ def compare(whole, given, restarted):
         for axis, one, other in zip("XYZ", side, own_side):
             if abs(one) > FIRM and abs(one - other) > 1 - FIRM:
                 raise Wrong(f"{axis} hangs at {other:+.2f} of its play, in the whole at {one:+.2f}")
-        approach(run, whole)
+        approach(run, whole, safe_height(whole) if restarted.safe is None else restarted.safe)
 
 
 def reasons(given, whole, line):
@@ -246,8 +247,8 @@ class Given:
         self.path.write_bytes(self.text)
         self.count = len(self.text.splitlines())
 
-    def restarted(self, line):
-        return Restarted(self.vpost, self.path, line, self.profile, self.folder)
+    def restarted(self, line, safe=None):
+        return Restarted(self.vpost, self.path, line, self.profile, safe)
 
 
 class Tally:
@@ -295,7 +296,7 @@ def one_line(given, line, tally, follow=True):
     restarted = None
     try:
         whole = canon.calls(canon.marked(given.text, line), controls())
-        restarted = given.restarted(line)
+        restarted = given.restarted(line, asked_height(whole) if line % 5 == 0 else None)
         if restarted.refused:
             tally.refusal(given, line, reasons(given, whole, line), restarted.said)
             if follow and (before := restarted.before()):
@@ -307,13 +308,31 @@ def one_line(given, line, tally, follow=True):
         tally.fault(given, line, str(why), restarted)
 
 
+def asked_height(whole):
+    """A height above all that was commanded, which a user may ask for, program mm."""
+    try:
+        safe = safe_height(canon.Run(canon.split(whole)[0]))
+    except canon.Refused:
+        return None
+    return None if safe is None else safe + HIGHER_MM
+
+
+def beyond(given, tally):
+    """Lines that the program does not have are refused."""
+    for line in (0, given.count + 1):
+        ran = subprocess.run(
+            [given.vpost, "restart", given.path, "--line", str(line), "-m", given.profile], capture_output=True
+        )
+        if ran.returncode not in (1, 2) or ran.stdout or not ran.stderr:
+            tally.fault(given, line, f"it has {given.count} lines: exit status {ran.returncode}")
+
+
 def named_line(given, line, tally):
     """A line at which a refusal says that a restart is possible."""
     restarted = given.restarted(line)
     if restarted.refused:
         raise Wrong(f"line {line}, which a refusal names, is refused: {restarted.said}")
     compare(canon.calls(canon.marked(given.text, line), controls()), given, restarted)
-    tally.kinds[given.kind]["named before"] += 0
 
 
 def by_interpreter(given, tally):
@@ -326,8 +345,7 @@ def by_interpreter(given, tally):
         number += 1
         with tempfile.TemporaryDirectory() as temporary:
             program = Given(given.vpost, kind, chance, pathlib.Path(temporary))
-            if not program.corrected:
-                tally.kinds[kind]["as posted"] += 0
+            beyond(program, tally)
             lines = chance.sample(range(2, program.count), min(20, program.count - 2, given.lines - done))
             for line in lines:
                 one_line(program, line, tally)
