@@ -10,6 +10,7 @@ import tempfile
 import numpy as np
 
 INCH_MM = 25.4  # the stand-alone interpreter takes its parameter file and its tool table in inches
+STILL_MM = 2.6e-3  # inches are printed with four decimals
 MARK = "HERE THE JUDGE LOOKS"
 CALL = re.compile(r"^\s*\d+ N\S+\s+(\w+)\((.*)\)\s*$")
 MOTIONS = ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED")
@@ -62,7 +63,7 @@ class Move:
         self.name, self.corners, self.program_z, self.state = name, corners, program_z, state
 
     def changes(self, axis):
-        return abs(self.corners[:, axis] - self.corners[0, axis]).max() > 1e-6
+        return abs(self.corners[:, axis] - self.corners[0, axis]).max() > STILL_MM
 
 
 class Run:

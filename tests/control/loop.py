@@ -2,7 +2,7 @@
 """Judge of the loop: a machine is measured on the rig, diagnosed, corrected and measured again; is it better by what
 was said?
 
-    loop.py --vpost target/release/vpost --machines 20 [--seed 1] [--keep DIR]
+    loop.py --vpost target/release/vpost --machines 20 [--seed 1] [--interpreter] [--keep DIR]
 
 A measuring program runs through LinuxCNC's motion controller under exact stop and stands at each place; the tip there,
 with 0.5 um of noise, an offset for each line and a frame that is turned, is what `vpost diagnose` is given, other
@@ -17,12 +17,14 @@ import argparse
 import json
 import pathlib
 import random
+import re
 import subprocess
 import sys
 import tempfile
 
 import numpy as np
 
+import canon
 import judge
 import rig
 from causes import TRAVEL_MM, Caused
@@ -34,6 +36,7 @@ OFFSET_UM, TURN_URAD = 20.0, 40.0  # of each line's zero, of the instrument's fr
 DWELL_S, SETTLED_MS = 0.05, 8
 DOWN, POINTS = 0.95, 0.05
 ATTEMPTS = 3
+STEP_MM = 0.5  # of a way that the interpreter says
 READINGS = 2  # at each stop
 COLUMNS = "run,x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,dir_x,dir_y,dir_z,repeat,u_um"
 
@@ -110,6 +113,22 @@ def part_program(zero_mm):
         writer.feed(x=x[2], y=y[0])
     writer.blocks.append("M2")
     return ("\n".join(writer.blocks) + "\n").encode(), np.array(writer.path)
+
+
+def unrecorded(text, control):
+    """What a control that keeps to its path would be recorded with, by the interpreter: axes in mm, line; no times."""
+    moves = canon.Run(canon.calls(text, control), chord_deg=0.2).moves
+    blocks = enumerate(text.decode().splitlines(), 1)
+    lines = [number for number, block in blocks if re.search(r"[XYZ][-.\d]", block) and not block.startswith("(")]
+    if len(lines) != len(moves):
+        raise RuntimeError(f"{len(moves)} motions of {len(lines)} blocks")
+    rows = [np.zeros((1, 4))]
+    for number, move in zip(lines, moves):
+        for start, end in zip(move.corners[:-1], move.corners[1:]):
+            share = np.linspace(0, 1, max(1, int(np.linalg.norm(end - start) / STEP_MM)) + 1)[1:, None]
+            rows.append(np.c_[start + share * (end - start), np.full(len(share), number)])
+        rows.append(np.r_[move.corners[-1], 0.0][None, :])
+    return np.vstack(rows)
 
 
 def settled(recorded, row):
@@ -231,7 +250,7 @@ class Case:
 
     def __init__(self, number, given):
         self.chance = random.Random(f"loop {given.seed} {number}")
-        self.name, self.vpost = f"m{number}", given.vpost
+        self.name, self.vpost, self.interpreter = f"m{number}", given.vpost, given.interpreter
         self.machine = Caused(self.chance, self.chance.randint(2, 6))
         measured, held = lines(self.chance)
         self.held_names = {name for name, _ in held}
@@ -246,8 +265,11 @@ class Case:
 
     def run(self, **texts):
         """What was recorded of programs, the measuring one among them, with all of its stops."""
+        control = rig.Control({"G54": self.machine.zero_mm}, limits=rig.QUICK)
+        if self.interpreter:
+            return {name: unrecorded(text, control) for name, text in texts.items()}
         for attempt in range(ATTEMPTS):
-            recorded = rig.run(texts, rig.Control({"G54": self.machine.zero_mm}, limits=rig.QUICK))
+            recorded = rig.run(texts, control)
             try:
                 stands(recorded["a_measure"], texts["a_measure"], len(self.stops))
                 return recorded
@@ -316,6 +338,7 @@ def main():
     arguments.add_argument("--machines", type=int, default=1)
     arguments.add_argument("--first", type=int, default=0)
     arguments.add_argument("--seed", type=int, default=1)
+    arguments.add_argument("--interpreter", action="store_true", help="its way in the place of a recording: minutes")
     arguments.add_argument("--keep", type=pathlib.Path)
     given = arguments.parse_args()
     failed = 0
