@@ -127,7 +127,9 @@ def safe_height(run):
     """Highest Z that was commanded with the tool and the offset of the end, program mm; None where nothing was."""
     kept = ("CHANGE_TOOL", "SET_G5X_OFFSET", "SET_G92_OFFSET", "USE_TOOL_LENGTH_OFFSET")
     heights = [
-        move.program_z.max() for move in run.moves if all(move.state.get(key) == run.state.get(key) for key in kept)
+        move.program_z[1:].max()
+        for move in run.moves
+        if move.changes(2) and all(move.state.get(key) == run.state.get(key) for key in kept)
     ]
     return max(heights) if heights else None
 
