@@ -28,9 +28,10 @@ def main():
         command.wait_complete()
     command.mode(linuxcnc.MODE_MANUAL)
     command.wait_complete()
-    for joint in range(3):
+    stat.poll()
+    for joint in range(stat.joints):
         command.home(joint)
-    wait(stat, lambda s: all(s.homed[:3]), 10)
+    wait(stat, lambda s: all(s.homed[: s.joints]), 10)
     for name in sorted(name for name in os.listdir(FOLDER) if name.endswith(".ngc")):
         stem = os.path.join(FOLDER, name[:-4])
         command.mode(linuxcnc.MODE_AUTO)

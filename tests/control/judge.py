@@ -30,25 +30,32 @@ SLACK_MM = 2e-5  # the axes' commands are written with six decimals, arcs are co
 MODES = ["", "G64", "G64 P0.05", "G64 P0.05 Q0.002", "G64 P0.002", "G61", "G61.1"]
 
 
-def distances(points, path):
-    """How far each point is from a path of straight pieces, mm."""
+def offsets(points, path):
+    """Each point less the place nearest to it of a path of straight pieces, mm, and that piece's number."""
     start, way = path[:-1], path[1:] - path[:-1]
     length2 = np.maximum((way**2).sum(1), 1e-18)
-    found = []
+    found, pieces = [], []
     for part in np.array_split(points, max(1, len(points) * len(start) // 2_000_000)):
         to = part[:, None, :] - start[None, :, :]
         share = np.clip((to * way).sum(2) / length2, 0.0, 1.0)
         off = to - share[:, :, None] * way
-        found.append(np.sqrt((off**2).sum(2).min(1)))
-    return np.concatenate(found)
+        nearest = (off**2).sum(2).argmin(1)
+        found.append(off[np.arange(len(part)), nearest])
+        pieces.append(nearest)
+    return np.concatenate(found), np.concatenate(pieces)
 
 
-def farthest(recorded, lines, machine, path):
-    """The largest distance of the tip from its path while it feeds, mm. A feed behind a rapid may first lead from where that
-    has left the tip to the corrected start, in the air: the path counts from there."""
-    feeds = np.isin(recorded[:, 3].astype(int), sorted(lines))
-    commanded = recorded[feeds, :3]
-    off = distances(commanded + machine.error_mm(commanded), path)
+def distances(points, path):
+    """How far each point is from a path of straight pieces, mm."""
+    return np.sqrt((offsets(points, path)[0] ** 2).sum(1))
+
+
+def on_path(recorded, lines, machine, path):
+    """Places of the tip while it feeds, mm, and how far each is from its path. A feed behind a rapid may first lead from where
+    that has left the tip to the corrected start, in the air: the path counts from there."""
+    feeds = np.isin(recorded[:, -1].astype(int), sorted(lines))
+    tips = machine.tip_mm(recorded[:, :-1])[feeds]
+    off = distances(tips, path)
     begins = np.flatnonzero(feeds & ~np.r_[False, feeds[:-1]])
     counted = np.ones(len(off), dtype=bool)
     for begin in begins:
@@ -56,7 +63,12 @@ def farthest(recorded, lines, machine, path):
         while at + 1 < len(off) and off[at + 1] < off[at]:
             counted[at] = False
             at += 1
-    return float(off[counted].max())
+    return tips[counted], off[counted]
+
+
+def farthest(recorded, lines, machine, path):
+    """The largest distance of the tip from its path while it feeds, mm."""
+    return float(on_path(recorded, lines, machine, path)[1].max())
 
 
 def feed_lines(text):
@@ -67,17 +79,17 @@ def feed_lines(text):
         for word in words:
             if word in ("G0", "G1", "G2", "G3"):
                 feeds = word != "G0"
-        if feeds and any(word[0] in "XYZ" for word in words):
+        if feeds and any(word[0] in "XYZABC" for word in words):
             found.add(number)
     return found
 
 
-def correct(vpost, profile, text, folder):
-    """The corrected program and the summary."""
+def correct(vpost, profile, text, folder, *options):
+    """The corrected program and the summary; what was said where it is refused."""
     given, made, summary = folder / "in.ngc", folder / "out.ngc", folder / "summary.json"
     given.write_bytes(text)
     ran = subprocess.run(
-        [vpost, given, "-m", profile, "-o", made, "--summary", summary], capture_output=True, text=True
+        [vpost, given, "-m", profile, "-o", made, "--summary", summary, *options], capture_output=True, text=True
     )
     if ran.returncode:
         return None, ran.stderr
@@ -110,7 +122,7 @@ def main():
                     continue
                 texts[f"{name}_posted"], texts[name] = text, corrected
                 said[name] = (mode, summary)
-            recorded = rig.run(texts, machine.zero_mm)
+            recorded = rig.run(texts, rig.Control({"G54": machine.zero_mm}))
             for name, (mode, summary) in said.items():
                 off = []
                 for of in (f"{name}_posted", name):
@@ -137,4 +149,5 @@ def main():
     return 1 if wrong else 0
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

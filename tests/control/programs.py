@@ -27,6 +27,9 @@ class Writer:
         self.blocks.append(f"{code} {words}" + (f" F{f:.0f}" if f else ""))
         self.path.append([(at | to)[axis] for axis in "xyz"])
 
+    def dwell(self, seconds):
+        self.blocks.append(f"G4 P{seconds:g}")
+
     def arc(self, code, centre, to, z=None, f=None):
         """Clockwise G2, counter-clockwise G3 about `centre` to `to`; a helix where z is given."""
         at = self.path[-1]
