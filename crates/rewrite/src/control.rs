@@ -3,11 +3,13 @@
 
 use std::ops::Range;
 
+use correction::{Centre, Goal, Piece, PieceKind};
 use diagnostic::{Diagnostic, Text, both};
 use nc_program::{LastFeed, Modal, PathControl};
-use toolpath::{ArcChords, Feed, Shape};
+use toolpath::{ArcChords, Feed, Motion, Shape};
 
 use crate::job::{CONTROL_LEAVES, Job, Warning};
+use crate::notices::radii_apart_mm;
 use crate::path_mode::{self, PathMode};
 
 /// Where something is cut with the control farthest off the path.
@@ -58,9 +60,15 @@ impl ControlPart {
         }
     }
 
-    /// An arc is left to the control.
-    pub(crate) fn arc(&mut self, job: &Job<'_>, feed: &Feed, (span, line): (&Range<u64>, u64)) {
-        let off_mm = chords(job).map_or(0.0, |chords| chords.leaves_mm(feed));
+    /// An arc is left to the control, whose radii as it is written are apart by so much, mm.
+    pub(crate) fn arc(
+        &mut self,
+        job: &Job<'_>,
+        feed: &Feed,
+        apart_mm: f64,
+        (span, line): (&Range<u64>, u64),
+    ) {
+        let off_mm = chords(job).map_or(0.0, |chords| chords.leaves_mm(feed) + apart_mm);
         if off_mm > self.arc.as_ref().map_or(0.0, |known| known.off_mm) {
             self.arc = Some(Chords { off_mm, span: span.clone(), line });
         }
@@ -236,6 +244,46 @@ impl Chords {
         );
         (Diagnostic::doubt(CONTROL_LEAVES, message).at(span.clone(), label).help(help), *line)
     }
+}
+
+/// By how much the radii of an arc at its start and its end differ as it is written, mm: a control that cuts chords keeps the
+/// first of them, and makes it up with the last chord. 0 where no piece is an arc with a centre.
+///
+/// * `start_mm` – where the axes stand, axis commands
+pub(crate) fn radii_apart_by_words_mm(
+    pieces: &[Piece],
+    start_mm: [Option<f64>; 3],
+    info: &correction::Block,
+    motion: &Motion,
+) -> f64 {
+    let Motion::Feed(feed @ Feed { shape: Shape::Arc(arc), .. }) = motion else { return 0.0 };
+    if pieces.is_empty() || info.arc_centres_absolute {
+        return radii_apart_mm(motion).unwrap_or_default();
+    }
+    let [first, second, _] = arc.plane.axes();
+    let mut at = info.frame.to_program(start_mm.map(Option::unwrap_or_default));
+    let stated_mm = info.frame.to_program(feed.end.linear_mm);
+    let to = |goal: Goal, axis: usize, stated_mm: f64, stays_mm: f64| match goal {
+        Goal::Steps(steps) => steps as f64 * info.unit_mm * 0.1_f64.powi(info.decimals[axis].into()),
+        Goal::AsStated => stated_mm,
+        Goal::Stays => stays_mm,
+    };
+    let mut apart_mm = 0.0_f64;
+    for piece in pieces {
+        let end = [0, 1, 2].map(|axis| match piece.axes[axis] {
+            Goal::Steps(_) if info.incremental[axis] => at[axis] + to(piece.axes[axis], axis, 0.0, 0.0),
+            goal => to(goal, axis, stated_mm[axis], at[axis]),
+        });
+        if let PieceKind::Arc { centre: Centre::Offsets(centre), .. } = piece.kind {
+            let offset = [(0, first), (1, second)]
+                .map(|(k, axis)| to(centre[k], axis, arc.centre_mm[k] - feed.start.linear_mm[axis], 0.0));
+            let back = [at[first] + offset[0] - end[first], at[second] + offset[1] - end[second]];
+            let radii = [offset, back].map(|[a, b]| units::math::hypot(a, b));
+            apart_mm = apart_mm.max((radii[0] - radii[1]).abs());
+        }
+        at = end;
+    }
+    apart_mm
 }
 
 /// How long a motion is, mm; of a curve by control points its chord.

@@ -9,7 +9,7 @@ use nc_syntax::{Block, Letters, Reader};
 use smallvec::SmallVec;
 use toolpath::{Hole, Motion};
 
-use crate::control::length_mm;
+use crate::control::{length_mm, radii_apart_by_words_mm};
 use crate::cutter;
 use crate::datum::{LastDatum, going_on};
 use crate::feed;
@@ -129,6 +129,8 @@ impl Pass<'_> {
         let mut pieces = Pieces::new();
         let mut corrections: SmallVec<[Correction; 1]> = SmallVec::new();
         let (mut untouched, mut by_time) = (true, None);
+        let start_mm = self.state.corrector.standing_mm();
+        let mut apart_mm = 0.0_f64;
         for motion in motions {
             let last = &mut self.state.datum;
             let motion = &going_on(&self.job.models, motion, context, info.datum, last);
@@ -144,6 +146,7 @@ impl Pass<'_> {
                 .map_err(|error| refusal(&error, motion, block, context))?;
             corrected.correction.after_mm += info.reserved_mm;
             untouched &= corrected.pieces.is_empty();
+            apart_mm = apart_mm.max(radii_apart_by_words_mm(&corrected.pieces, start_mm, &info, motion));
             let modal = self.state.interpreter.modal();
             by_time = feed::require_same(self.job.dialect, modal, &corrected, motion, block, context)?;
             corrections.push(corrected.correction);
@@ -179,6 +182,12 @@ impl Pass<'_> {
         }
         beside.iter().for_each(|[_, behind]| self.insert(behind, block));
         self.note(block, context, motions, &corrections, pieces.len().max(1), self.out.len() > length);
+        if let ([Motion::Feed(feed)], Some(code)) = (motions, self.state.emitter.motion())
+            && self.codes.is_arc(code)
+        {
+            let place = (&block.file_range(), block.line);
+            self.tally.figures.control.arc(self.job, feed, apart_mm, place);
+        }
         Ok(())
     }
 
@@ -375,9 +384,6 @@ impl Pass<'_> {
             let (control, modal) = (&mut self.tally.figures.control, self.state.interpreter.modal());
             control.cut(self.job, modal, || (span.clone(), line));
             control.stop(self.job, modal, blocks_out, || length_mm(feed));
-            if self.state.emitter.motion().is_some_and(|code| self.codes.is_arc(code)) {
-                control.arc(self.job, feed, (&span, line));
-            }
         }
         let Tally { figures, notices, .. } = &mut self.tally;
         for (motion, correction) in motions.iter().zip(corrections) {

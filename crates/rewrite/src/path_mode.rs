@@ -99,7 +99,9 @@ impl Pass<'_> {
         motions: &[Motion],
         before: Compensation,
     ) -> Result<(), Vec<Diagnostic>> {
-        if !(self.strays() && motions.iter().any(|motion| matches!(motion, Motion::Feed(_)))) {
+        if !(self.strays()
+            && motions.iter().any(|motion| matches!(motion, Motion::Feed(_) | Motion::Hole(_))))
+        {
             return Ok(());
         }
         let modal = self.state.interpreter.modal();

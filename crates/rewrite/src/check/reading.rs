@@ -19,7 +19,7 @@ use crate::control::ControlPart;
 use crate::datum::{Datum, LastDatum, going_on};
 use crate::feed::minutes;
 use crate::job::Job;
-use crate::notices::other_tool;
+use crate::notices::{other_tool, radii_apart_mm};
 
 /// What becomes of blocks under `/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -269,7 +269,8 @@ impl<'a, 'n> Program<'a, 'n> {
             let cuts = matches!(motion, Motion::Feed(_) | Motion::Hole(_));
             if let Motion::Feed(feed) = &motion {
                 self.control.cut(self.job, self.interpreter.modal(), || (block.file_range(), line));
-                self.control.arc(self.job, feed, (&block.file_range(), line));
+                let apart_mm = radii_apart_mm(motion).unwrap_or_default();
+                self.control.arc(self.job, feed, apart_mm, (&block.file_range(), line));
             }
             if let Some(datum) = cuts.then(|| self.datum.newly_used()).flatten()
                 && !self.datums.iter().any(|known| known.is(datum))
