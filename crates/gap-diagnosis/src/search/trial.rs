@@ -95,7 +95,7 @@ impl State<'_, '_> {
         // A curve without its constant or its slope has wrong numbers, however little either is.
         if self.share(&with, fit.level) < LEAST_SHARE
             && !self.library.completes(part, rest)
-            && !self.was_taken_over(&with, gain, before, fit.level)
+            && !is_most_of_rest(kind, gain, before)
         {
             return refuse(Reason::Little([
                 "its share is below 2 % of what can be explained",
@@ -160,26 +160,6 @@ impl State<'_, '_> {
             }
             None => false,
         })
-    }
-
-    /// True where the last of `with` is small only because the others took its part over: it explains most of what they
-    /// leave, and beside it they have other numbers, so that its own displacement is no trifle.
-    fn was_taken_over(&self, with: &[Part], gain: f64, before: f64, level: usize) -> bool {
-        /// Share of what is left that it must explain.
-        const MOST: f64 = 0.5;
-        if gain < MOST * before {
-            return false;
-        }
-        let values =
-            self.space.gram.select(&self.library.model_columns(with)).coefficients(self.space.rho(level));
-        let own = values.get(self.library.positions(with, with.len() - 1)).unwrap_or_default();
-        let columns = with.last().map_or_else(Vec::new, |part| self.space.columns(&self.library, &[*part]));
-        let products = self.space.products(level);
-        let square: f64 = (0..own.len())
-            .flat_map(|i| (0..own.len()).map(move |j| (i, j)))
-            .map(|(i, j)| own[i] * own[j] * products.product(columns[i], columns[j]))
-            .sum();
-        square >= LEAST_SHARE * self.space.total(level)
     }
 
     /// Curves along one axis seen in one component: together they may have no more coefficients than half the places.
@@ -332,12 +312,13 @@ impl State<'_, '_> {
                     let rest = without(&self.parts, place);
                     let with: Vec<Part> = rest.iter().copied().chain([self.parts[place]]).collect();
                     let share = self.share(&with, level);
-                    let taken_over = || {
+                    let most_of_rest = || {
                         let without = left(&rest);
-                        self.was_taken_over(&with, without - left(&self.parts), without, level)
+                        let kind = self.library.kind(self.parts[place]);
+                        is_most_of_rest(kind, without - left(&self.parts), without)
                     };
                     let stays = share < LEAST_SHARE
-                        && (self.library.completes(self.parts[place], &rest) || taken_over());
+                        && (self.library.completes(self.parts[place], &rest) || most_of_rest());
                     (!stays).then_some((share, rest))
                 })
                 .min_by(|a, b| a.0.total_cmp(&b.0));
@@ -350,6 +331,14 @@ impl State<'_, '_> {
             }
         }
     }
+}
+
+/// True where an effect explains most of the square that the others leave: however little that is of all, who has corrected
+/// those is left with it. Where a moment or a place was searched for it must earn its share of all.
+fn is_most_of_rest(kind: EffectKind, gain: f64, before: f64) -> bool {
+    const MOST: f64 = 0.5;
+    let searched = [EffectKind::Step, EffectKind::Local, EffectKind::Joint, EffectKind::Spike];
+    gain >= MOST * before && !kind.axis().is_some_and(|axis| searched.iter().any(|of| of(axis) == kind))
 }
 
 /// An effect and its non-linear numbers.
@@ -371,7 +360,9 @@ pub(crate) fn unsupported(library: &Library, part: Part, rows: &[Row]) -> Option
         ])
     };
     if let Term::Knock { from, .. } = library.terms[*library.form(part).columns.first()?] {
-        return beside(&|row| Some(row.order[0]), from);
+        // What lies between runs is their shift: within its own it must be seen.
+        let run = rows.iter().find(|row| row.order[0] >= from).map(|row| row.run);
+        return beside(&|row| Some(row.order[0]).filter(|_| Some(row.run) == run), from);
     }
     match shape(library, part)? {
         (EffectKind::Step(_), shape) => beside(&|row| row.conditions.time_s, shape.time_s),
