@@ -9,7 +9,6 @@ use nc_program::{LastFeed, Modal, PathControl};
 use toolpath::{ArcChords, Feed, Motion, Shape};
 
 use crate::job::{CONTROL_LEAVES, Job, Warning};
-use crate::notices::radii_apart_mm;
 use crate::path_mode::{self, PathMode};
 
 /// Where something is cut with the control farthest off the path.
@@ -49,11 +48,18 @@ fn chords(job: &Job<'_>) -> Option<ArcChords> {
     job.interpolator.arcs.or_else(|| job.dialect.output.arc_chord_tolerance_mm.map(ArcChords::Tolerance))
 }
 
+/// How far the control leaves the path in a state, mm; infinite where nobody knows.
+#[inline]
+pub(crate) fn leaves_mm(job: &Job<'_>, modal: &Modal) -> f64 {
+    let off_mm = modal.path_control.off_mm;
+    if off_mm.is_infinite() { job.interpolator.blending_mm.unwrap_or(off_mm) } else { off_mm }
+}
+
 impl ControlPart {
     /// A feed is made in this state; the corners of a hole lie in the air.
     #[inline]
     pub(crate) fn cut(&mut self, job: &Job<'_>, modal: &Modal, place: impl FnOnce() -> (Range<u64>, u64)) {
-        let off_mm = path_mode::leaves_mm(job, modal);
+        let off_mm = leaves_mm(job, modal);
         if self.corner.as_ref().is_none_or(|known| off_mm > known.by.off_mm) {
             let (span, line) = place();
             self.corner = Some(Corner { by: PathControl { off_mm, ..modal.path_control }, span, line });
@@ -244,6 +250,15 @@ impl Chords {
         );
         (Diagnostic::doubt(CONTROL_LEAVES, message).at(span.clone(), label).help(help), *line)
     }
+}
+
+/// By how much the radii of an arc differ between its start and its end, mm.
+pub(crate) fn radii_apart_mm(motion: &Motion) -> Option<f64> {
+    let Motion::Feed(Feed { start, end, shape: Shape::Arc(arc), .. }) = motion else { return None };
+    let [u, v, _] = arc.plane.axes();
+    let radius_mm =
+        |place: &[f64; 3]| units::math::hypot(place[u] - arc.centre_mm[0], place[v] - arc.centre_mm[1]);
+    Some((radius_mm(&start.linear_mm) - radius_mm(&end.linear_mm)).abs())
 }
 
 /// By how much the radii of an arc at its start and its end differ as it is written, mm: a control that cuts chords keeps the

@@ -47,6 +47,7 @@ mod feed;
 mod figures;
 mod guards;
 mod job;
+mod keep_to_path;
 mod large;
 mod lengthless;
 mod lowered;

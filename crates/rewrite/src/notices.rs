@@ -7,7 +7,7 @@ use diagnostic::{Code, Diagnostic, Severity, Speaks, Text, both};
 use machine_model::SolveError;
 use nc_program::Context;
 use nc_syntax::Block;
-use toolpath::{AXIS_NAMES, Feed, Motion, Shape};
+use toolpath::{AXIS_NAMES, Motion};
 
 use crate::figures::Held;
 use crate::job::{
@@ -385,12 +385,3 @@ pub(crate) fn refusal(
 
 /// An arc whose radii differ by less is as round as words of two decimals make it, mm.
 pub(crate) const SPIRAL_MM: f64 = 0.01;
-
-/// By how much the radii of an arc differ between its start and its end, mm.
-pub(crate) fn radii_apart_mm(motion: &Motion) -> Option<f64> {
-    let Motion::Feed(Feed { start, end, shape: Shape::Arc(arc), .. }) = motion else { return None };
-    let [u, v, _] = arc.plane.axes();
-    let radius_mm =
-        |place: &[f64; 3]| units::math::hypot(place[u] - arc.centre_mm[0], place[v] - arc.centre_mm[1]);
-    Some((radius_mm(&start.linear_mm) - radius_mm(&end.linear_mm)).abs())
-}

@@ -9,14 +9,14 @@ use nc_syntax::{Block, Letters, Reader};
 use smallvec::SmallVec;
 use toolpath::{Hole, Motion};
 
-use crate::control::{length_mm, radii_apart_by_words_mm};
+use crate::control::{length_mm, radii_apart_by_words_mm, radii_apart_mm};
 use crate::cutter;
 use crate::datum::{LastDatum, going_on};
 use crate::feed;
 use crate::figures::raise;
 use crate::job::Job;
 use crate::nose::{nose_mm, reserved_mm};
-use crate::notices::{SPIRAL_MM, hole_skipped, radii_apart_mm, refusal};
+use crate::notices::{SPIRAL_MM, hole_skipped, refusal};
 use crate::state::State;
 use crate::tally::Tally;
 use crate::words::{
@@ -182,13 +182,18 @@ impl Pass<'_> {
         }
         beside.iter().for_each(|[_, behind]| self.insert(behind, block));
         self.note(block, context, motions, &corrections, pieces.len().max(1), self.out.len() > length);
+        self.arc_cut(block, motions, apart_mm);
+        Ok(())
+    }
+
+    /// An arc that is one in the output too is the control's to follow.
+    fn arc_cut(&mut self, block: &Block<'_>, motions: &[Motion], apart_mm: f64) {
         if let ([Motion::Feed(feed)], Some(code)) = (motions, self.state.emitter.motion())
             && self.codes.is_arc(code)
         {
             let place = (&block.file_range(), block.line);
             self.tally.figures.control.arc(self.job, feed, apart_mm, place);
         }
-        Ok(())
     }
 
     /// G92 and its like: the block says where the axes stand. In the output they stand at the corrected

@@ -1,14 +1,8 @@
-//! The mode in which the control keeps to the path, written in front of the feeds that need it.
+//! The mode in which the control keeps to the path, and how a dialect says it.
 
-use diagnostic::{Diagnostic, Text, both};
 use nc_dialect::{Dialect, Keeps, PathCode, PathKey};
-use nc_program::{Compensation, Modal, PathControl};
-use nc_syntax::{Block, GCode};
-use toolpath::Motion;
+use nc_syntax::GCode;
 use units::decimal::{self, Spelling};
-
-use crate::job::{Job, KEPT_NOWHERE};
-use crate::pass::Pass;
 
 /// Of the distances that are written, millimetres or inches.
 const DECIMALS: u8 = 6;
@@ -33,7 +27,7 @@ impl PathMode {
     }
 
     /// How far the control may leave the path, mm.
-    const fn most_mm(self) -> f64 {
+    pub(crate) const fn most_mm(self) -> f64 {
         match self {
             Self::AsPosted => f64::INFINITY,
             Self::Exact => 0.0,
@@ -73,66 +67,4 @@ pub(crate) fn exact(dialect: &Dialect) -> Option<GCode> {
         PathCode { key: PathKey::Code(code), keeps: Keeps::Exact } => Some(*code),
         _ => None,
     })
-}
-
-/// How far the control leaves the path in a state, mm; infinite where nobody knows.
-#[inline]
-pub(crate) fn leaves_mm(job: &Job<'_>, modal: &Modal) -> f64 {
-    let off_mm = modal.path_control.off_mm;
-    if off_mm.is_infinite() { job.interpolator.blending_mm.unwrap_or(off_mm) } else { off_mm }
-}
-
-impl Pass<'_> {
-    /// A feed that came now would be made farther off the path than is asked for.
-    pub(crate) fn strays(&self) -> bool {
-        leaves_mm(self.job, self.state.interpreter.modal()) > self.job.path_mode.most_mm()
-    }
-
-    /// Puts in front of a block that feeds what keeps the control to the path, where that is not in force; `before`: which
-    /// compensation was.
-    ///
-    /// # Errors
-    /// VP0535: no block may stand there, or the block says otherwise itself.
-    pub(crate) fn keep_to_path(
-        &mut self,
-        block: &Block<'_>,
-        motions: &[Motion],
-        before: Compensation,
-    ) -> Result<(), Vec<Diagnostic>> {
-        if !(self.strays()
-            && motions.iter().any(|motion| matches!(motion, Motion::Feed(_) | Motion::Hole(_))))
-        {
-            return Ok(());
-        }
-        let modal = self.state.interpreter.modal();
-        let line = Some(block.line);
-        let Some((text, off_mm)) = self.job.path_mode.block(self.job.dialect, modal.units.mm()) else {
-            return Ok(());
-        };
-        let refused = |why: Text, help: Text| {
-            let what = both!(
-                "`{text}`, which keeps the control to the path, cannot be put in here",
-                "`{text}`, что держит стойку на траектории, сюда не вставить"
-            );
-            Err(vec![Diagnostic::error(KEPT_NOWHERE, what).at(block.file_range(), why).help(help)])
-        };
-        if modal.path_control.line == line {
-            return refused(
-                both!("this block feeds, and says otherwise itself", "этот рабочий ход сам говорит иное"),
-                both!("write that code in a block of its own", "запишите этот код отдельным кадром"),
-            );
-        }
-        if before != Compensation::Off {
-            return refused(
-                both!(
-                    "under cutter compensation a block without motion may change the contour",
-                    "при коррекции на радиус кадр без движения может изменить контур"
-                ),
-                both!("write `{text}` before G41 or G42", "напишите `{text}` до G41 или G42"),
-            );
-        }
-        self.insert(&text, block);
-        self.state.interpreter.keeps_path(PathControl { off_mm, line });
-        Ok(())
-    }
 }

@@ -81,11 +81,7 @@ impl Pass<'_> {
             if let Some(run) = &run {
                 let feed = found[..done].iter().rev().find_map(|end| end.feed);
                 self.state.interpreter.go_to(&found[done - 1], feed);
-                for end_mm in &ends_mm[..done] {
-                    let (control, modal) = (&mut self.tally.figures.control, self.state.interpreter.modal());
-                    control.stop(self.job, modal, 1, || distance_mm(&start_mm, end_mm));
-                    start_mm = *end_mm;
-                }
+                start_mm = self.stops(start_mm, &ends_mm[..done]);
                 self.write_run(&lines, &found, run, info.decimals)?;
             }
             if done < count {
@@ -98,6 +94,17 @@ impl Pass<'_> {
                 start_mm = end_mm;
             }
         }
+    }
+
+    /// Counts the stops of lines that were corrected together; the end of the last.
+    #[inline]
+    fn stops(&mut self, mut start_mm: [f64; 3], ends_mm: &[[f64; 3]]) -> [f64; 3] {
+        for end_mm in ends_mm {
+            let (control, modal) = (&mut self.tally.figures.control, self.state.interpreter.modal());
+            control.stop(self.job, modal, 1, || distance_mm(&start_mm, end_mm));
+            start_mm = *end_mm;
+        }
+        start_mm
     }
 
     /// Writes lines that were corrected together.

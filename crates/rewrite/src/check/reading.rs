@@ -15,11 +15,11 @@ use smallvec::SmallVec;
 use toolpath::{CycleKind, Division, Feed, FeedRate, Motion, Position, Shape};
 
 use super::unsaid::Unsaid;
-use crate::control::ControlPart;
+use crate::control::{ControlPart, radii_apart_mm};
 use crate::datum::{Datum, LastDatum, going_on};
 use crate::feed::minutes;
 use crate::job::Job;
-use crate::notices::{other_tool, radii_apart_mm};
+use crate::notices::other_tool;
 
 /// What becomes of blocks under `/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
