@@ -136,3 +136,16 @@ def run(programs, control):
         return recorded
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def starts():
+    """Whether the controller runs a program here; the reason is printed where it does not."""
+    try:
+        return len(run({"start": b"G21 G90 G54 G61\nG1 X1 F6000\nM2\n"}, Control({"G54": (0.0, 0.0, 0.0)}))["start"]) > 0
+    except (OSError, RuntimeError, subprocess.CalledProcessError) as why:
+        print(why)
+        return False
+
+
+if __name__ == "__main__":
+    raise SystemExit(0 if starts() else 1)

@@ -1,6 +1,7 @@
 //! Long checks: benchmarks, corpora, tables for the docs.
 
 mod bench;
+mod control;
 mod corpus;
 mod dist;
 mod engines;
@@ -36,6 +37,8 @@ enum Task {
     Bench(bench::Options),
     /// Measure the correction of many small programs; print a section for docs/performance.md.
     BenchBatch(bench::batch::Options),
+    /// Judge corrected programs on a real control: LinuxCNC's interpreter and motion controller.
+    Control(control::Options),
     /// Correct LinuxCNC's samples or its test suite, judge each result twice, and write docs/corpus.md.
     Corpus(corpus::Options),
     /// Pack what people install: an archive for a machine, a Debian package; needs the tools of docs/releasing.md.
@@ -76,6 +79,7 @@ fn main() -> anyhow::Result<()> {
     let text = match Arguments::parse().task {
         Task::Bench(options) => bench::run_all(&options)?,
         Task::BenchBatch(options) => bench::batch::run_all(&options)?,
+        Task::Control(options) => control::run(&options)?,
         Task::Corpus(options) => corpus::run(&options)?,
         Task::Dist(options) => dist::run(&options)?,
         Task::Engines => engines::page(),
