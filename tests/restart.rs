@@ -103,6 +103,11 @@ fn where_there_is_none_the_nearest_line_is_named() {
         let refused = Shop::new(&program).from(line, &[]).expect_err(why);
         assert!(refused.contains(why), "{why}: {refused}");
     }
+    let named =
+        MACHINE.replace("linuxcnc", "sinumerik").replace("tool = { ", "tool = { names = { MILL = 1 }, ");
+    let program = "G71 G90 G94 G17 G54\nT=\"MILL\" M6\nD1\nS1000 M3\nG0 X0 Y0 Z10\nG1 Z0 F100\nX10\nM30\n";
+    let refused = Shop::on(&named, program).from(7, &[]).expect_err("a name");
+    assert!(refused.contains("its tool has a name and no number"), "{refused}");
     let refused = Shop::new("G21 G90 G54\n#1=5\nG0 X#1 Y0 Z5.\nG1 X5. F100.\nM2\n").from(4, &[]);
     assert!(refused.expect_err("flow").contains("computes, jumps or calls"));
     let clamps = Shop::new("G21 G90 G94 G54\nM10\nG0 X0 Y0 Z5.\nG1 X5. F100.\nY5.\nM2\n");

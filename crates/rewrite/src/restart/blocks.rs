@@ -33,7 +33,7 @@ pub(super) fn blocks(state: &State<'_>, next: &Block<'_>, safe_mm: Option<f64>) 
         writer.blocks.extend(state.process.word(b'S').map(|speed| speed.to_string()));
     } else {
         goes_on(state, next)?;
-        writer.tool();
+        writer.tool()?;
         writer.spindle();
         writer.approach(next, safe_mm)?;
     }
@@ -182,11 +182,19 @@ impl Writer<'_, '_> {
     }
 
     /// The tool in the spindle.
-    fn tool(&mut self) {
+    fn tool(&mut self) -> Result<(), Text> {
         let change = self.state.job.dialect.m_codes.iter().find(|row| row.changes_tool);
-        if let (Some(tool), Some(change)) = (self.modal.tool_loaded, change) {
-            self.blocks.push(format!("T{tool} M{}", change.number));
+        let named = |tool: u32| self.state.job.setup.tool_names.iter().any(|(_, number)| *number == tool);
+        match (self.modal.tool_loaded, change) {
+            (Some(tool), Some(change)) if !named(tool) => {
+                self.blocks.push(format!("T{tool} M{}", change.number));
+            }
+            (None, _) if !self.state.changed_tool => {}
+            _ => {
+                return Err(both!("its tool has a name and no number", "у её инструмента имя, а не номер"));
+            }
         }
+        Ok(())
     }
 
     fn spindle(&mut self) {

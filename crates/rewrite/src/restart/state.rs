@@ -38,6 +38,8 @@ pub(super) struct State<'a> {
     /// What a code that is no mode, or a command, says of keeping to the path.
     pub(super) path: Option<String>,
     pub(super) feed: Option<FeedWord>,
+    /// A tool was brought in.
+    pub(super) changed_tool: bool,
     /// M3, M4, M13, M14.
     pub(super) spindle: Option<u16>,
     pub(super) coolant: SmallVec<[u16; 2]>,
@@ -62,6 +64,7 @@ impl<'a> State<'a> {
             process: Process::default(),
             path: None,
             feed: None,
+            changed_tool: false,
             spindle: None,
             coolant: SmallVec::new(),
             others: Vec::new(),
@@ -76,6 +79,7 @@ impl<'a> State<'a> {
     /// Takes in a block; true where it moves an axis to a place that it names.
     pub(super) fn step(&mut self, block: &Block<'_>) -> Result<bool, Vec<Diagnostic>> {
         let step = self.interpreter.step(block)?;
+        self.changed_tool |= super::blocks::changes_tool(self.job.dialect, block);
         let BlockSays { before: says, behind } = said(block, self.job.dialect, &step);
         for one in says.into_iter().chain(behind) {
             match one {
