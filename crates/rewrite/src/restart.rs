@@ -128,7 +128,7 @@ impl Program<'_, '_> {
         while reader.next(&mut block) {
             reached.step(&block).map_err(unread)?;
         }
-        let changes = blocks::changes_tool(self.job.dialect, next);
+        let changes = state::changes_tool(self.job.dialect, next);
         if !changes && self.stands_elsewhere(wanted, &reached) {
             return Err(other_side());
         }
@@ -144,7 +144,7 @@ impl Program<'_, '_> {
         }
         let d_holds = wanted.process.word(b'D') != reached.process.word(b'D');
         while d_holds && one.word(b'D').is_none() {
-            if blocks::compensates(self.job.dialect, &one) {
+            if state::compensates(self.job.dialect, &one) {
                 return Err(both!(
                     "G41 without D counts on a D before it",
                     "G41 без D опирается на D перед ней"

@@ -1,14 +1,14 @@
 //! The blocks that bring a control into a state, and the tool to where it stood.
 
 use diagnostic::{Text, both};
-use nc_dialect::{Action, Dialect, MOTION_GROUP};
+use nc_dialect::{Action, MOTION_GROUP};
 use nc_program::modal::{Axis, Distance, FeedMode, Modal, MotionMode, Progress, ReturnLevel, Transform};
 use nc_program::{Compensation, ToolLength};
 use nc_syntax::{Block, GCode};
 use toolpath::{AXIS_NAMES, Kinematics};
 use units::decimal::{self, Decimal, Spelling};
 
-use super::state::{FeedWord, State};
+use super::state::{FeedWord, State, changes_tool};
 
 /// Words of a restart have so many decimals at most.
 const DECIMALS: u8 = 6;
@@ -92,20 +92,6 @@ fn may_begin(modal: &Modal) -> Result<(), Text> {
             || matches!(modal.motion, MotionMode::Undecided { .. }),
         both!("what is in force depends on a switch", "что действует, зависит от переключателя"),
     )
-}
-
-/// A block brings in another tool.
-pub(super) fn changes_tool(dialect: &Dialect, block: &Block<'_>) -> bool {
-    block.words().filter(|word| word.letter == b'M').any(|word| {
-        let code = word.number().and_then(|number| u16::try_from(number.integer()?).ok());
-        code.and_then(|code| dialect.m_code(code)).is_some_and(|row| row.changes_tool)
-    })
-}
-
-/// A block switches cutter compensation on.
-pub(super) fn compensates(dialect: &Dialect, block: &Block<'_>) -> bool {
-    let mut rows = block.words().filter_map(|word| word.g_code().and_then(|code| dialect.code(code)));
-    rows.any(|row| matches!(row.action, Action::Compensation(_)))
 }
 
 /// A block says itself how it moves, or that no cycle is in force.

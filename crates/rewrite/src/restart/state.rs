@@ -2,7 +2,7 @@
 
 use diagnostic::Diagnostic;
 use machine_model::{Command, Play, Vector};
-use nc_dialect::PathKey;
+use nc_dialect::{Action, Dialect, PathKey};
 use nc_program::process::{BlockSays, Process, Said, said};
 use nc_program::{Interpreter, ToolLength, Units, WorkOffset};
 use nc_syntax::Block;
@@ -79,7 +79,7 @@ impl<'a> State<'a> {
     /// Takes in a block; true where it moves an axis to a place that it names.
     pub(super) fn step(&mut self, block: &Block<'_>) -> Result<bool, Vec<Diagnostic>> {
         let step = self.interpreter.step(block)?;
-        self.changed_tool |= super::blocks::changes_tool(self.job.dialect, block);
+        self.changed_tool |= changes_tool(self.job.dialect, block);
         let BlockSays { before: says, behind } = said(block, self.job.dialect, &step);
         for one in says.into_iter().chain(behind) {
             match one {
@@ -242,6 +242,20 @@ fn turning_points(feed: &Feed, arc: &Arc) -> Vec<Position> {
         next += 1.0;
     }
     found
+}
+
+/// A block brings in another tool.
+pub(super) fn changes_tool(dialect: &Dialect, block: &Block<'_>) -> bool {
+    block.words().filter(|word| word.letter == b'M').any(|word| {
+        let code = word.number().and_then(|number| u16::try_from(number.integer()?).ok());
+        code.and_then(|code| dialect.m_code(code)).is_some_and(|row| row.changes_tool)
+    })
+}
+
+/// A block switches cutter compensation on.
+pub(super) fn compensates(dialect: &Dialect, block: &Block<'_>) -> bool {
+    let mut rows = block.words().filter_map(|word| word.g_code().and_then(|code| dialect.code(code)));
+    rows.any(|row| matches!(row.action, Action::Compensation(_)))
 }
 
 #[cfg(test)]
