@@ -140,6 +140,10 @@ fn feeds_are_kept_to_the_path() {
         let (corrected, said) = shop.0.corrected(SWITCHED, &["-m", &profile, &asked]);
         assert_eq!(modes(&corrected), wanted, "{corrected}");
         assert_eq!(said.contains("VP0529"), how == "keep", "{said}");
+        let [posted, written] = [("posted.nc", SWITCHED), ("out.nc", &corrected)];
+        let [posted, written] = [posted, written].map(|(name, text)| shop.0.write(name, text));
+        let checked = run(&["check", &posted, &written, "-m", &profile, &asked]);
+        assert!(checked.status.success(), "{how}: {}", String::from_utf8_lossy(&checked.stdout));
     }
     // Inches, and what is near enough already.
     let inches = "G20 G90 G54 G64 P0.00001\nG0 X1. Y1. Z1.\nG1 Z0 F8.\nG21\nX40.\nM30\n";

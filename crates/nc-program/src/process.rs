@@ -9,7 +9,7 @@
 use std::fmt;
 
 use diagnostic::{Text, both};
-use nc_dialect::{Action, CodeEntry, Dialect, MOTION_GROUP};
+use nc_dialect::{Action, CodeEntry, Dialect, MOTION_GROUP, PathKey};
 use nc_syntax::{Block, GCode, ItemKind, Word};
 use smallvec::SmallVec;
 use toolpath::{CycleKind, Kinematics, Motion};
@@ -199,6 +199,14 @@ impl Process {
     #[must_use]
     pub fn word(&self, letter: u8) -> Option<Argument> {
         self.words[LETTERS.iter().position(|known| *known == letter)?]
+    }
+
+    /// The same without what says how near the control keeps to the path.
+    #[must_use]
+    pub fn without_path_control(mut self, dialect: &Dialect) -> Self {
+        let says = |code: GCode| dialect.path_control.iter().any(|row| row.key == PathKey::Code(code));
+        self.modes.retain(|mode| !says(mode.code));
+        self
     }
 
     /// What X, Y and Z are from here on; true where that is something else than before.

@@ -107,7 +107,7 @@ fn reads(command: &[&str], option: &str) -> bool {
         ["batch", "run" | "merge"] => false,
         ["batch", ..] => option != "verbose",
         ["correct", ..] => true,
-        ["check", ..] => option != "outside" && !OF_OUTPUT.contains(&option),
+        ["check", ..] => option == "path_control" || (option != "outside" && !OF_OUTPUT.contains(&option)),
         ["restart"] => option == "machine" || OF_READING.contains(&option),
         // A lathe's program, or points.
         ["predict", ..] => {
@@ -132,7 +132,7 @@ fn reads(command: &[&str], option: &str) -> bool {
 /// correction was given.
 fn accepts(command: &[&str], option: &str) -> bool {
     match command {
-        ["check"] => ["outside", "strict", "path_control"].contains(&option),
+        ["check"] => ["outside", "strict"].contains(&option),
         ["restart"] => option != "verbose",
         ["batch", ..] => option == "verbose",
         _ => false,

@@ -20,6 +20,7 @@ use crate::datum::{Datum, LastDatum, going_on};
 use crate::feed::minutes;
 use crate::job::Job;
 use crate::notices::other_tool;
+use crate::path_mode::PathMode;
 
 /// What becomes of blocks under `/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -162,7 +163,10 @@ impl<'a, 'n> Program<'a, 'n> {
             block: Block::default(),
             interpreter: Interpreter::new(job.dialect, job.setup),
             numbers,
-            process: Process::at_start(job.dialect),
+            process: match job.path_mode {
+                PathMode::AsPosted => Process::at_start(job.dialect),
+                _ => Process::at_start(job.dialect).without_path_control(job.dialect),
+            },
             process_numbers: None,
             feed: None,
             datum: LastDatum::default(),
@@ -303,6 +307,10 @@ impl<'a, 'n> Program<'a, 'n> {
             Said::Feed(feed) => self.feed = Some(feed),
             Said::Setting(setting) => {
                 self.process.set(setting);
+                if self.job.path_mode != PathMode::AsPosted {
+                    // Written in front of feeds: what the control adds then is told beside the verdict.
+                    self.process = self.process.clone().without_path_control(self.job.dialect);
+                }
                 self.process_numbers = None;
             }
             Said::Deed(deed) => {
