@@ -112,7 +112,8 @@ impl Way {
     }
 
     /// Length of the linear axes' way, mm.
-    pub(crate) fn length_mm(&self) -> f64 {
+    #[must_use]
+    pub fn length_mm(&self) -> f64 {
         let chord = self.at(1.0) - self.at(0.0);
         match &self.arc {
             None => chord.norm(),
@@ -123,8 +124,9 @@ impl Way {
         }
     }
 
-    /// The places where an axis of an arc turns back, in order.
-    pub(crate) fn turns(&self) -> Vec<f64> {
+    /// The places where an axis of an arc turns back, 0 to 1, in order.
+    #[must_use]
+    pub fn turns(&self) -> Vec<f64> {
         let Some(Turning { axes, angle_rad, sweep_rad, radius_mm, .. }) = &self.arc else {
             return Vec::new();
         };

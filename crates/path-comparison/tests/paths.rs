@@ -291,3 +291,17 @@ fn a_corner_is_not_cut_by_what_the_tool_may_lean() {
         assert_eq!(found.mismatches.is_empty(), holds, "{cut_mm} {found:?}");
     }
 }
+
+#[test]
+fn an_arc_turns_back_at_its_quarters() {
+    let half = 0.5f64.sqrt() * 10.0;
+    for sense in [1.0, -1.0] {
+        let sweep_rad = sense * std::f64::consts::PI;
+        let arc = Arc { plane: Plane::Xy, centre_mm: [0.0, 0.0], sweep_rad };
+        let way = path_comparison::Way::of(&feed([half, half, 0.0], [-half, -half, 0.0], Shape::Arc(arc)));
+        let found: Vec<[f64; 2]> =
+            way.turns().into_iter().map(|s| [way.at(s).x.round() + 0.0, way.at(s).y.round() + 0.0]).collect();
+        let wanted = if sense > 0.0 { [[0.0, 10.0], [-10.0, 0.0]] } else { [[10.0, 0.0], [0.0, -10.0]] };
+        assert_eq!(found, wanted);
+    }
+}

@@ -6,10 +6,11 @@ use machine_model::Placement;
 use nc_emit::WordEdits;
 use nc_program::{Context, CurvePart, Questions};
 use nc_syntax::{Block, Letters, Reader};
+use path_comparison::Way;
 use smallvec::SmallVec;
 use toolpath::{Hole, Motion};
 
-use crate::control::{length_mm, radii_apart_by_words_mm, radii_apart_mm};
+use crate::control::{radii_apart_by_words_mm, radii_apart_mm};
 use crate::cutter;
 use crate::datum::{LastDatum, going_on};
 use crate::feed;
@@ -388,7 +389,7 @@ impl Pass<'_> {
             let Motion::Feed(feed) = motion else { continue };
             let (control, modal) = (&mut self.tally.figures.control, self.state.interpreter.modal());
             control.cut(self.job, modal, || (span.clone(), line));
-            control.stop(self.job, modal, blocks_out, || length_mm(feed));
+            control.stop(self.job, modal, blocks_out, || Way::of(feed).length_mm());
         }
         let Tally { figures, notices, .. } = &mut self.tally;
         for (motion, correction) in motions.iter().zip(corrections) {

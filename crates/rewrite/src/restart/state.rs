@@ -6,8 +6,9 @@ use nc_dialect::{Action, Dialect, PathKey};
 use nc_program::process::{BlockSays, Process, Said, said};
 use nc_program::{Interpreter, ToolLength, Units, WorkOffset};
 use nc_syntax::Block;
+use path_comparison::Way;
 use smallvec::SmallVec;
-use toolpath::{Arc, Feed, Motion, Partial, Position, Shape};
+use toolpath::{Feed, Motion, Partial, Position, Shape};
 use units::decimal::Decimal;
 
 use crate::job::Job;
@@ -202,46 +203,20 @@ impl<'a> State<'a> {
 
 /// The places of a motion to which each axis goes one way only, from the first behind its start to its end.
 fn along(feed: &Feed, mut go: impl FnMut(&Position)) {
-    match feed.shape {
-        Shape::Line => {}
-        Shape::Arc(arc) => turning_points(feed, &arc).iter().for_each(&mut go),
+    let way = Way::of(feed);
+    let inner: Vec<(f64, [f64; 3])> = match feed.shape {
+        Shape::Line | Shape::Arc(_) => way.turns().into_iter().map(|s| (s, way.at(s).into())).collect(),
         Shape::Bezier(curve) => {
-            for k in 1..CURVE_STEPS {
-                let (s, mut place) = (f64::from(k) / f64::from(CURVE_STEPS), feed.start);
-                place.linear_mm = curve.at(&feed.start.linear_mm, &feed.end.linear_mm, s);
-                go(&place);
-            }
+            let shares = (1..CURVE_STEPS).map(|k| f64::from(k) / f64::from(CURVE_STEPS));
+            shares.map(|s| (s, curve.at(&feed.start.linear_mm, &feed.end.linear_mm, s))).collect()
         }
+    };
+    for (s, linear_mm) in inner {
+        let turned = |axis: usize| s * (feed.end.rotary_deg[axis] - feed.start.rotary_deg[axis]);
+        let rotary_deg = [0, 1, 2].map(|axis| feed.start.rotary_deg[axis] + turned(axis));
+        go(&Position { linear_mm, rotary_deg });
     }
     go(&feed.end);
-}
-
-/// Where an axis of an arc's plane turns back.
-fn turning_points(feed: &Feed, arc: &Arc) -> Vec<Position> {
-    let [first, second, normal] = arc.plane.axes();
-    let (start, end) = (&feed.start.linear_mm, &feed.end.linear_mm);
-    let from = [start[first] - arc.centre_mm[0], start[second] - arc.centre_mm[1]];
-    let to = [end[first] - arc.centre_mm[0], end[second] - arc.centre_mm[1]];
-    let radius = |at: &[f64; 2]| units::math::hypot(at[0], at[1]);
-    let begin_rad = units::math::atan2(from[1], from[0]);
-    let quarter = std::f64::consts::FRAC_PI_2;
-    let sense = arc.sweep_rad.signum();
-    // The first quarter in the sense of the motion, then each.
-    let mut next = (sense * begin_rad / quarter).floor() + 1.0;
-    let mut found = Vec::new();
-    while sense * (next * quarter * sense - begin_rad) < arc.sweep_rad.abs() {
-        let angle_rad = sense * next * quarter;
-        let share = sense * (angle_rad - begin_rad) / arc.sweep_rad.abs();
-        let radius_mm = radius(&from) + (radius(&to) - radius(&from)) * share;
-        let (sin, cos) = units::math::sin_cos(angle_rad);
-        let mut place = feed.start;
-        place.linear_mm[first] = arc.centre_mm[0] + cos * radius_mm;
-        place.linear_mm[second] = arc.centre_mm[1] + sin * radius_mm;
-        place.linear_mm[normal] = start[normal] + (end[normal] - start[normal]) * share;
-        found.push(place);
-        next += 1.0;
-    }
-    found
 }
 
 /// A block brings in another tool.
@@ -256,35 +231,4 @@ pub(super) fn changes_tool(dialect: &Dialect, block: &Block<'_>) -> bool {
 pub(super) fn compensates(dialect: &Dialect, block: &Block<'_>) -> bool {
     let mut rows = block.words().filter_map(|word| word.g_code().and_then(|code| dialect.code(code)));
     rows.any(|row| matches!(row.action, Action::Compensation(_)))
-}
-
-#[cfg(test)]
-mod tests {
-    use toolpath::{Division, FeedRate, Plane};
-
-    use super::*;
-
-    #[test]
-    fn an_arc_turns_back_at_its_quarters() {
-        let at = |x: f64, y: f64| Position { linear_mm: [x, y, 0.0], ..Position::default() };
-        let half = 0.5f64.sqrt() * 10.0;
-        for sense in [1.0, -1.0] {
-            let arc =
-                Arc { plane: Plane::Xy, centre_mm: [0.0, 0.0], sweep_rad: sense * std::f64::consts::PI };
-            let feed = Feed {
-                start: at(half, half),
-                end: at(-half, -half),
-                shape: Shape::Arc(arc),
-                rate: FeedRate::PerMinute,
-                division: Division::Any,
-            };
-            let found: Vec<[f64; 2]> = turning_points(&feed, &arc)
-                .iter()
-                .map(|at| [at.linear_mm[0].round(), at.linear_mm[1].round()])
-                .collect();
-            let [one, other] =
-                if sense > 0.0 { [[0.0, 10.0], [-10.0, 0.0]] } else { [[10.0, 0.0], [0.0, -10.0]] };
-            assert_eq!(found, [one, other]);
-        }
-    }
 }
