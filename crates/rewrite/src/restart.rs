@@ -45,31 +45,65 @@ pub fn restart(
     safe_mm: Option<f64>,
 ) -> Result<Restarted, Vec<Diagnostic>> {
     let plain = nc_emit::without_guards(text);
-    let plain = plain.as_deref().unwrap_or(text);
-    let program = Program { job, text, plain, safe_mm };
-    let mut reader = Reader::new(plain, job.dialect);
-    let (mut state, mut leader) = (State::new(job), 0);
-    let (mut block, mut number) = (Block::default(), 0);
-    while reader.next(&mut block) {
-        if nc_expand::computes(&block, job.dialect) {
-            return Err(vec![flows(&block)]);
+    let program = Program { job, text, plain: plain.as_deref().unwrap_or(text), safe_mm };
+    let mut walk = Walk::new(&program);
+    while walk.next()? {
+        if walk.block.line >= line {
+            return program.from(&walk.before()).map_err(|why| vec![program.refusal(&walk, &why)]);
         }
-        if matches!(state.interpreter.modal().progress, Progress::Leader | Progress::Opened) {
-            leader = block.offset;
-        }
-        if block.line >= line {
-            return program
-                .from(&state, &block, leader)
-                .map_err(|why| vec![program.refusal(&block, &why, number)]);
-        }
-        state.step(&block)?;
-        number += 1;
     }
-    let why = both!("the program has {} lines", "строк в программе {}", block.line);
-    Err(vec![
-        Diagnostic::error(NO_RESTART, both!("no restart at line {line}", "с строки {line} не начать"))
-            .help(why),
-    ])
+    let why = both!("the program has {} lines", "строк в программе {}", walk.block.line);
+    let message = both!("no restart at line {line}", "со строки {line} не начать");
+    Err(vec![Diagnostic::error(NO_RESTART, message).help(why)])
+}
+
+/// A program read block by block.
+struct Walk<'p, 'a> {
+    reader: Reader<'p>,
+    state: State<'a>,
+    /// The block that comes next, the state being that before it.
+    block: Block<'p>,
+    /// How many have been read, it among them.
+    number: usize,
+    /// Bytes before the first block that does something.
+    leader: u64,
+}
+
+/// A block, and what the program has brought about before it.
+struct Before<'p, 'a> {
+    state: State<'a>,
+    block: Block<'p>,
+    leader: u64,
+}
+
+impl<'p, 'a: 'p> Walk<'p, 'a> {
+    fn new(program: &Program<'p, 'a>) -> Self {
+        let Program { job, plain, .. } = *program;
+        let (reader, state) = (Reader::new(plain, job.dialect), State::new(job));
+        Self { reader, state, block: Block::default(), number: 0, leader: 0 }
+    }
+
+    /// Takes in the block and reads the next; false behind the last.
+    fn next(&mut self) -> Result<bool, Vec<Diagnostic>> {
+        if self.number > 0 {
+            self.state.step(&self.block)?;
+        }
+        if !self.reader.next(&mut self.block) {
+            return Ok(false);
+        }
+        self.number += 1;
+        if nc_expand::computes(&self.block, self.state.job.dialect) {
+            return Err(vec![flows(&self.block)]);
+        }
+        if matches!(self.state.interpreter.modal().progress, Progress::Leader | Progress::Opened) {
+            self.leader = self.block.offset;
+        }
+        Ok(true)
+    }
+
+    fn before(&self) -> Before<'p, 'a> {
+        Before { state: self.state.clone(), block: self.block.clone(), leader: self.leader }
+    }
 }
 
 /// The program has to be plain.
@@ -95,24 +129,33 @@ struct Program<'p, 'a> {
 }
 
 impl Program<'_, '_> {
-    /// The program from a block on, the state before it being known.
-    fn from(&self, state: &State<'_>, block: &Block<'_>, leader: u64) -> Result<Restarted, Text> {
-        if leader == block.offset {
-            // Nothing has been said yet.
-            return Ok(Restarted { text: self.text.to_vec(), left_out: Vec::new() });
+    /// The program from a block on.
+    fn from(&self, before: &Before<'_, '_>) -> Result<Restarted, Text> {
+        let mut text = self.head(before)?;
+        let Before { state, block, leader } = before;
+        let at = if *leader == block.offset {
+            0
+        } else {
+            let line_ends = self.text[..block.offset as usize].iter().rposition(|byte| *byte == b'\n');
+            line_ends.map_or(0, |at| at + 1)
+        };
+        text.extend_from_slice(&self.text[at..]);
+        Ok(Restarted { text, left_out: state.others.clone() })
+    }
+
+    /// What stands before its own lines; nothing where nothing has been said yet.
+    fn head(&self, Before { state, block, leader }: &Before<'_, '_>) -> Result<Vec<u8>, Text> {
+        if *leader == block.offset {
+            return Ok(Vec::new());
         }
-        let blocks = blocks::blocks(state, block, self.safe_mm)?;
-        let start =
-            self.text[..block.offset as usize].iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         let end_of_line = line_ending(self.text);
-        let mut text = self.text[..leader as usize].to_vec();
-        for block in &blocks {
+        let mut text = self.text[..*leader as usize].to_vec();
+        for block in &blocks::blocks(state, block, self.safe_mm)? {
             text.extend_from_slice(block.as_bytes());
             text.extend_from_slice(end_of_line);
         }
         self.proven(&text, state, block)?;
-        text.extend_from_slice(&self.text[start..]);
-        Ok(Restarted { text, left_out: state.others.clone() })
+        Ok(text)
     }
 
     /// What is written must end in the state in which the program is.
@@ -175,24 +218,18 @@ impl Program<'_, '_> {
         known && (a - b).norm() > step_mm
     }
 
-    /// No restart at a block, and where there is one before it; `number`: of how many blocks lie before.
-    fn refusal(&self, at: &Block<'_>, why: &Text, number: usize) -> Diagnostic {
-        let (mut state, mut leader, mut nearest) = (State::new(self.job), 0, None);
-        let (mut reader, mut block) = (Reader::new(self.plain, self.job.dialect), Block::default());
-        for k in 0..number {
-            if !reader.next(&mut block) {
-                break;
-            }
-            if matches!(state.interpreter.modal().progress, Progress::Leader | Progress::Opened) {
-                leader = block.offset;
-            }
-            if k + TRIED >= number && block.acts() && self.from(&state, &block, leader).is_ok() {
-                nearest = Some(block.line);
-            }
-            if state.step(&block).is_err() {
-                break;
+    /// No restart where a walk has come to, and where there is one before.
+    fn refusal(&self, walk: &Walk<'_, '_>, why: &Text) -> Diagnostic {
+        let at = &walk.block;
+        let mut again = Walk::new(self);
+        let mut tried = Vec::new();
+        while again.number + 1 < walk.number && again.next() == Ok(true) {
+            if again.number + TRIED >= walk.number && again.block.acts() {
+                tried.push(again.before());
             }
         }
+        let nearest =
+            tried.iter().rev().find(|before| self.head(before).is_ok()).map(|before| before.block.line);
         let message = both!("no restart at line {}: {why}", "со строки {} не начать: {why:#}", at.line);
         let refusal =
             Diagnostic::error(NO_RESTART, message).at(at.file_range(), both!("this block", "этот кадр"));
