@@ -36,11 +36,11 @@ struct Chords {
 }
 
 /// Blocks at whose end the control stops.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Stops {
     count: u64,
-    /// What they take at most, s; NaN where nobody knows.
-    seconds: f64,
+    /// What they take at most, ns: whole ones, whose sum is the same in any order; `None` where nobody knows.
+    ns: Option<u64>,
 }
 
 /// The control's arcs: what the profile says of them, else the dialect.
@@ -92,21 +92,24 @@ impl ControlPart {
         if job.path_mode != PathMode::Exact {
             return;
         }
-        let stops = self.stops.get_or_insert_default();
-        let mm_s = match modal.last_feed {
-            LastFeed::PerMinute(feed, units) => feed.to_f64() * units.mm() / 60.0,
-            _ => f64::NAN,
+        let known = match (modal.last_feed, job.interpolator.acceleration_mm_s2) {
+            (LastFeed::PerMinute(feed, units), Some(acceleration)) => {
+                Some((feed.to_f64() * units.mm() / 60.0, acceleration))
+            }
+            _ => None,
         };
-        let acceleration = job.interpolator.acceleration_mm_s2.unwrap_or(f64::NAN);
-        let each_mm = length_mm() / blocks as f64;
-        // From rest to rest, less what it takes at full speed.
-        let more_s = if each_mm < mm_s * mm_s / acceleration {
-            2.0 * (each_mm / acceleration).sqrt() - each_mm / mm_s
-        } else {
-            mm_s / acceleration
-        };
-        stops.count += blocks as u64;
-        stops.seconds += blocks as f64 * more_s;
+        let more_s = known.map(|(mm_s, acceleration)| {
+            let each_mm = length_mm() / blocks as f64;
+            // From rest to rest, less what it takes at full speed.
+            let more_s = if each_mm < mm_s * mm_s / acceleration {
+                2.0 * (each_mm / acceleration).sqrt() - each_mm / mm_s
+            } else {
+                mm_s / acceleration
+            };
+            blocks as f64 * more_s
+        });
+        let ns = more_s.map(|seconds| (seconds * 1e9).round() as u64);
+        self.add_stops(Stops { count: blocks as u64, ns });
     }
 
     pub(crate) fn add(&mut self, later: &Self) {
@@ -117,11 +120,13 @@ impl ControlPart {
         if later.arc.as_ref().map(|at| at.off_mm) > self.arc.as_ref().map(|at| at.off_mm) {
             self.arc.clone_from(&later.arc);
         }
-        if let Some(more) = later.stops {
-            let stops = self.stops.get_or_insert_default();
-            stops.count += more.count;
-            stops.seconds += more.seconds;
-        }
+        later.stops.into_iter().for_each(|more| self.add_stops(more));
+    }
+
+    fn add_stops(&mut self, more: Stops) {
+        let Stops { count, ns } = self.stops.unwrap_or(Stops { count: 0, ns: Some(0) });
+        let ns = ns.zip(more.ns).map(|(ns, more)| ns + more);
+        self.stops = Some(Stops { count: count + more.count, ns });
     }
 
     /// By how much the control leaves the path at most, mm: at corners and on arcs together; infinite where nobody says, `None`
@@ -135,7 +140,7 @@ impl ControlPart {
     /// Ends of blocks at which the control was made to stop, and what that takes at most, s; `None` there: nobody knows.
     #[must_use]
     pub fn stops(&self) -> Option<(u64, Option<f64>)> {
-        self.stops.map(|stops| (stops.count, Some(stops.seconds).filter(|seconds| seconds.is_finite())))
+        self.stops.map(|stops| (stops.count, stops.ns.map(|ns| ns as f64 / 1e9)))
     }
 
     /// The lines of its places.
@@ -299,20 +304,6 @@ pub(crate) fn radii_apart_by_words_mm(
         at = end;
     }
     apart_mm
-}
-
-/// How long a motion is, mm; of a curve by control points its chord.
-pub(crate) fn length_mm(feed: &Feed) -> f64 {
-    let (start, end) = (&feed.start.linear_mm, &feed.end.linear_mm);
-    match feed.shape {
-        Shape::Arc(arc) => {
-            let [first, second, normal] = arc.plane.axes();
-            let radius_mm =
-                units::math::hypot(start[first] - arc.centre_mm[0], start[second] - arc.centre_mm[1]);
-            units::math::hypot(radius_mm * arc.sweep_rad, end[normal] - start[normal])
-        }
-        _ => distance_mm(start, end),
-    }
 }
 
 /// Of two places, mm.
