@@ -143,7 +143,9 @@ fn feeds_are_kept_to_the_path() {
         let [posted, written] = [("posted.nc", SWITCHED), ("out.nc", &corrected)];
         let [posted, written] = [posted, written].map(|(name, text)| shop.0.write(name, text));
         let checked = run(&["check", &posted, &written, "-m", &profile, &asked]);
-        assert!(checked.status.success(), "{how}: {}", String::from_utf8_lossy(&checked.stdout));
+        let said = String::from_utf8_lossy(&checked.stdout);
+        assert!(checked.status.success(), "{how}: {said}");
+        assert_eq!(said.ends_with("\npassed\n"), how != "keep", "{how}: {said}");
     }
     // Inches, and what is near enough already.
     let inches = "G20 G90 G54 G64 P0.00001\nG0 X1. Y1. Z1.\nG1 Z0 F8.\nG21\nX40.\nM30\n";

@@ -13,7 +13,6 @@ use machine_profile::Profile;
 use nc_dialect::Dialect;
 use nc_program::{Questions, Setup};
 use nc_syntax::Macros;
-
 use rewrite::{Datums, Guards, Job, PathMode};
 
 use crate::flow::Flow;
