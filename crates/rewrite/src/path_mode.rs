@@ -2,7 +2,9 @@
 
 use nc_dialect::{Dialect, Keeps, PathCode, PathKey};
 use nc_syntax::GCode;
-use units::decimal::{self, Spelling};
+use units::decimal::Decimal;
+
+use crate::words::word;
 
 /// Of the distances that are written, millimetres or inches.
 const DECIMALS: u8 = 6;
@@ -46,14 +48,11 @@ impl PathMode {
                 PathCode { key: PathKey::Code(code), keeps: Keeps::Words(letters) } => {
                     let steps = f64::from(10_u32.pow(DECIMALS.into()));
                     let counts = (mm / unit_mm / letters.len() as f64 * steps).floor();
-                    let mut block = code.to_string().into_bytes();
-                    for letter in letters {
-                        block.extend([b' ', *letter]);
-                        let spelling = Spelling { trailing_zeros: false, ..Spelling::FIXED };
-                        decimal::write(&mut block, counts as i64, DECIMALS, spelling);
-                    }
+                    let number = Decimal { mantissa: counts as i64, decimals: DECIMALS };
+                    let words = letters.iter().map(|letter| format!(" {}", word(*letter, number)));
+                    let block = words.fold(code.to_string(), |block, word| block + &word);
                     let off_mm = counts / steps * unit_mm * letters.len() as f64;
-                    (counts > 0.0).then(|| (String::from_utf8_lossy(&block).into_owned(), off_mm))
+                    (counts > 0.0).then_some((block, off_mm))
                 }
                 _ => None,
             }),

@@ -7,7 +7,7 @@ use nc_program::{Context, DirectionWords};
 use nc_syntax::{Block, GCode, Letters};
 use smallvec::SmallVec;
 use toolpath::{Feed, Hole, Motion, PeckRetreats, RotaryChain, Shape};
-use units::decimal::Decimal;
+use units::decimal::{self, Decimal, Spelling};
 
 /// The dialect's own codes for the motions that correction writes.
 #[derive(Debug, Clone, Copy)]
@@ -41,6 +41,13 @@ impl MotionCodes {
             dwell: find(Action::Dwell, 40),
         }
     }
+}
+
+/// A word with its point, without zeros behind the last figure that counts: `X10.`, `P0.05`.
+pub(crate) fn word(letter: u8, Decimal { mantissa, decimals }: Decimal) -> String {
+    let mut text = vec![letter];
+    decimal::write(&mut text, mantissa, decimals, Spelling { trailing_zeros: false, ..Spelling::FIXED });
+    String::from_utf8_lossy(&text).into_owned()
 }
 
 /// The letters of a block's words; those of the axes also where U or W stands for them.

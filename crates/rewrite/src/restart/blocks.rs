@@ -6,9 +6,10 @@ use nc_program::modal::{Axis, Distance, FeedMode, Modal, MotionMode, Progress, R
 use nc_program::{Compensation, ToolLength};
 use nc_syntax::{Block, GCode};
 use toolpath::{AXIS_NAMES, Kinematics};
-use units::decimal::{self, Decimal, Spelling};
+use units::decimal::{self, Decimal};
 
 use super::state::{FeedWord, State, changes_tool};
+use crate::words::word;
 
 /// Words of a restart have so many decimals at most.
 const DECIMALS: u8 = 6;
@@ -351,12 +352,12 @@ impl Writer<'_, '_> {
             FeedMode::PerRevolution => Action::FeedPerRevolution,
             FeedMode::InverseTime => Action::FeedInverseTime,
         };
-        let word = self.state.feed.filter(|feed| feed.mode == mode && feed.units == unit);
+        let held = self.state.feed.filter(|feed| feed.mode == mode && feed.units == unit);
         let needs = self.state.feed.is_some() && mode != FeedMode::InverseTime && next.word(b'F').is_none();
-        if needs && word.is_none() {
+        if needs && held.is_none() {
             return Err(both!("which F holds there is not known", "какое F там действует, неизвестно"));
         }
-        let feed = word.map(|FeedWord { number, .. }| decimal_word('F', number));
+        let feed = held.map(|FeedWord { number, .. }| word(b'F', number));
         let code = self.code(&code).ok().filter(|_| mode != FeedMode::PerMinute);
         let block: Vec<String> = code.into_iter().chain(feed).collect();
         self.blocks.extend(Some(block.join(" ")).filter(|block| !block.is_empty()));
@@ -372,11 +373,5 @@ impl Writer<'_, '_> {
 /// A word with its point, without zeros behind the last figure that counts.
 fn written(letter: char, value: f64) -> String {
     let steps = f64::from(10_u32.pow(DECIMALS.into()));
-    decimal_word(letter, Decimal { mantissa: decimal::round(value * steps), decimals: DECIMALS })
-}
-
-fn decimal_word(letter: char, Decimal { mantissa, decimals }: Decimal) -> String {
-    let mut number = Vec::new();
-    decimal::write(&mut number, mantissa, decimals, Spelling { trailing_zeros: false, ..Spelling::FIXED });
-    format!("{letter}{}", String::from_utf8_lossy(&number))
+    word(letter as u8, Decimal { mantissa: decimal::round(value * steps), decimals: DECIMALS })
 }
