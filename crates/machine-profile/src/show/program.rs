@@ -119,6 +119,7 @@ impl Profile {
 
 /// Numbers of the control's cycles of lathes.
 fn cycle_figures(turning: &TurningParameters) -> impl Iterator<Item = Text> {
+    let mm = || Text::pair(" mm", " мм");
     [
         (
             Text::pair("chamfer of threads", "сбег резьбы"),
@@ -130,32 +131,16 @@ fn cycle_figures(turning: &TurningParameters) -> impl Iterator<Item = Text> {
             turning.thread_chamfer_deg,
             Text::pair(" degrees", " градусов"),
         ),
-        (
-            Text::pair("escape of roughing", "отвод при черновой"),
-            turning.roughing_escape_mm,
-            Text::pair(" mm", " мм"),
-        ),
-        (
-            Text::pair("return of pecks", "отвод между врезаниями"),
-            turning.groove_return_mm,
-            Text::pair(" mm", " мм"),
-        ),
+        (Text::pair("escape of roughing", "отвод при черновой"), turning.roughing_escape_mm, mm()),
+        (Text::pair("return of pecks", "отвод между врезаниями"), turning.groove_return_mm, mm()),
         (
             Text::pair("finishing passes of threads", "чистовых проходов резьбы"),
             turning.thread_finishing_passes,
             Text::pair("", ""),
         ),
-        (
-            Text::pair("their least infeed", "их наименьшее врезание"),
-            turning.thread_least_mm,
-            Text::pair(" mm", " мм"),
-        ),
-        (Text::pair("their allowance", "их припуск"), turning.thread_allowance_mm, Text::pair(" mm", " мм")),
-        (
-            Text::pair("return in drilling", "отвод при сверлении"),
-            turning.drill_return_mm,
-            Text::pair(" mm", " мм"),
-        ),
+        (Text::pair("their least infeed", "их наименьшее врезание"), turning.thread_least_mm, mm()),
+        (Text::pair("their allowance", "их припуск"), turning.thread_allowance_mm, mm()),
+        (Text::pair("return in drilling", "отвод при сверлении"), turning.drill_return_mm, mm()),
         (
             Text::pair("feed out of bored holes", "подача на выходе из расточки"),
             turning.bore_return_percent,
