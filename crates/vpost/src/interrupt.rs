@@ -6,15 +6,13 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
-use std::thread;
+#[cfg(not(target_family = "wasm"))]
 use std::time::Duration;
-
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::iterator::Signals;
 
 use crate::message::Failure;
 
 /// Longer than the time between two checks of any work that checks, shorter than people wait.
+#[cfg(not(target_family = "wasm"))]
 const GRACE: Duration = Duration::from_millis(400);
 
 /// The first signal that came, 0 before.
@@ -28,25 +26,7 @@ impl Interrupt {
     pub(crate) fn listen() -> Self {
         let listen = || {
             let seen = Arc::new(AtomicUsize::new(0));
-            let heard = Arc::clone(&seen);
-            // Where signals cannot be heard they end the process at once, as they would have without us.
-            if let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) {
-                let _ = thread::Builder::new().spawn(move || {
-                    for signal in signals.forever() {
-                        let number = usize::from(signal.unsigned_abs() as u16);
-                        if heard.swap(number, Ordering::Relaxed) != 0 {
-                            // Asked twice.
-                            end(number);
-                        }
-                        thread::Builder::new()
-                            .spawn(move || {
-                                thread::sleep(GRACE);
-                                end(number);
-                            })
-                            .map_or_else(|_| end(number), drop);
-                    }
-                });
-            }
+            hear(&seen);
             Self(seen)
         };
         HEARD.get_or_init(listen).clone()
@@ -61,7 +41,38 @@ impl Interrupt {
     }
 }
 
-/// Ends the process as the shells say it of a signal.
-fn end(signal: usize) {
-    std::process::exit(128 + i32::try_from(signal).unwrap_or(SIGINT))
+/// Where signals cannot be heard they end the process at once, as they would have without us.
+#[cfg(not(target_family = "wasm"))]
+fn hear(seen: &Arc<AtomicUsize>) {
+    use std::thread::Builder;
+
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::iterator::Signals;
+
+    /// Ends the process as the shells say it of a signal.
+    fn end(signal: usize) {
+        std::process::exit(128 + i32::try_from(signal).unwrap_or(SIGINT))
+    }
+
+    let heard = Arc::clone(seen);
+    let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
+    let _ = Builder::new().spawn(move || {
+        for signal in signals.forever() {
+            let number = usize::from(signal.unsigned_abs() as u16);
+            if heard.swap(number, Ordering::Relaxed) != 0 {
+                // Asked twice.
+                end(number);
+            }
+            Builder::new()
+                .spawn(move || {
+                    std::thread::sleep(GRACE);
+                    end(number);
+                })
+                .map_or_else(|_| end(number), drop);
+        }
+    });
 }
+
+/// A page that no longer wants the answer drops the whole machine that computes it.
+#[cfg(target_family = "wasm")]
+fn hear(_: &Arc<AtomicUsize>) {}

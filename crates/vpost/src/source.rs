@@ -128,6 +128,12 @@ fn read_at(file: &File, bytes: &mut [u8], at: u64) -> io::Result<usize> {
 fn read_at(file: &File, bytes: &mut [u8], at: u64) -> io::Result<usize> {
     std::os::windows::fs::FileExt::seek_read(file, bytes, at)
 }
+/// One thread is all that there is: nobody moves the file's place in between.
+#[cfg(target_family = "wasm")]
+fn read_at(mut file: &File, bytes: &mut [u8], at: u64) -> io::Result<usize> {
+    file.seek(SeekFrom::Start(at))?;
+    file.read(bytes)
+}
 
 #[cfg(test)]
 mod tests {

@@ -319,6 +319,7 @@ fn foreign(place: &Path) -> Failure {
 /// have, and no more than help.
 fn most_open() -> usize {
     /// Beyond this the disk is waited for seldom enough.
+    #[cfg(unix)]
     const ENOUGH: u64 = 4096;
     /// What every system allows, and what else is open.
     const USUAL: u64 = 256;
