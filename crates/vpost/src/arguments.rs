@@ -210,4 +210,9 @@ pub struct Manual {
     /// Instead of the first page to standard output.
     #[arg(short = 'O', long = "output-dir", value_name = "DIR")]
     pub folder: Option<PathBuf>,
+    /// Print all commands and options as JSON.
+    ///
+    /// For forms and editors: names, values, defaults and help, in the language of `--lang`.
+    #[arg(long, conflicts_with = "folder")]
+    pub json: bool,
 }

@@ -3,6 +3,7 @@
 use clap_complete::Shell;
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, roman};
+use serde_json::{Value, json};
 
 use crate::arguments::{Completions, Manual};
 use crate::command_line::command;
@@ -38,16 +39,53 @@ pub fn pages(language: Language) -> std::io::Result<Vec<Page>> {
         }
         Ok(())
     }
-    // `vpost help` has nothing to say on paper.
-    let mut root = command().disable_help_subcommand(true);
-    root.build();
-    let root = match language {
-        Language::English => root,
-        Language::Russian => russian::spoken(root),
-    };
+    let root = spoken(language);
     let mut pages = Vec::new();
     add(&root, None, language, &mut pages)?;
     Ok(pages)
+}
+
+/// The whole command line, in a language.
+fn spoken(language: Language) -> clap::Command {
+    // `vpost help` has nothing to say on paper.
+    let mut root = command().disable_help_subcommand(true);
+    root.build();
+    match language {
+        Language::English => root,
+        Language::Russian => russian::spoken(root),
+    }
+}
+
+/// A command as data (`vpost.commands/1`): what forms are made of.
+fn described(command: &clap::Command) -> Value {
+    let text = |text: Option<&clap::builder::StyledStr>| text.map(ToString::to_string);
+    let argument = |argument: &clap::Arg| {
+        let takes = argument.get_action().takes_values();
+        let values: Vec<String> =
+            argument.get_possible_values().iter().map(|v| v.get_name().to_owned()).collect();
+        let defaults: Vec<_> = argument.get_default_values().iter().map(|v| v.to_string_lossy()).collect();
+        let many = matches!(argument.get_action(), clap::ArgAction::Append | clap::ArgAction::Count)
+            || argument.get_num_args().is_some_and(|count| count.max_values() > 1);
+        json!({
+            "id": argument.get_id().as_str(),
+            "long": argument.get_long(),
+            "short": argument.get_short(),
+            "value": argument.get_value_names().filter(|_| takes).map(|names| names.join(" ")),
+            "values": if takes { values } else { Vec::new() },
+            "default": if takes { defaults.first() } else { None },
+            "many": many,
+            "required": argument.is_required_set(),
+            "heading": argument.get_help_heading(),
+            "help": text(argument.get_help()),
+        })
+    };
+    let shown = |argument: &&clap::Arg| !argument.is_hide_set() && argument.get_id() != "help";
+    json!({
+        "name": command.get_name(),
+        "about": text(command.get_about()),
+        "arguments": command.get_arguments().filter(shown).map(argument).collect::<Vec<_>>(),
+        "commands": command.get_subcommands().filter(|inner| !inner.is_hide_set()).map(described).collect::<Vec<_>>(),
+    })
 }
 
 /// Headings as the renderer writes them, and as `man` knows them in Russian: by `ИМЯ` it finds what `apropos` lists.
@@ -115,8 +153,13 @@ fn page(command: &clap::Command, above: Option<&str>, language: Language) -> std
     Ok(Page { file: man.get_filename(), text: text.into_bytes() })
 }
 
-/// Prints the first page, or writes all.
+/// Prints the first page or the data, or writes all pages.
 pub(crate) fn run(arguments: &Manual, language: Language) -> Result<(), Failure> {
+    if arguments.json {
+        let mut data = json!({ "schema": "vpost.commands/1", "version": env!("CARGO_PKG_VERSION") });
+        data["command"] = described(&spoken(language));
+        return file::print(format!("{data}\n").as_bytes());
+    }
     let pages = pages(language).map_err(|error| {
         Failure::place(&Text::pair("the manual pages", "страницы руководства"), Deed::Make, &error)
     })?;

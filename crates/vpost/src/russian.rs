@@ -231,6 +231,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("Plus turns a rotary axis right or left about its letter's direction; one for each", "Плюс поворачивает ось вправо (right) или влево (left) вокруг направления её буквы; для каждой свой"),
     ("Points anywhere in the volume, of a tracker or a tracking interferometer: all rigid-body terms", "Точки где угодно в объёме, от трекера или следящего интерферометра: все погрешности твёрдых тел"),
     ("Predict what a lathe turns by a program: radius along Z, roundness, cylindricity, roughness", "Предсказать, что токарный станок выточит по программе: радиус вдоль Z, круглость, цилиндричность, шероховатость"),
+    ("Print all commands and options as JSON", "Вывести все команды и ключи как JSON"),
     ("Print only the shards that must run again, in the form that this engine takes", "Напечатать только части, которые надо запустить снова, в записи этого планировщика"),
     ("Print the JSON Schema of profiles", "Напечатать JSON Schema профилей"),
     ("Print this help", "Напечатать эту справку"),
