@@ -10,6 +10,7 @@ mod gap_bench;
 mod house;
 mod map_speed;
 mod markdown;
+mod page;
 mod picture;
 mod reproduction;
 #[path = "../../crates/machine-model/tests/stan_s500/mod.rs"]
@@ -63,6 +64,8 @@ enum Task {
     House(house::Options),
     /// Time error maps and zero-point searches; use a release build.
     MapSpeed,
+    /// Make vpost.html: the command as one file for a browser.
+    Page(page::Options),
     /// Draw the README's picture.
     Picture(picture::Options),
     /// Print docs/reproduction.md: printed numbers beside ours.
@@ -88,6 +91,7 @@ fn main() -> anyhow::Result<()> {
         Task::GapSamples { folder } => gap_bench::write_samples(&folder)?,
         Task::House(options) => house::run(&options)?,
         Task::MapSpeed => map_speed::page(),
+        Task::Page(options) => page::run(&options)?,
         Task::Picture(options) => picture::write(&options)?,
         Task::Reproduction => reproduction::page(),
         Task::Wrap { pages } => wrap_pages(&pages)?,

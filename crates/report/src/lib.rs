@@ -17,3 +17,5 @@ pub mod scale;
 mod table;
 pub mod text;
 pub mod viewer;
+
+pub use page::STYLE;

@@ -27,7 +27,7 @@ const POLICY: &str =
 
 /// Styles: one palette for light, dark and paper. The colours are Okabe and Ito's, which every kind of colour vision
 /// tells apart, and for the heat maps a series of rising lightness.
-const STYLE: &str = include_str!("page.css");
+pub const STYLE: &str = include_str!("page.css");
 
 impl Page {
     /// Nothing but its title.

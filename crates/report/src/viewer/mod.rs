@@ -15,4 +15,5 @@ pub mod scene;
 pub mod thinning;
 mod words;
 
-pub use page::{Figures, Kind, Viewer, line_of};
+pub use page::{Figures, Kind, SCRIPT, Viewer, line_of};
+pub use policy::source;

@@ -13,7 +13,8 @@ use crate::chart::solid::{Solid, Way, ways};
 use crate::numbers::{digits, number};
 use crate::text::{json_block, json_string, shown};
 
-const SCRIPT: &str = include_str!("viewer.js");
+/// What runs in it.
+pub const SCRIPT: &str = include_str!("viewer.js");
 const STYLE: &str = include_str!("viewer.css");
 
 /// What the places are.
