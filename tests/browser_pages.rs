@@ -21,7 +21,7 @@ const CALIBRATED: &str = "Calibration: instrument Renishaw XL-80";
 const LANGUAGES: [&str; 2] = ["en", "ru"];
 
 /// The script of axe-core, fetched where it is not there.
-fn axe() -> Option<String> {
+pub(crate) fn axe() -> Option<String> {
     let folder = root().join("target/axe");
     let script = folder.join("node_modules/axe-core/axe.min.js");
     if !script.is_file() {
@@ -153,7 +153,7 @@ fn pages(folder: &Path, language: &str) {
 /// What axe-core finds on the open page, a rule and an element in a line.
 ///
 /// * `rules` – those that are asked for; all if empty
-fn faults(browser: &mut Browser, axe: &str, rules: &[&str]) -> Vec<String> {
+pub(crate) fn faults(browser: &mut Browser, axe: &str, rules: &[&str]) -> Vec<String> {
     browser.evaluate(axe);
     let only = if rules.is_empty() {
         String::new()

@@ -195,6 +195,45 @@ impl Browser {
         answer["result"]["value"].take()
     }
 
+    /// Waits until a script's value is true.
+    pub(crate) fn wait(&mut self, script: &str) {
+        let waited = format!(
+            "new Promise(done => {{ const look = () => {{ try {{ if ({script}) return done(true); }} catch {{}} setTimeout(look, 20); }}; look(); setTimeout(() => done(false), 120000); }})"
+        );
+        assert_eq!(self.evaluate(&waited), json!(true), "{}: never `{script}`", self.page);
+    }
+
+    /// Files for an input of the page, as a person chooses them.
+    pub(crate) fn choose(&mut self, input: &str, files: &[&Path]) {
+        let document = self.ask("DOM.getDocument", &json!({}));
+        let asked = json!({ "nodeId": document["root"]["nodeId"], "selector": input });
+        let node = self.ask("DOM.querySelector", &asked)["nodeId"].take();
+        self.ask("DOM.setFileInputFiles", &json!({ "nodeId": node, "files": files }));
+    }
+
+    /// A key of the keyboard: `Tab`, `Enter`, `ArrowDown`, ` `.
+    pub(crate) fn press(&mut self, key: &str) {
+        let (code, text) = match key {
+            "Tab" => (9, ""),
+            "Enter" => (13, "\r"),
+            " " => (32, " "),
+            "ArrowDown" => (40, ""),
+            _ => panic!("no such key: {key}"),
+        };
+        for kind in ["keyDown", "keyUp"] {
+            let mut event = json!({ "type": kind, "key": key, "windowsVirtualKeyCode": code });
+            if kind == "keyDown" && !text.is_empty() {
+                event["text"] = json!(text);
+            }
+            self.ask("Input.dispatchKeyEvent", &event);
+        }
+    }
+
+    /// What is typed where the keyboard writes.
+    pub(crate) fn write(&mut self, text: &str) {
+        self.ask("Input.insertText", &json!({ "text": text }));
+    }
+
     /// The document as it is now.
     pub(crate) fn document(&mut self) -> String {
         let document = self.evaluate("document.documentElement.outerHTML");
@@ -216,7 +255,8 @@ impl Browser {
                     found[0].push(event["params"].to_string());
                 }
                 "Network.requestWillBeSent" | "Network.webSocketCreated"
-                    if !own(event).starts_with("data:") && unescaped(&own(event)) != self.page =>
+                    if !["data:", "blob:"].iter().any(|inner| own(event).starts_with(inner))
+                        && unescaped(&own(event)) != self.page =>
                 {
                     found[1].push(own(event));
                 }
@@ -299,7 +339,9 @@ impl Browser {
             .skip(1)
             .filter_map(|part| part.split('"').next())
             // Pages that were opened, and the browser's own errands.
-            .filter(|url| !["data:", "file:", "about:", "chrome:"].iter().any(|own| url.starts_with(own)))
+            .filter(|url| {
+                !["data:", "blob:", "file:", "about:", "chrome:"].iter().any(|own| url.starts_with(own))
+            })
             .filter(|url| {
                 !["google.com", "googleapis.com", "gvt1.com", "gstatic.com"]
                     .iter()
@@ -339,7 +381,7 @@ fn unescaped(url: &str) -> String {
 }
 
 /// RFC 4648.
-fn decoded(text: &str) -> Vec<u8> {
+pub(crate) fn decoded(text: &str) -> Vec<u8> {
     let six = |byte: u8| match byte {
         b'A'..=b'Z' => byte - b'A',
         b'a'..=b'z' => byte - b'a' + 26,

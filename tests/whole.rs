@@ -21,6 +21,7 @@ mod batch_engines;
 mod batch_kill;
 mod batch_shop;
 mod browser;
+mod browser_alone;
 mod browser_calibrate;
 mod browser_lathe;
 mod browser_pages;
