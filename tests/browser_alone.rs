@@ -313,6 +313,19 @@ fn what_cannot_be_done_is_said_in_the_page() {
     let found = found.as_str().expect("a text");
     assert!(found.starts_with("error") && found.contains("stan_s500/interferometer_x.csv"), "{found}");
     let folder = tempfile::tempdir().expect("a temporary folder");
+    // A file that changes behind the page's back is not corrected from two halves.
+    let program = folder.path().join("part.ngc");
+    std::fs::write(&program, "G21 G90 G17 G54\nG1 X1 F100\n").expect("writable");
+    let mut given = with_tables(&root(), STAN);
+    given.push(program.clone());
+    run_in(&mut browser, "correct", &given, &[("dialect", "linuxcnc")]);
+    std::fs::write(&program, "G21 G90 G17 G54\nG1 X2 F100\nG1 X3\n").expect("writable");
+    browser.evaluate("(by('status').textContent = '', by('run').click(), 0)");
+    browser.wait("by('cancel').hidden && by('status').textContent");
+    assert_eq!(
+        browser.evaluate("by('status').textContent"),
+        "part.ngc cannot be read: it may have been changed or moved. Drop it again."
+    );
     let archive = folder.path().join("parts.zip");
     std::fs::write(&archive, "no archive").expect("writable");
     browser.choose("#picked", &[&archive]);

@@ -26,12 +26,25 @@ pub(crate) struct Options {
     folder: PathBuf,
 }
 
-/// Builds, packs, and says what was made and how large it is.
-pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
+impl Options {
+    /// What people of most computers take: an archive and a Debian package.
+    pub(crate) fn of_this_version(folder: &Path) -> Self {
+        Self { target: LINUX.to_owned(), deb: true, folder: folder.to_owned() }
+    }
+}
+
+/// The project's folder, entered.
+pub(crate) fn root() -> anyhow::Result<PathBuf> {
     let root = PathBuf::from(
         crate::house::text_of(Command::new("git").args(["rev-parse", "--show-toplevel"]))?.trim(),
     );
     std::env::set_current_dir(&root)?;
+    Ok(root)
+}
+
+/// Builds, packs, and says what was made and how large it is.
+pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
+    let root = root()?;
     let triple = options.target.split('.').next().unwrap_or_default();
     ensure!(
         !options.deb || triple == "x86_64-unknown-linux-gnu",
@@ -77,7 +90,7 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
 }
 
 /// Seconds since 1970 that all files are from: `SOURCE_DATE_EPOCH`, or when the commit was made.
-fn epoch() -> anyhow::Result<u64> {
+pub(crate) fn epoch() -> anyhow::Result<u64> {
     let text = match std::env::var("SOURCE_DATE_EPOCH") {
         Ok(text) => text,
         Err(_) => crate::house::text_of(Command::new("git").args(["log", "-1", "--format=%ct"]))?,
@@ -89,6 +102,16 @@ fn epoch() -> anyhow::Result<u64> {
 ///
 /// Zig's C compiler links, for it has every C library that is asked for.
 fn build(root: &Path, target: &str) -> anyhow::Result<()> {
+    run_to_end(
+        Command::new("cargo")
+            .args(["zigbuild", "--locked", "--quiet", "--profile", "dist", "--package", "vpost", "--target", target])
+            .env("CARGO_ENCODED_RUSTFLAGS", pathless(root)?.join("\u{1f}")),
+    )
+    .context("`cargo zigbuild` comes with `pip install cargo-zigbuild ziglang`, other targets with `rustup target add`")
+}
+
+/// What the compiler is told so that no path of this computer gets into what it makes.
+pub(crate) fn pathless(root: &Path) -> anyhow::Result<Vec<String>> {
     let home = std::env::var_os("CARGO_HOME")
         .map(PathBuf::from)
         .or_else(|| std::env::home_dir().map(|home| home.join(".cargo")))
@@ -98,12 +121,7 @@ fn build(root: &Path, target: &str) -> anyhow::Result<()> {
     for entry in std::fs::read_dir(home.join("registry/src")).into_iter().flatten() {
         flags.push(format!("--remap-path-prefix={}=crates", entry?.path().display()));
     }
-    run_to_end(
-        Command::new("cargo")
-            .args(["zigbuild", "--locked", "--quiet", "--profile", "dist", "--package", "vpost", "--target", target])
-            .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\u{1f}")),
-    )
-    .context("`cargo zigbuild` comes with `pip install cargo-zigbuild ziglang`, other targets with `rustup target add`")
+    Ok(flags)
 }
 
 /// What is made of the command line and of the crates, for archives and Debian package alike.
@@ -263,7 +281,7 @@ fn list(folder: &Path, name: &Path, files: &mut Vec<PathBuf>) -> anyhow::Result<
 }
 
 /// Writes `SHA256SUMS` of all packages in the folder; says how large they are.
-fn sums(folder: &Path) -> anyhow::Result<String> {
+pub(crate) fn sums(folder: &Path) -> anyhow::Result<String> {
     let mut packages: Vec<String> = Vec::new();
     let mut said = String::new();
     for entry in std::fs::read_dir(folder)? {
@@ -271,7 +289,7 @@ fn sums(folder: &Path) -> anyhow::Result<String> {
             .file_name()
             .into_string()
             .map_err(|name| anyhow::anyhow!("{}: no UTF-8", name.display()))?;
-        if [".tar.gz", ".zip", ".deb"].iter().any(|ending| name.ends_with(ending)) {
+        if [".tar.gz", ".zip", ".deb", ".whl", ".html"].iter().any(|ending| name.ends_with(ending)) {
             packages.push(name);
         }
     }
@@ -285,7 +303,7 @@ fn sums(folder: &Path) -> anyhow::Result<String> {
     Ok(said)
 }
 
-fn run_to_end(command: &mut Command) -> anyhow::Result<()> {
+pub(crate) fn run_to_end(command: &mut Command) -> anyhow::Result<()> {
     let name = command.get_program().to_string_lossy().into_owned();
     let status = command.status().with_context(|| format!("{name}: cannot be started"))?;
     if !status.success() {

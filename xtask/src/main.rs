@@ -12,6 +12,7 @@ mod map_speed;
 mod markdown;
 mod page;
 mod picture;
+mod release;
 mod reproduction;
 #[path = "../../crates/machine-model/tests/stan_s500/mod.rs"]
 mod stan_s500;
@@ -68,6 +69,8 @@ enum Task {
     Page(page::Options),
     /// Draw the README's picture.
     Picture(picture::Options),
+    /// Make all that people get of a version: page, archive, Debian package, wheel, notes, checksums.
+    Release(release::Options),
     /// Print docs/reproduction.md: printed numbers beside ours.
     Reproduction,
     /// Break the lines of Markdown that are longer than 120 characters.
@@ -93,6 +96,7 @@ fn main() -> anyhow::Result<()> {
         Task::MapSpeed => map_speed::page(),
         Task::Page(options) => page::run(&options)?,
         Task::Picture(options) => picture::write(&options)?,
+        Task::Release(options) => release::run(&options)?,
         Task::Reproduction => reproduction::page(),
         Task::Wrap { pages } => wrap_pages(&pages)?,
     };

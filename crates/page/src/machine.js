@@ -13,9 +13,13 @@ class Ended extends Error {
   }
 }
 
+/** A file that was given and can be read no longer: changed, moved, or its disk is gone. */
+class Unread extends Error {}
+
 /** A file that the person gave: read only, a window of it in memory. */
 class Given {
-  constructor(blob) {
+  constructor(path, blob) {
+    this.path = path;
     this.blob = blob;
     this.from = 0;
     this.window = new Uint8Array(0);
@@ -26,8 +30,11 @@ class Given {
     if (at >= this.size) return 0;
     if (at < this.from || at >= this.from + this.window.length) {
       const piece = this.blob.slice(at, at + 4 * PIECE);
-      // A file that changed or went away meanwhile cannot be read; the command says so.
-      this.window = new Uint8Array(new FileReaderSync().readAsArrayBuffer(piece));
+      try {
+        this.window = new Uint8Array(new FileReaderSync().readAsArrayBuffer(piece));
+      } catch {
+        throw new Unread(this.path);
+      }
       this.from = at;
     }
     const part = this.window.subarray(at - this.from, at - this.from + into.length);

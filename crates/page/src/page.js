@@ -75,7 +75,7 @@ function start() {
   worker.onmessage = ({ data }) => {
     if (data.kind === "progress") waiting?.progress?.(data.percent);
     else if (data.kind === "done") settle("resolve", data.result);
-    else settle("reject", new Error(data.text));
+    else settle("reject", Object.assign(new Error(data.text), { unread: data.unread }));
   };
   worker.onerror = (event) => {
     event.preventDefault();
@@ -391,7 +391,11 @@ async function submit(event) {
     }
     await found(asked, results);
   } catch (error) {
-    const text = error.message === "stopped" ? words().stopped : /memory|allocation/i.test(error.message) ? words().memory : `${words().crashed}: ${error.message}`;
+    const said = words();
+    let text = `${said.crashed}: ${error.message}`;
+    if (error.message === "stopped") text = said.stopped;
+    else if (error.unread) text = said.unread(error.unread);
+    else if (/memory|allocation/i.test(error.message)) text = said.memory;
     status(text, "error");
   }
   busy(false);

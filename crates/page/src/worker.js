@@ -12,7 +12,7 @@ async function unpacked(text) {
 /** Runs the command; its progress is told as it comes. */
 async function ran({ args, language, files }) {
   const disk = new Disk();
-  for (const { path, blob } of files) disk.add(path, new Given(blob));
+  for (const { path, blob } of files) disk.add(path, new Given(path, blob));
   const decoder = new TextDecoder();
   let messages = "", line = "";
   const say = (text) => {
@@ -115,6 +115,6 @@ onmessage = async ({ data }) => {
   try {
     postMessage({ kind: "done", result: await TASKS[data.kind](data) });
   } catch (error) {
-    postMessage({ kind: "failed", text: String(error) });
+    postMessage({ kind: "failed", text: String(error), unread: error instanceof Unread ? error.message : undefined });
   }
 };
