@@ -47,6 +47,9 @@ const PATTERNS = {
   ballbar: ["ballbar.csv", "run,x_mm,y_mm,z_mm,bx_mm,by_mm,bz_mm,length_mm\nr1,100,0,0,0,0,0,100.0012\nr1,0,100,0,0,0,0,99.9987\n"],
 };
 
+/** What the command looks for beside a program. */
+const SETTINGS = "vpost.toml";
+
 let language = navigator.language.toLowerCase().startsWith("ru") ? "ru" : "en";
 let job = JOBS[0];
 /** @type {Map<string, Blob>} dropped and made, by path */
@@ -115,7 +118,7 @@ const run = (args, progress) =>
 
 function kindOf(path) {
   const ending = path.split(".").at(-1).toLowerCase();
-  if (ending === "toml") return path.split("/").at(-1) === "vpost.toml" ? "other" : "profile";
+  if (ending === "toml") return path.split("/").at(-1) === SETTINGS ? "other" : "profile";
   if (["csv", "json", "xml", "rtl", "pos", "txt", "ini", "tbl", "var", "htm", "html", "pdf"].includes(ending)) {
     return ["csv", "txt", "rtl", "pos"].includes(ending) ? "measurement" : "other";
   }
@@ -470,6 +473,15 @@ async function found(asked, results) {
   if (last.status === 0) shown.append(...cards);
   if (!cards.length && messages) shown.append(part("h3", {}, said.messages), part("pre", { tabindex: 0 }, messages.slice(0, SHOWN)));
   if (messages) shown.append(part("p", {}, `${said.messages}: `, save("messages.txt", new Blob([messages]))));
+  if (asked.options.length && !files.has(SETTINGS)) {
+    shown.append(part("p", {}, part("button", { type: "button", onclick: (event) => {
+      files.set(SETTINGS, new Blob([settings()]));
+      made.add(SETTINGS);
+      download(SETTINGS, files.get(SETTINGS));
+      event.target.disabled = true;
+      list();
+    } }, said.keep)));
+  }
   const quoted = asked.args.map((word) => (/^[\w./=,:+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`));
   shown.append(part("details", {}, part("summary", {}, said.copy), part("pre", { tabindex: 0 }, `vpost ${quoted.join(" ")}`)));
   list();
@@ -532,6 +544,19 @@ function answer(long, value) {
     input?.focus();
     input?.scrollIntoView({ block: "center" });
   } else submit();
+}
+
+/** The options of the form as settings that the command finds beside its program; those that it shares with the check
+ * hold for all. */
+function settings() {
+  const found = command(), lines = { all: [], own: [] };
+  for (const argument of asks(found).filter((argument) => argument.long && typed.get(argument.long))) {
+    const given = typed.get(argument.long);
+    const value = !argument.value ? "true" : JSON.stringify(argument.many ? given.split("\n").filter(Boolean) : given);
+    const isShared = ["correct", "check"].every((name) => reads(name, `--${argument.long}`));
+    lines[isShared ? "all" : "own"].push(`${argument.long} = ${value}\n`);
+  }
+  return [...lines.all, ...(lines.own.length ? [`[${found.path.join(".")}]\n`, ...lines.own] : [])].join("");
 }
 
 // All together

@@ -86,6 +86,7 @@ const WORDS = {
     },
     text: "Its lines",
     take: "Put it into the list",
+    keep: "Keep these options for the next time (vpost.toml)",
     copy: "Command line for the same",
   },
   ru: {
@@ -174,6 +175,7 @@ const WORDS = {
     },
     text: "Его строки",
     take: "Добавить в список",
+    keep: "Сохранить ключи на будущее (vpost.toml)",
     copy: "То же в командной строке",
   },
 };
