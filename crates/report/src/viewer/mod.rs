@@ -16,3 +16,4 @@ pub mod thinning;
 mod words;
 
 pub use page::{Figures, Kind, Viewer, line_of};
+pub use words::cause;
