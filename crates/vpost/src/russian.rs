@@ -216,6 +216,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("Measurements (CSV); - for standard input", "Измерения (CSV); - стандартный ввод"),
     ("Measurements that no fit may see: the predicted shrinkage is checked on them", "Измерения, которых подгонка не видит: по ним проверяется предсказанное уменьшение"),
     ("Messages", "Сообщения"),
+    ("Messages and figures while a program is edited (language server)", "Сообщения и числа, пока программу правят (языковой сервер)"),
     ("More about what is done", "Больше о том, что делается"),
     ("N of the shards that were run", "N — число частей, которые шли"),
     ("NC program; - for standard input", "Управляющая программа; - стандартный ввод"),
