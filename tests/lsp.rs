@@ -1,7 +1,8 @@
 //! `vpost lsp`: conversations over standard input and output, as an editor leads them.
 //!
-//! Each file of `tests/conversations` is one: `>` a message to the server, `!` bytes as they are, `<` the next message from
-//! it (what it has to hold: other keys may stand beside), `$` its exit status. `$ROOT` is the project's folder.
+//! Each file of `tests/conversations` is one: `>` a message to the server, `!` bytes as they are, `<` the next
+//! message from it (what it has to hold: other keys may stand beside), `$` its exit status. `$ROOT` is the project's
+//! folder.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -194,7 +195,8 @@ fn conversations() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Every message that a program of `docs/diagnostics.md` causes is seen in a conversation, in its place, in both languages.
+/// Every message that a program of `docs/diagnostics.md` causes is seen in a conversation, in its place, in both
+/// languages.
 #[test]
 fn every_message_of_a_program() {
     let (mut seen, mut unread, mut wrong) = (BTreeSet::new(), Vec::new(), Vec::new());
@@ -231,7 +233,8 @@ fn every_message_of_a_program() {
     assert!(seen.len() > 90, "{}", seen.len());
 }
 
-/// Ten thousand edits of a program and as many of its answers: the server is no larger at the end than after a thousand.
+/// Ten thousand edits of a program and as many of its answers: the server is no larger at the end than after a
+/// thousand.
 #[cfg(target_os = "linux")]
 #[test]
 fn ten_thousand_edits_leave_nothing_behind() {
@@ -266,8 +269,8 @@ fn ten_thousand_edits_leave_nothing_behind() {
     assert!(late < early + early / 10, "{early} KiB, then {late} KiB");
 }
 
-/// A megabyte is checked as it is typed, and what is typed meanwhile ends the check: of many edits the last alone is sure
-/// to be answered.
+/// A megabyte is checked as it is typed, and what is typed meanwhile ends the check: of many edits the last alone is
+/// sure to be answered.
 #[test]
 fn edits_overtake_the_check() {
     const EDITS: u32 = 200;

@@ -31,8 +31,8 @@ impl Language {
         Self::ALL.into_iter().find(|language| language.name().eq_ignore_ascii_case(name))
     }
 
-    /// The language of a locale's name, `language[_TERRITORY][.CODESET][@modifier]` or `language-TERRITORY`; English where
-    /// vpost does not know it.
+    /// The language of a locale's name, `language[_TERRITORY][.CODESET][@modifier]` or `language-TERRITORY`; English
+    /// where vpost does not know it.
     #[must_use]
     pub fn of_locale(locale: &str) -> Self {
         Self::from_name(locale.split(['_', '.', '@', '-']).next().unwrap_or_default()).unwrap_or_default()

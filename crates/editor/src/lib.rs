@@ -1,10 +1,11 @@
 //! Programs as an editor asks about them: the language server without its streams.
 //!
 //! All that is said comes from [`jobs`], as the command says it: messages are those of the correction, a line's figures
-//! those of the pages, places of subprograms those that the program takes. An [`Editor`] holds the texts that are open and
-//! the machines they are for; messages of the protocol go in, answers come out. Work that takes its time asks now and then
-//! whether somebody waits, and gives way: there are no threads here.
+//! those of the pages, places of subprograms those that the program takes. An [`Editor`] holds the texts that are
+//! open and the machines they are for; messages of the protocol go in, answers come out. Work that takes its time
+//! asks now and then whether somebody waits, and gives way: there are no threads here.
 
+mod capabilities;
 mod document;
 mod follow;
 mod hover;
@@ -257,7 +258,7 @@ impl Editor {
         let root = folders.chain(&params.root_uri).next();
         self.folder = root.and_then(place::path);
         self.first = params.initialization_options.clone().unwrap_or_default();
-        requests::capabilities()
+        capabilities::capabilities()
     }
 
     fn said(&self, failure: Failure) -> Vec<Message> {

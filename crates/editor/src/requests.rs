@@ -5,25 +5,8 @@ use lsp_types::{
     FoldingRange, FoldingRangeParams, GotoDefinitionParams, Hover, HoverContents, HoverParams, Location,
     MarkupContent, MarkupKind, TextEdit, WorkspaceEdit,
 };
-use serde_json::{Value, json};
 
 use crate::{Editor, Open, Stop, follow, hover, outline};
-
-/// What is answered to `initialize`: texts come as changes, places are UTF-16.
-pub(crate) fn capabilities() -> Value {
-    json!({
-        "capabilities": {
-            "positionEncoding": "utf-16",
-            "textDocumentSync": { "openClose": true, "change": 2, "save": true },
-            "hoverProvider": true,
-            "documentSymbolProvider": true,
-            "foldingRangeProvider": true,
-            "definitionProvider": true,
-            "codeActionProvider": { "codeActionKinds": ["quickfix"] },
-        },
-        "serverInfo": { "name": "vpost", "version": env!("CARGO_PKG_VERSION") },
-    })
-}
 
 impl Editor {
     pub(crate) fn hover(&mut self, params: &HoverParams, stop: Stop<'_>) -> Option<Hover> {

@@ -31,8 +31,8 @@ pub struct Off {
     pub causes: Vec<(Cause, [f64; 3])>,
 }
 
-/// What a line (from 1) of a program does; `None` where it is not executed. A line that is executed more than once is told
-/// of its first time, and is off by the most of all times.
+/// What a line (from 1) of a program does; `None` where it is not executed. A line that is executed more than once is
+/// told of its first time, and is off by the most of all times.
 ///
 /// `goes_on` is asked now and then, and ends the work with an error of its own.
 ///

@@ -66,7 +66,7 @@ pub enum Command {
     Grammar(Grammar),
     /// What a message means and what to do: VP0509.
     Explain(Explain),
-    /// Messages and figures while a program is edited (language server).
+    /// Answer an editor: messages as you type (LSP).
     Lsp(Lsp),
     /// Completions for a shell.
     Completions(Completions),

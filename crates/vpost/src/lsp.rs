@@ -1,7 +1,7 @@
 //! `vpost lsp`: what an editor asks on standard input, and what it is answered on standard output.
 //!
-//! A thread reads; all else is done here, message by message, and programs are checked while none waits. Work asks whether
-//! one does: an edit ends the check of the text before it, a cancelled request its answer.
+//! A thread reads; all else is done here, message by message, and programs are checked while none waits. Work asks
+//! whether one does: an edit ends the check of the text before it, a cancelled request its answer.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;

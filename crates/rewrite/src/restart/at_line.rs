@@ -1,4 +1,5 @@
-//! What blocks of a program bring about: what is in force behind them, where the axes stand, and what is written for them.
+//! What blocks of a program bring about: what is in force behind them, where the axes stand, and what is written for
+//! them.
 
 use std::ops::Range;
 
