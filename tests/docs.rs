@@ -17,26 +17,26 @@ use crate::common::{messages, root, run, vpost};
 
 /// A fenced block of a document.
 #[derive(Debug)]
-struct Fence {
+pub(crate) struct Fence {
     /// Language and what follows it.
     info: String,
-    text: String,
-    line: usize,
+    pub(crate) text: String,
+    pub(crate) line: usize,
     /// The heading above.
-    heading: String,
+    pub(crate) heading: String,
 }
 
 impl Fence {
-    fn language(&self) -> &str {
+    pub(crate) fn language(&self) -> &str {
         self.info.split(' ').next().unwrap_or_default()
     }
     /// What stands behind the language.
-    fn option(&self) -> &str {
+    pub(crate) fn option(&self) -> &str {
         self.info.split_once(' ').map_or("", |(_, option)| option)
     }
 }
 
-fn read(path: &str) -> String {
+pub(crate) fn read(path: &str) -> String {
     std::fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
@@ -58,7 +58,7 @@ fn documents() -> Vec<String> {
     found
 }
 
-fn fences(text: &str) -> Vec<Fence> {
+pub(crate) fn fences(text: &str) -> Vec<Fence> {
     let mut found: Vec<Fence> = Vec::new();
     let mut open = false;
     let mut heading = String::new();

@@ -57,6 +57,7 @@ mod help;
 mod holes;
 mod identity;
 mod large;
+mod lsp;
 mod map;
 mod measured_designs;
 mod ms300;

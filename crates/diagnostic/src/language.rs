@@ -30,6 +30,13 @@ impl Language {
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|language| language.name().eq_ignore_ascii_case(name))
     }
+
+    /// The language of a locale's name, `language[_TERRITORY][.CODESET][@modifier]` or `language-TERRITORY`; English
+    /// where vpost does not know it.
+    #[must_use]
+    pub fn of_locale(locale: &str) -> Self {
+        Self::from_name(locale.split(['_', '.', '@', '-']).next().unwrap_or_default()).unwrap_or_default()
+    }
 }
 
 /// The form of a Russian noun that stands behind a number: 1 строка, 2 строки, 5 строк, 11 строк, 21 строка.

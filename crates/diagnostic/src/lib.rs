@@ -5,6 +5,7 @@
 //! The list of codes with cause and remedy is `docs/diagnostics.md`.
 
 mod closest;
+mod edit;
 mod entry;
 mod language;
 mod message;
@@ -14,9 +15,10 @@ mod speaks;
 mod text;
 
 pub use closest::closest;
+pub use edit::Edit;
 pub use entry::Entry;
 pub use language::{Language, russian_plural};
-pub use message::{Code, Diagnostic, Severity};
+pub use message::{Code, Diagnostic, Severity, WayOut};
 pub use others::{of_system, of_toml};
 pub use refusal::Refusal;
 pub use speaks::Speaks;

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::{Entry, Text};
+use crate::{Edit, Entry, Text};
 
 /// The number in `error[VP0203]`.
 ///
@@ -45,8 +45,17 @@ pub struct Diagnostic {
     pub label: Text,
     /// What to type.
     pub help: Option<Text>,
-    /// What the profile lacks, where entries of one of its tables settle it.
-    pub entries: Box<[Entry]>,
+    /// What the help says, where that is more than words.
+    pub way_out: Option<Box<WayOut>>,
+}
+
+/// What settles a refusal, as who sees it may do it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WayOut {
+    /// What the profile lacks: entries of one of its tables.
+    Entries(Vec<Entry>),
+    /// One edit of the program.
+    Edit(Edit),
 }
 
 impl Diagnostic {
@@ -60,7 +69,7 @@ impl Diagnostic {
             span: None,
             label: Text::EMPTY,
             help: None,
-            entries: Box::default(),
+            way_out: None,
         }
     }
     /// A warning.
@@ -83,8 +92,30 @@ impl Diagnostic {
     /// Says which entry of the profile settles it.
     #[must_use]
     pub fn settled_by(mut self, entry: Entry) -> Self {
-        self.entries = Box::new([entry]);
+        self.way_out = Some(Box::new(WayOut::Entries(vec![entry])));
         self
+    }
+    /// Says which edit of the text does what the help says.
+    #[must_use]
+    pub fn mended_by(mut self, edit: Edit) -> Self {
+        self.way_out = Some(Box::new(WayOut::Edit(edit)));
+        self
+    }
+    /// What the profile lacks, where entries of one of its tables settle it.
+    #[must_use]
+    pub fn entries(&self) -> &[Entry] {
+        match self.way_out.as_deref() {
+            Some(WayOut::Entries(entries)) => entries,
+            Some(WayOut::Edit(_)) | None => &[],
+        }
+    }
+    /// The edit of the program that does what the help says.
+    #[must_use]
+    pub fn edit(&self) -> Option<&Edit> {
+        match self.way_out.as_deref()? {
+            WayOut::Edit(edit) => Some(edit),
+            WayOut::Entries(_) => None,
+        }
     }
     /// Says what to do.
     #[must_use]

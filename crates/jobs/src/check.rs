@@ -226,18 +226,21 @@ pub type CalledFile = (usize, String, Vec<u8>);
 /// Runs a program on the machine and on others beside it: every feed motion in order, with the number of its file (0 is the
 /// program itself) and the errors of each machine. One for each trace of [`closed`].
 ///
+/// * `asked` – the file and the line of what is asked for: others may be left out
+///
 /// # Errors
 /// The messages of a program that cannot be read.
 pub fn courses(
     (name, text): (&str, &[u8]),
     settings: &Settings,
     others: &[Models<'_>],
+    asked: &dyn Fn(usize, u64) -> bool,
     each: &mut dyn FnMut(usize, Course),
 ) -> Result<Vec<CalledFile>, Failure> {
     let expanded = expand::expanded(text, name, settings)?;
     let job = Job { force: true, ..settings.job("")? };
     let models: Vec<Models<'_>> = std::iter::once(job.models).chain(others.iter().copied()).collect();
-    rewrite::courses(&job, &models, &expanded, COURSE_STEP_MM, each)
+    rewrite::courses(&job, &models, &expanded, COURSE_STEP_MM, asked, each)
         .map_err(|diagnostics| Failure::Refused(expand::reports(&expanded, name, text, diagnostics)))?;
     let called = (1..).map_while(|file| {
         let (name, text) = expanded.file(file)?;

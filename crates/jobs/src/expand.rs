@@ -228,7 +228,7 @@ fn correct_plain(
 }
 
 /// Why a pipeline ended early.
-enum PipelineEnd {
+pub(crate) enum PipelineEnd {
     Refused(Vec<Diagnostic>),
     Failed(Failure),
 }

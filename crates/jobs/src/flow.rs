@@ -44,6 +44,12 @@ impl Flow {
         &self.presets
     }
 
+    /// A subprogram's file in the first folder that has it.
+    #[must_use]
+    pub fn path(&self, name: &str) -> Option<PathBuf> {
+        self.folders.iter().map(|folder| folder.join(name)).find(|path| path.is_file())
+    }
+
     /// Reads a subprogram's file from the first folder that has it.
     pub(crate) fn read(&self, name: &str) -> io::Result<Vec<u8>> {
         let mut parts = Path::new(name).components();

@@ -4,6 +4,7 @@
 //! that the profile names, and the folders of subprograms; programs, points and measurements come as bytes, and nothing
 //! is written or printed: messages are values that [`message::Wording`] makes text of.
 
+pub mod at_line;
 pub mod budget;
 pub mod calibrate;
 pub mod causes;

@@ -245,7 +245,8 @@ pub enum Deed {
 /// What messages begin with.
 static ERROR: Text = Text::pair("error", "ошибка");
 static WARNING: Text = Text::pair("warning", "предупреждение");
-static HELP: Text = Text::pair("help", "что делать");
+/// What stands before the way out.
+pub static HELP: Text = Text::pair("help", "что делать");
 static INTERRUPTED: Text = Text::pair("interrupted: nothing was written", "прервано: ничего не записано");
 
 /// How messages are written.

@@ -128,6 +128,10 @@ impl Expanded<'_> {
             let origin = diagnostic.span.as_ref().map(|span| self.origin(span));
             let file = origin.as_ref().map_or(0, |origin| origin.file);
             diagnostic.span = origin.map(|origin| origin.span);
+            // What is written out is no text that anybody edits.
+            if self.changed() && diagnostic.edit().is_some() {
+                diagnostic.way_out = None;
+            }
             match settled.last_mut().filter(|(last, _)| *last == file) {
                 Some((_, same)) => same.push(diagnostic),
                 None => settled.push((file, vec![diagnostic])),

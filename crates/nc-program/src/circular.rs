@@ -171,7 +171,9 @@ fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault) -> Box<Diag
             // Rounded up, so that the number can be typed as it stands.
             let least = (chord_mm / unit_mm / 2.0 * 1e4 - 1e-6).ceil() / 1e4;
             let found = [radius_mm, chord_mm].map(show);
-            words.refuse(refusal::radius_too_small(found, &unit, letters, shortest(least)), centre)
+            let least = shortest(least);
+            let radius = format!("R{least}");
+            words.refuse_in_place_of(radius, refusal::radius_too_small(found, &unit, letters, least), centre)
         }
         Fault::FullCircleByRadius => words.refuse(refusal::full_circle_by_r(letters), centre),
     }

@@ -78,7 +78,8 @@ pub(crate) fn holes(
     count: u32,
 ) -> Outcome<Motions> {
     if state.feed_mode == FeedMode::InverseTime {
-        return Err(words.refuse(refusal::DRILLING_CYCLE_UNDER_G93, words.span(AXIS_LETTERS)));
+        let holes = words.span(AXIS_LETTERS);
+        return Err(words.refuse_without("G94", refusal::DRILLING_CYCLE_UNDER_G93, holes));
     }
     own_feed(words, state)?;
     settle(words, state)?;

@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Diagnostic, Edit, Text, both};
 use nc_dialect::{Action, Dialect, LatheSign, PointFree};
 use nc_syntax::{Block, GCode, ItemKind, Letters, Number, PlainLine, Reader, Value, Word};
 use smallvec::SmallVec;
@@ -388,7 +388,8 @@ impl Evidence {
             .help(both!(
                 "write {millimetre} (or {inch}) at the start of the program",
                 "напишите {millimetre} (или {inch}) в начале программы"
-            ));
+            ))
+            .mended_by(Edit::insert(at.span.start, format!("{millimetre} ")));
             doubts.push((diagnostic, at.line));
         }
         doubts.extend(self.cut());

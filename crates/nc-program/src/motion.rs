@@ -304,7 +304,7 @@ fn machine_coordinates(
     if let Some(span) = demand.owner_span
         && (state.cycle.is_some() || matches!(state.motion, MotionMode::Arc(..)))
     {
-        return Err(words.refuse(refusal::MACHINE_COORDINATES_WITH_ARC_OR_CYCLE, span));
+        return Err(words.refuse_without("G0", refusal::MACHINE_COORDINATES_WITH_ARC_OR_CYCLE, span));
     }
     if words.has(ARC_LETTERS) {
         return Err(stray(words, both!("this block is no arc", "этот кадр не дуга")));
@@ -355,7 +355,9 @@ fn lose(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal, why
 
 fn no_cycle(words: &Words<'_, '_, '_>, state: &Modal, demand: &Demand<'_>) -> Outcome<()> {
     match demand.owner_span {
-        Some(span) if state.cycle.is_some() => Err(words.refuse(refusal::REFERENCE_OR_PROBE_IN_CYCLE, span)),
+        Some(span) if state.cycle.is_some() => {
+            Err(words.refuse_without("G80", refusal::REFERENCE_OR_PROBE_IN_CYCLE, span))
+        }
         _ => Ok(()),
     }
 }

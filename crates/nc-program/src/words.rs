@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Diagnostic, Refusal, Text, both};
+use diagnostic::{Diagnostic, Edit, Refusal, Text, both};
 use nc_dialect::{Action, CodeEntry, Dialect, MCode, TWord};
 use nc_syntax::{Block, GCode, Invalid, ItemKind, Letters, Number, Span, Value};
 use smallvec::SmallVec;
@@ -288,6 +288,19 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
 
     pub(crate) fn refuse(&self, refusal: Refusal, span: Span) -> Box<Diagnostic> {
         Box::new(refusal.at(self.file_span(span)))
+    }
+
+    /// The same of what is right with a word put in front of it.
+    pub(crate) fn refuse_without(&self, word: &str, refusal: Refusal, span: Span) -> Box<Diagnostic> {
+        let at = self.file_span(span);
+        let edit = Edit::insert(at.start, format!("{word} "));
+        Box::new(refusal.at(at).mended_by(edit))
+    }
+
+    /// The same of what stands in the place of a text.
+    pub(crate) fn refuse_in_place_of(&self, text: String, refusal: Refusal, span: Span) -> Box<Diagnostic> {
+        let at = self.file_span(span);
+        Box::new(refusal.at(at.clone()).mended_by(Edit::replace(at, text)))
     }
 
     /// The refusal of a code whose name begins the message.

@@ -1,6 +1,6 @@
 //! Messages about bytes that are not words.
 
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Code, Diagnostic, Edit, Text, both};
 
 use crate::{Block, Invalid, MAX_BLOCK_BYTES, Span};
 
@@ -78,9 +78,36 @@ impl Block<'_> {
         };
         // A caret under a gigabyte helps nobody.
         let end = span.end.min(span.start.saturating_add(120));
-        Diagnostic::error(Code(code), message)
+        let mut refused = Diagnostic::error(Code(code), message)
             .at(self.file_span(Span { start: span.start, end }), label)
-            .help(help)
+            .help(help);
+        if let Some(edit) = self.mended(why, span) {
+            refused = refused.mended_by(edit);
+        }
+        refused
+    }
+
+    /// The edit that makes of it what was meant, where one does.
+    fn mended(&self, why: Invalid, span: Span) -> Option<Edit> {
+        let text = self.text(span);
+        let at = self.file_span(span);
+        match why {
+            Invalid::UnclosedComment => {
+                let line = self.bytes.trim_ascii_end();
+                Some(Edit::insert(self.offset + line.len() as u64, ")"))
+            }
+            Invalid::Number => {
+                let decimal = text.iter().filter(|byte| matches!(byte, b',' | b'.')).eq([&b',']);
+                let digits = text.iter().skip(1).all(|byte| byte.is_ascii_digit() || b",+-".contains(byte));
+                let comma = text.iter().position(|byte| *byte == b',').filter(|_| decimal && digits)? as u64;
+                Some(Edit::replace(at.start + comma..at.start + comma + 1, "."))
+            }
+            Invalid::Text => {
+                let (cyrillic, latin) = cyrillic_twin(&String::from_utf8_lossy(text))?;
+                Some(Edit::replace(at.start..at.start + cyrillic.len_utf8() as u64, latin))
+            }
+            Invalid::TooManyDigits | Invalid::UnclosedBracket | Invalid::TooLong => None,
+        }
     }
 }
 

@@ -145,6 +145,10 @@ impl<I: Iterator<Item = Step>> Items<'_, I> {
     /// What every machine makes of a way, at the places of the first.
     fn course(&mut self, common: &Common, way: &Way, real: &[(f64, Vector)]) -> Option<Box<Course>> {
         let mut others = self.others.take()?;
+        if others.passes_over(common.line) {
+            self.others = Some(others);
+            return None;
+        }
         let mut course = Course { line: common.line, places_mm: Vec::new(), errors_mm: Vec::new() };
         for (s, error_mm) in real {
             let here = common.command(way.at(*s), way.rotary_rad(*s));

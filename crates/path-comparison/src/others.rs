@@ -27,6 +27,7 @@ pub const TURN_RAD: f64 = 0.1;
 pub(crate) struct Others<'m> {
     machines: Vec<Other<'m>>,
     step_mm: f64,
+    asked: &'m dyn Fn(u64) -> bool,
     datum_of: &'m DatumOf<'m>,
 }
 
@@ -39,7 +40,12 @@ struct Other<'m> {
 }
 
 impl<'m> Others<'m> {
-    pub(crate) fn new(models: &[Models<'m>], step_mm: f64, datum_of: &'m DatumOf<'m>) -> Self {
+    pub(crate) fn new(
+        models: &[Models<'m>],
+        step_mm: f64,
+        asked: &'m dyn Fn(u64) -> bool,
+        datum_of: &'m DatumOf<'m>,
+    ) -> Self {
         let mut others = Self {
             machines: models
                 .iter()
@@ -51,6 +57,7 @@ impl<'m> Others<'m> {
                 })
                 .collect(),
             step_mm,
+            asked,
             datum_of,
         };
         others.switch(Kinematics::Axes);
@@ -68,6 +75,11 @@ impl<'m> Others<'m> {
     /// Those that have play.
     pub(crate) fn playing(&mut self) -> impl Iterator<Item = (&'m dyn PathModel, &mut Play)> {
         self.machines.iter_mut().filter_map(|other| Some((other.model, other.play.as_mut()?)))
+    }
+
+    /// Nobody asks for a line, and where the axes go in it has nothing to do with those that follow.
+    pub(crate) fn passes_over(&self, line: u64) -> bool {
+        !(self.asked)(line) && self.machines.iter().all(|other| other.play.is_none())
     }
 
     /// Into how many pieces a way is cut.

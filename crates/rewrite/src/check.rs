@@ -189,6 +189,8 @@ fn in_a_corridor(mut comparison: Comparison, wider: f64) -> Option<Comparison> {
 /// Runs a program on several machines: every feed motion with its file, and with the errors of each machine along it,
 /// blocks under `/` executed. See [`path_comparison::courses`].
 ///
+/// * `asked` – the file and the line of what is asked for
+///
 /// # Errors
 /// What cannot be read of it.
 pub fn courses(
@@ -196,6 +198,7 @@ pub fn courses(
     models: &[Models<'_>],
     program: &Expanded<'_>,
     step_mm: f64,
+    asked: &dyn Fn(usize, u64) -> bool,
     each: &mut dyn FnMut(usize, Course),
 ) -> Result<(), Vec<Diagnostic>> {
     let numbers = RefCell::new(Numbers::default());
@@ -209,11 +212,16 @@ pub fn courses(
         };
         touched.borrow().iter().find(of).map_or(own, placement)
     };
+    let asked = |name: u64| {
+        let (file, line) = file_and_line(name);
+        asked(file, line)
+    };
     path_comparison::courses(
         models,
         &mut steps,
         retreats(job.dialect),
         step_mm,
+        &asked,
         &datum_of,
         &mut |mut course| {
             let (file, line) = file_and_line(course.line);

@@ -72,6 +72,6 @@ pub use figures::{Corrected, Figures, Held};
 pub use job::*;
 pub use large::{Digest, Large, LargeEnd, Manner, Part, Source};
 pub use path_mode::PathMode;
-pub use restart::{NO_RESTART, Restarted, restart};
+pub use restart::{Brought, NO_RESTART, Restarted, brought_about, changes_tool, restart};
 pub use survey::all_refusals;
 pub use whole::{correct, correct_plain, corrected_before};

@@ -4,6 +4,7 @@
 //! What is written is read like any program, and where that does not end in the state of the program before the line, to the
 //! last mode and to the side of each play, there is no restart.
 
+mod at_line;
 mod blocks;
 mod state;
 
@@ -11,6 +12,9 @@ use diagnostic::{Code, Diagnostic, Text, both};
 use nc_program::Modal;
 use nc_program::modal::{Axis, Progress};
 use nc_syntax::{Block, Reader, line_ending};
+
+pub use at_line::{Brought, brought_about};
+pub use state::changes_tool;
 
 use crate::job::Job;
 use state::State;

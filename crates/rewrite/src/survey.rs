@@ -1,6 +1,6 @@
 //! What else of a refused program would be refused, whatever becomes of its first refusal, grouped by what settles it.
 
-use diagnostic::{Code, Diagnostic, Entry, Text, both, russian_plural};
+use diagnostic::{Code, Diagnostic, Entry, Text, WayOut, both, russian_plural};
 use nc_program::{Interpreter, codes};
 
 use crate::job::Job;
@@ -48,7 +48,7 @@ pub fn all_refusals(text: &[u8], job: &Job<'_>, first: Vec<Diagnostic>) -> Vec<D
             match found.iter_mut().position(|group| group.takes(&one)) {
                 // The block that was refused first is met again.
                 Some(known) if known < firsts && one.span == found[known].face.span => {}
-                Some(known) => found[known].take(one),
+                Some(known) => found[known].take(&one),
                 None if found.len() < most => found.push(Group::of(one)),
                 None => {}
             }
@@ -68,8 +68,8 @@ struct Group {
 }
 
 impl Group {
-    fn of(mut face: Diagnostic) -> Self {
-        let entries = std::mem::take(&mut face.entries).into_vec();
+    fn of(face: Diagnostic) -> Self {
+        let entries = face.entries().to_vec();
         Self { face, entries, more: 0 }
     }
 
@@ -81,15 +81,15 @@ impl Group {
         }
         // What stands there differs from block to block, remarks that are none: the way out is one.
         let alike = message == &other.message || is_unreadable(*code);
-        let pair = self.entries.first().zip(other.entries.first());
+        let pair = self.entries.first().zip(other.entries().first());
         (alike && help == &other.help) || pair.is_some_and(|(a, b)| a.is_beside(b))
     }
 
-    fn take(&mut self, other: Diagnostic) {
+    fn take(&mut self, other: &Diagnostic) {
         let known = self.entries.len();
-        for entry in other.entries {
-            if !self.entries.contains(&entry) {
-                self.entries.push(entry);
+        for entry in other.entries() {
+            if !self.entries.contains(entry) {
+                self.entries.push(entry.clone());
             }
         }
         self.more += usize::from(self.entries.len() == known);
@@ -104,12 +104,12 @@ impl Group {
             let names = names.join(", ");
             add(&mut face.label, &both!("nor are {names}", "нет и {names}"));
             let written = Entry::written(&entries);
+            face.way_out = Some(Box::new(WayOut::Entries(entries)));
             face.help = Some(both!(
                 "this settles all of them, with your values: {written}",
                 "всё сразу, со своими значениями: {written:#}"
             ));
         }
-        face.entries = entries.into_boxed_slice();
         counted(face, more)
     }
 }

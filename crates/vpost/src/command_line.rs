@@ -10,6 +10,7 @@ use crate::budget::Budget;
 use crate::calibrate::Calibrate;
 use crate::diagnose::{Diagnose, Form};
 use crate::explain::Explain;
+use crate::lsp::Lsp;
 use crate::map::Map;
 use crate::restart::Restart;
 use crate::{language, russian};
@@ -65,6 +66,8 @@ pub enum Command {
     Grammar(Grammar),
     /// What a message means and what to do: VP0509.
     Explain(Explain),
+    /// Answer an editor: messages as you type (LSP).
+    Lsp(Lsp),
     /// Completions for a shell.
     Completions(Completions),
     /// The manual pages (roff).

@@ -31,12 +31,10 @@ pub(crate) fn of_arguments(arguments: &[OsString]) -> Language {
 /// A locale that vpost does not know is English: it was set for all programs, and none of them fails by it.
 fn of_environment(variable: impl Fn(&str) -> Option<String>) -> Language {
     let set = |name| variable(name).filter(|value| !value.is_empty());
-    ["LC_ALL", "LC_MESSAGES", "LANG"].into_iter().find_map(set).map_or(Language::English, |l| of_locale(&l))
-}
-
-/// The language of a locale's name, `language[_TERRITORY][.CODESET][@modifier]`.
-fn of_locale(locale: &str) -> Language {
-    Language::from_name(locale.split(['_', '.', '@', '-']).next().unwrap_or_default()).unwrap_or_default()
+    ["LC_ALL", "LC_MESSAGES", "LANG"]
+        .into_iter()
+        .find_map(set)
+        .map_or(Language::English, |l| Language::of_locale(&l))
 }
 
 #[cfg(test)]
@@ -46,10 +44,10 @@ mod tests {
     #[test]
     fn a_locale_is_russian_or_english() {
         for locale in ["ru", "ru_RU", "ru_RU.UTF-8", "ru_UA.KOI8-U", "ru@x", "RU_ru", "ru-RU"] {
-            assert_eq!(of_locale(locale), Language::Russian, "{locale}");
+            assert_eq!(Language::of_locale(locale), Language::Russian, "{locale}");
         }
         for locale in ["C", "POSIX", "C.UTF-8", "en_US.UTF-8", "run", "de_DE", "rue_SK", "нет", "."] {
-            assert_eq!(of_locale(locale), Language::English, "{locale}");
+            assert_eq!(Language::of_locale(locale), Language::English, "{locale}");
         }
     }
 

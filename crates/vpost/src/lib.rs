@@ -19,6 +19,7 @@ mod grammar;
 mod growing;
 mod interrupt;
 pub mod language;
+pub mod lsp;
 pub mod manual;
 pub mod map;
 mod message;
@@ -99,6 +100,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Profile(a)) => profile_command::run(a, &messages),
         Some(Command::Grammar(a)) => grammar::run(a, &messages),
         Some(Command::Explain(a)) => explain::run(a, language),
+        Some(Command::Lsp(a)) => lsp::run(a, arguments.shared.messages.language.as_deref().copied()),
         Some(Command::Completions(a)) => manual::print_completions(a),
         Some(Command::Man(a)) => manual::run(a, language),
         None => correct::run(&arguments.correct, &arguments.shared, &messages),

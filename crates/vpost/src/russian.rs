@@ -151,6 +151,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("A point of a rotary axis' line, machine coordinates; one for each", "Точка на поворотной оси, координаты станка; по одной на каждую"),
     ("A point through which the axes of the table should go, machine coordinates, mm, where the base profile has no centre_mm", "Точка, через которую должны проходить оси стола, координаты станка, мм, если в исходном профиле нет centre_mm"),
     ("All options: vpost correct --help\n\nExit: 0 done; 1 refused, nothing is written; 2 usage; 75 try again; 130, 143 signal\nExample: vpost in.nc -m machine-profiles/stan_s500.toml -o out.nc", "Все ключи: `vpost correct --help`\n\nКод завершения: 0 сделано; 1 не принято, ничего не записано; 2 ошибка вызова;\n75 повторить позже; 130, 143 сигнал\nПример: vpost in.nc -m machine-profiles/stan_s500.toml -o out.nc"),
+    ("Answer an editor: messages as you type (LSP)", "Отвечать редактору: сообщения при правке (LSP)"),
     ("As the instrument gave it, µrad", "Как её дал прибор, мкрад"),
     ("At which angles products of errors begin to matter", "При каких углах начинают сказываться произведения погрешностей"),
     ("Axes from workpiece to tool, b the bed; `[w X Y b Z t]` if not given", "Оси от детали к инструменту, станина — b; если не заданы, `[w X Y b Z t]`"),

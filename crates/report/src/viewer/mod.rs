@@ -17,3 +17,4 @@ mod words;
 
 pub use page::{Figures, Kind, SCRIPT, Viewer, line_of};
 pub use policy::source;
+pub use words::cause;

@@ -167,6 +167,12 @@ pub(super) fn word(key: &str, language: Language) -> &str {
     }
 }
 
+/// A cause of error in words, by its kind and which one: squareness EC0Y.
+#[must_use]
+pub fn cause(kind: &str, symbol: &str, language: Language) -> String {
+    say(&format!("cause_{kind}"), language, &[("symbol", symbol.to_owned())])
+}
+
 /// A text with what stands in its braces filled in.
 pub(super) fn say(key: &str, language: Language, values: &[(&str, String)]) -> String {
     values.iter().fold(word(key, language).to_owned(), |text, (name, value)| {

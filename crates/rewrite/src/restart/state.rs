@@ -220,7 +220,8 @@ fn along(feed: &Feed, mut go: impl FnMut(&Position)) {
 }
 
 /// A block brings in another tool.
-pub(super) fn changes_tool(dialect: &Dialect, block: &Block<'_>) -> bool {
+#[must_use]
+pub fn changes_tool(dialect: &Dialect, block: &Block<'_>) -> bool {
     block.words().filter(|word| word.letter == b'M').any(|word| {
         let code = word.number().and_then(|number| u16::try_from(number.integer()?).ok());
         code.and_then(|code| dialect.m_code(code)).is_some_and(|row| row.changes_tool)

@@ -145,7 +145,7 @@ impl Fault {
             line,
             note: diagnostic.label.english().to_owned(),
             help: diagnostic.help.as_ref().map(|help| help.english().to_owned()),
-            settled_by: diagnostic.entries.iter().map(Settling::of).collect(),
+            settled_by: diagnostic.entries().iter().map(Settling::of).collect(),
             help_in_russian: diagnostic
                 .help
                 .as_ref()

@@ -103,7 +103,7 @@ fn drawn(
     let traces = &comparison.traces;
     let mut thinning = Thinning::new(size_mm(traces), comparison.before.largest_mm * 1e3, 2 + others.len());
     let (mut read, mut end, mut remainder_um, mut refused) = (0, None, 0.0f64, None);
-    let called = jobs::check::courses(program, settings, others, &mut |file, course| {
+    let called = jobs::check::courses(program, settings, others, &|_, _| true, &mut |file, course| {
         let Some(trace) = traces.get(read).filter(|_| refused.is_none()) else { return };
         let machines = 1 + others.len();
         let joins = |place: &[f64; 3]| end.is_some_and(|end| apart_mm(place, &end) < SAME_MM);

@@ -1,0 +1,117 @@
+//! The machine that a program is for: profile, dialect and options, read once.
+
+use std::path::{Path, PathBuf};
+
+use diagnostic::{Language, Text, both, of_toml};
+use jobs::causes::Causes;
+use jobs::conditions::conditions;
+use jobs::message::{Failure, OPTION, notice};
+use jobs::options::JobOptions;
+use jobs::settings::Settings;
+use nc_dialect::Dialect;
+use serde_json::Value;
+
+/// What holds for a program: of what the editor was told, and of what stands beside the program.
+pub type Find = fn(program: &Path, told: &JobOptions) -> Result<JobOptions, Failure>;
+
+/// Everything a program is read with.
+pub(crate) struct Machine {
+    pub(crate) settings: Settings,
+    /// The machine without each of its causes of error.
+    pub(crate) causes: Option<Causes>,
+}
+
+impl Machine {
+    fn load(options: &JobOptions) -> Result<Self, Failure> {
+        let settings = Settings::load(options)?;
+        let causes = Causes::of(&settings.profile, settings.engine.id(), &conditions(options)?)?;
+        Ok(Self { settings, causes })
+    }
+}
+
+/// Machines by their options.
+pub(crate) struct Machines {
+    find: Find,
+    told: JobOptions,
+    known: Vec<(JobOptions, Machine)>,
+}
+
+impl Machines {
+    pub(crate) const fn new(find: Find, told: JobOptions) -> Self {
+        Self { find, told, known: Vec::new() }
+    }
+
+    /// Other options hold.
+    pub(crate) fn tell(&mut self, told: JobOptions) {
+        *self = Self::new(self.find, told);
+    }
+
+    /// Files that they were read from may be others now.
+    pub(crate) fn forget(&mut self) {
+        self.known.clear();
+    }
+
+    /// How a program is spelled, where its machine is not known too.
+    pub(crate) fn dialect(&mut self, program: &Path) -> Option<&Dialect> {
+        let name = (self.find)(program, &self.told).ok()?.dialect;
+        match self.of(program) {
+            Ok(machine) => Some(&machine.settings.dialect),
+            Err(_) => nc_dialect::builtin(&name?),
+        }
+    }
+
+    /// The machine of a program.
+    pub(crate) fn of(&mut self, program: &Path) -> Result<&Machine, Failure> {
+        let options = (self.find)(program, &self.told)?;
+        let known = self.known.iter().position(|(known, _)| *known == options);
+        let at = match known {
+            Some(at) => at,
+            None => {
+                let machine = Machine::load(&options)?;
+                self.known.push((options, machine));
+                self.known.len() - 1
+            }
+        };
+        Ok(&self.known[at].1)
+    }
+}
+
+/// What an editor's settings say: options as a manifest spells them, and `language`; paths from its folder on.
+///
+/// # Errors
+/// A key or a value that is none.
+pub(crate) fn told(
+    settings: &Value,
+    folder: Option<&Path>,
+) -> Result<(JobOptions, Option<Language>), Failure> {
+    let mut settings = settings.clone();
+    let taken = settings.as_object_mut().map(|keys| {
+        keys.retain(|_, value| !value.is_null());
+        keys.remove("language")
+    });
+    let language = taken.flatten();
+    let wrong = |why: Text| {
+        Failure::usage(notice!(OPTION;
+            both!("a setting of the editor cannot be understood: {why}", "настройка редактора непонятна: {why:#}");
+            "its keys are those of docs/how-to/editor.md", "её ключи перечислены в docs/how-to/editor.ru.md"
+        ))
+    };
+    let language = match language.as_ref().map(|name| name.as_str().and_then(Language::from_name)) {
+        Some(None) => {
+            return Err(wrong(both!("`language` is `en` or `ru`", "`language` — это `en` или `ru`")));
+        }
+        language => language.flatten(),
+    };
+    let mut options: JobOptions = match settings {
+        Value::Null => JobOptions::default(),
+        settings => serde_json::from_value(settings).map_err(|error| wrong(of_toml(&error.to_string())))?,
+    };
+    if let Some(folder) = folder {
+        let from = |path: &mut PathBuf| *path = folder.join(&*path);
+        let single = [&mut options.machine, &mut options.tool_table, &mut options.linuxcnc_ini];
+        single.into_iter().flatten().chain(&mut options.include).for_each(from);
+        let table = options.dialect.as_mut().filter(|name| name.ends_with(".toml"));
+        table.into_iter().for_each(|name| *name = folder.join(&*name).to_string_lossy().into_owned());
+    }
+    Ok((options, language))
+}
