@@ -52,7 +52,10 @@ pub(crate) fn run(
     shown.report(1.0);
     // All that can fail before the program gets its name.
     let summary = match arguments.summary.as_deref() {
-        Some(path) => Some(file::written(path, &Summary::new(&settings, &done).json())?),
+        Some(path) => {
+            let summary = Summary::new(&settings, &done).held(shared.held.of_summary());
+            Some(file::written(path, &summary.json())?)
+        }
         None => None,
     };
     output.finish()?;

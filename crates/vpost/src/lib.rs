@@ -9,6 +9,7 @@ pub mod calibrate;
 mod check;
 mod color;
 pub mod command_line;
+pub mod config;
 mod correct;
 pub mod diagnose;
 mod exit_status;
@@ -22,6 +23,7 @@ pub mod language;
 pub mod manual;
 pub mod map;
 mod message;
+mod mistaken;
 mod origin;
 mod predict;
 mod profile_command;
@@ -50,6 +52,7 @@ use diagnostic::Language;
 
 use arguments::{Color, MessageOptions};
 use command_line::{Arguments, Command};
+use config::Held;
 use exit_status::{DONE, REFUSED, TRY_AGAIN, USAGE};
 use interrupt::Interrupt;
 use message::{Failure, Messages};
@@ -57,12 +60,21 @@ use message::{Failure, Messages};
 /// Runs the command and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let arguments = match Arguments::read(arguments.clone()) {
+    let wrong = |failure: &Failure| {
+        Messages::new(Color::Auto, language::of_arguments(&arguments)).failure(failure);
+        ExitCode::from(USAGE)
+    };
+    let held = match Held::find(&arguments) {
+        Ok(held) => held,
+        Err(failure) => return wrong(&failure),
+    };
+    let arguments = match Arguments::read(arguments.clone(), held) {
         Ok(arguments) => arguments,
         Err(error) => {
-            if let Some(failure) = jobs::options::unread(&error) {
-                Messages::new(Color::Auto, language::of_arguments(&arguments)).failure(&failure);
-                return ExitCode::from(USAGE);
+            if let Some(failure) =
+                jobs::options::unread(&error).or_else(|| mistaken::programs(&error, &arguments))
+            {
+                return wrong(&failure);
             }
             let status = if error.use_stderr() { USAGE } else { DONE };
             let printed = if error.use_stderr() {
@@ -84,8 +96,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let MessageOptions { color, quiet, language, .. } = &arguments.shared.messages;
     let language = language::chosen(language.as_deref().copied());
     let messages = Messages::new(*color, language);
+    let held = &arguments.shared.held;
+    // What a file says is not silenced by the file.
+    if let Some(note) = held.note().filter(|_| !*quiet || held.says("quiet")) {
+        messages.note(&note);
+    }
     let messages = if *quiet { messages.quiet() } else { messages };
-    let result = match &arguments.command {
+    let result = mistaken::files(&arguments).and_then(|()| match &arguments.command {
         Some(Command::Correct(a)) => correct::run(a, &arguments.shared, &messages),
         Some(Command::Batch(a)) => batch::run(a, &arguments.shared, &messages),
         Some(Command::Check(a)) => check::run(a, &arguments.shared, &messages),
@@ -96,13 +113,14 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Diagnose(a)) => diagnose::run(a, &arguments.shared, &messages),
         Some(Command::Map(a)) => map::run(a, &arguments.shared, &messages),
         Some(Command::Budget(a)) => budget::run(a, &arguments.shared, &messages),
+        Some(Command::Config(a)) => config::run(a, held, &messages),
         Some(Command::Profile(a)) => profile_command::run(a, &messages),
         Some(Command::Grammar(a)) => grammar::run(a, &messages),
         Some(Command::Explain(a)) => explain::run(a, language),
         Some(Command::Completions(a)) => manual::print_completions(a),
         Some(Command::Man(a)) => manual::run(a, language),
         None => correct::run(&arguments.correct, &arguments.shared, &messages),
-    };
+    });
     match result {
         Ok(()) => ExitCode::from(DONE),
         Err(failure) => {

@@ -31,6 +31,7 @@ pub(crate) fn plan(arguments: &Plan, shared: &Shared, messages: &Messages) -> Re
     let root = arguments.programs.output.as_deref().unwrap_or(Path::new("."));
     let job = Job::load(shared, messages)?;
     let found = inputs::find(&arguments.programs, root)?;
+    shared.held.is_of_all(found.items.iter().map(|item| item.input.as_path()))?;
     passed_over(&found, messages);
     // Other machines know the programs by their names alone.
     found.items.iter().try_for_each(Item::needs_name)?;

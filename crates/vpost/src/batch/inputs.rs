@@ -23,7 +23,7 @@ const ONTO_INPUT: Code = Code(1003);
 const NAME: Code = Code(1004);
 
 /// What part programs are called, from many shops' folders.
-const ENDINGS: [&str; 16] = [
+pub(crate) const ENDINGS: [&str; 16] = [
     "nc", "ngc", "cnc", "tap", "mpf", "spf", "ptp", "min", "eia", "iso", "gcode", "gc", "ncc", "fnc", "din",
     "g",
 ];

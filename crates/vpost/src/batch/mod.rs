@@ -24,6 +24,7 @@ use std::path::Path;
 
 pub use arguments::Batch;
 use arguments::BatchCommand;
+pub(crate) use inputs::ENDINGS;
 
 use diagnostic::both;
 
@@ -55,6 +56,7 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
     let job = Job::load(shared, messages)?;
     has_place(arguments.work.results.as_deref())?;
     let found = inputs::find(&arguments.programs, root)?;
+    shared.held.is_of_all(found.items.iter().map(|item| item.input.as_path()))?;
     Roles::default()
         .reads_all(&both!("a program", "программа"), found.items.iter().map(|item| &item.input))
         .reads_all(&both!("read by the profile", "файл, который читает профиль"), &job.settings.files)
