@@ -5,7 +5,7 @@ use clap::{Args, CommandFactory, Parser, Subcommand};
 use diagnostic::Language;
 
 use crate::arguments::{Check, Completions, Correct, Grammar, Manual, Predict, Profile, Shared, Solve};
-use crate::batch::Batch;
+use crate::batch::{Batch, Watch};
 use crate::budget::Budget;
 use crate::calibrate::Calibrate;
 use crate::config::{Config, Held, called};
@@ -44,6 +44,8 @@ pub enum Command {
     Correct(Correct),
     /// Correct many programs, on all cores or on many machines.
     Batch(Batch),
+    /// Correct whatever is saved into a folder.
+    Watch(Watch),
     /// Do two programs cut alike on this machine?
     Check(Check),
     /// Begin a corrected program anew at one of its lines.
@@ -117,7 +119,7 @@ pub(crate) fn reads(command: &[&str], option: &str) -> bool {
         // The manifest says which profile and options hold.
         ["batch", "run" | "merge"] => false,
         ["batch", ..] => option != "verbose",
-        ["correct", ..] => true,
+        ["correct" | "watch", ..] => true,
         ["check", ..] => option == "path_control" || (option != "outside" && !OF_OUTPUT.contains(&option)),
         ["restart"] => option == "machine" || OF_READING.contains(&option),
         // A lathe's program, or points.

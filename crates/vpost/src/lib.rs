@@ -105,6 +105,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let result = mistaken::files(&arguments).and_then(|()| match &arguments.command {
         Some(Command::Correct(a)) => correct::run(a, &arguments.shared, &messages),
         Some(Command::Batch(a)) => batch::run(a, &arguments.shared, &messages),
+        Some(Command::Watch(a)) => batch::watch(a, &arguments.shared, &messages),
         Some(Command::Check(a)) => check::run(a, &arguments.shared, &messages),
         Some(Command::Restart(a)) => restart::run(a, &arguments.shared, &messages),
         Some(Command::Predict(a)) => predict::run(a, &arguments.shared, &messages),

@@ -18,6 +18,7 @@ mod report;
 mod shard;
 mod shelf;
 mod table;
+mod watch;
 mod work;
 
 use std::path::Path;
@@ -25,6 +26,8 @@ use std::path::Path;
 pub use arguments::Batch;
 use arguments::BatchCommand;
 pub(crate) use inputs::ENDINGS;
+pub use watch::Watch;
+pub(crate) use watch::run as watch;
 
 use diagnostic::both;
 
@@ -38,7 +41,7 @@ use folder::{Company, OutputFolder};
 use job::Job;
 use journal::Journal;
 use progress::Progress;
-use report::{finish, has_place, interrupted, passed_over};
+use report::{Printing, finish, has_place, interrupted, passed_over};
 
 /// `vpost batch`
 pub(crate) fn run(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
@@ -80,7 +83,8 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
         threads: work::threads(arguments.work.jobs),
         interrupt: &interrupt,
     };
-    let results = batch.run(&found.items, &mut journal, &progress, messages);
+    let mut printing = Printing::new(&progress, messages);
+    let results = batch.run(&found.items, &mut journal, &progress, &mut |outcome| printing.tell(outcome));
     progress.end();
     let results = results.map_err(|failure| interrupted(failure, messages))?;
     let kept = journal.end(&earlier, &results.records);

@@ -190,7 +190,7 @@ fn parsed(option: &Arg, word: &str) -> Result<(), Diagnostic> {
     let alone = Arg::new("value")
         .long(long.clone())
         .action(ArgAction::Set)
-        .require_equals(true)
+        .allow_hyphen_values(true)
         .value_parser(option.get_value_parser().clone());
     let command = clap::Command::new("vpost").no_binary_name(true).arg(alone);
     command.try_get_matches_from([format!("--{long}={word}")]).map(drop).map_err(|error| {
