@@ -113,8 +113,8 @@ fn save(place: &Path, text: &str, manner: u64) {
     }
 }
 
-/// 500 saves of 40 programs by ten writers: each output is at any time the correction of a whole save, in the end of the
-/// last.
+/// 500 saves of 40 programs by ten writers: each output is at any time the correction of a whole save, and in the end
+/// of the last.
 #[test]
 fn of_500_saves_none_is_lost_and_none_half() {
     const WRITERS: u64 = 10;

@@ -1,5 +1,7 @@
 //! The command line: the main job, and what is asked for besides it.
 
+use std::path::PathBuf;
+
 use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use diagnostic::Language;
@@ -12,8 +14,10 @@ use crate::config::{Config, Held, called};
 use crate::diagnose::{Diagnose, Form};
 use crate::explain::Explain;
 use crate::map::Map;
+use crate::message::Failure;
+use crate::mistaken::{self, Asked};
 use crate::restart::Restart;
-use crate::{language, mistaken, russian};
+use crate::{language, russian};
 
 /// Rewrites NC programs so that a measured machine goes where the program says.
 #[derive(Debug, Parser)]
@@ -223,6 +227,20 @@ fn compact(command: clap::Command) -> clap::Command {
 }
 
 impl Arguments {
+    /// Refuses files that by their names are something else than what is asked for.
+    pub(crate) fn files_are_right(&self) -> Result<(), Failure> {
+        let (programs, asked): (Vec<&PathBuf>, Asked) = match &self.command {
+            None => (self.correct.input.iter().collect(), Asked::Program),
+            Some(Command::Correct(correct)) => (correct.input.iter().collect(), Asked::Program),
+            Some(Command::Check(check)) => (vec![&check.input, &check.output], Asked::Program),
+            Some(Command::Restart(restart)) => (vec![&restart.program], Asked::Program),
+            Some(Command::Batch(batch)) => (batch.programs.inputs.iter().collect(), Asked::Many),
+            _ => (Vec::new(), Asked::Program),
+        };
+        programs.into_iter().try_for_each(|path| mistaken::program(path, asked))?;
+        self.shared.job.machine.as_deref().map_or(Ok(()), mistaken::profile)
+    }
+
     /// Reads a command line.
     ///
     /// # Errors

@@ -52,7 +52,6 @@ use diagnostic::Language;
 
 use arguments::{Color, MessageOptions};
 use command_line::{Arguments, Command};
-use config::Held;
 use exit_status::{DONE, REFUSED, TRY_AGAIN, USAGE};
 use interrupt::Interrupt;
 use message::{Failure, Messages};
@@ -60,36 +59,13 @@ use message::{Failure, Messages};
 /// Runs the command and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let wrong = |failure: &Failure| {
-        Messages::new(Color::Auto, language::of_arguments(&arguments)).failure(failure);
-        ExitCode::from(USAGE)
-    };
-    let held = match Held::find(&arguments) {
+    let held = match config::find(&arguments) {
         Ok(held) => held,
-        Err(failure) => return wrong(&failure),
+        Err(failure) => return unusable(&failure, &arguments),
     };
     let arguments = match Arguments::read(arguments.clone(), held) {
         Ok(arguments) => arguments,
-        Err(error) => {
-            if let Some(failure) =
-                jobs::options::unread(&error).or_else(|| mistaken::programs(&error, &arguments))
-            {
-                return wrong(&failure);
-            }
-            let status = if error.use_stderr() { USAGE } else { DONE };
-            let printed = if error.use_stderr() {
-                // It quotes what was typed, or what a script put there.
-                let text = match language::of_arguments(&arguments) {
-                    Language::English => error.render().to_string(),
-                    Language::Russian => russian::error(&error),
-                };
-                writeln!(std::io::stderr(), "{}", terminal::shown(text.trim_end())).is_ok()
-            } else {
-                error.print().is_ok() && open_streams::is_stdout_open()
-            };
-            // Help that nobody got is not done; a usage error that nobody reads is one all the same.
-            return ExitCode::from(if printed { status } else { status.max(REFUSED) });
-        }
+        Err(error) => return unread(&error, &arguments),
     };
     // From here on: opening a named pipe waits, too.
     let interrupt = Interrupt::listen();
@@ -102,7 +78,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         messages.note(&note);
     }
     let messages = if *quiet { messages.quiet() } else { messages };
-    let result = mistaken::files(&arguments).and_then(|()| match &arguments.command {
+    let result = arguments.files_are_right().and_then(|()| match &arguments.command {
         Some(Command::Correct(a)) => correct::run(a, &arguments.shared, &messages),
         Some(Command::Batch(a)) => batch::run(a, &arguments.shared, &messages),
         Some(Command::Watch(a)) => batch::watch(a, &arguments.shared, &messages),
@@ -140,4 +116,32 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             })
         }
     }
+}
+
+/// Says what is wrong with arguments, or the help that they ask for.
+fn unread(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
+    let said = jobs::options::unread(error)
+        .or_else(|| mistaken::programs(error, &command_line::command(), arguments));
+    if let Some(failure) = said {
+        return unusable(&failure, arguments);
+    }
+    let status = if error.use_stderr() { USAGE } else { DONE };
+    let printed = if error.use_stderr() {
+        // It quotes what was typed, or what a script put there.
+        let text = match language::of_arguments(arguments) {
+            Language::English => error.render().to_string(),
+            Language::Russian => russian::error(error),
+        };
+        writeln!(std::io::stderr(), "{}", terminal::shown(text.trim_end())).is_ok()
+    } else {
+        error.print().is_ok() && open_streams::is_stdout_open()
+    };
+    // Help that nobody got is not done; a usage error that nobody reads is one all the same.
+    ExitCode::from(if printed { status } else { status.max(REFUSED) })
+}
+
+/// Says a usage error that is found before it is known how to say it.
+fn unusable(failure: &Failure, arguments: &[OsString]) -> ExitCode {
+    Messages::new(Color::Auto, language::of_arguments(arguments)).failure(failure);
+    ExitCode::from(USAGE)
 }

@@ -2,14 +2,13 @@
 //! that is misspelt. By name alone: what is in a file its reader says.
 
 use std::ffi::OsString;
-use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::io::ErrorKind as FileError;
+use std::path::Path;
 
-use clap::error::{ContextKind, ContextValue};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use diagnostic::{Code, Diagnostic, Text, both, closest};
 
 use crate::batch::ENDINGS;
-use crate::command_line::{self, Arguments, Command};
 use crate::file;
 use crate::message::{Deed, Failure, Report, file_diagnostic, notice};
 
@@ -18,20 +17,20 @@ const MISTAKEN: Code = Code(8);
 
 /// The command that was meant, where none has the name that was typed.
 pub(crate) fn command(root: &clap::Command, arguments: &[OsString]) -> Option<clap::Error> {
-    let typed = main_program(arguments)?;
+    let typed = main_program(root, arguments)?;
     if Path::new(&typed).exists() || typed.contains(['.', '/', '\\']) {
         return None;
     }
     let near = closest(&typed, root.get_subcommands().map(clap::Command::get_name))?;
-    let mut error = clap::Error::new(clap::error::ErrorKind::InvalidSubcommand).with_cmd(root);
+    let mut error = clap::Error::new(ErrorKind::InvalidSubcommand).with_cmd(root);
     error.insert(ContextKind::InvalidSubcommand, ContextValue::String(typed.clone()));
     error.insert(ContextKind::SuggestedSubcommand, ContextValue::Strings(vec![near.to_owned()]));
     Some(error)
 }
 
 /// The program of a call of the main job, however wrong the rest is.
-fn main_program(arguments: &[OsString]) -> Option<String> {
-    let loose = command_line::command().ignore_errors(true).try_get_matches_from(arguments).ok()?;
+fn main_program(root: &clap::Command, arguments: &[OsString]) -> Option<String> {
+    let loose = root.clone().ignore_errors(true).try_get_matches_from(arguments).ok()?;
     let at = match loose.subcommand() {
         None => &loose,
         Some(("correct", at)) => at,
@@ -41,42 +40,29 @@ fn main_program(arguments: &[OsString]) -> Option<String> {
 }
 
 /// More programs than one where one is corrected: a shell expands `*.nc` to that.
-pub(crate) fn programs(error: &clap::Error, arguments: &[OsString]) -> Option<Failure> {
+pub(crate) fn programs(error: &clap::Error, root: &clap::Command, arguments: &[OsString]) -> Option<Failure> {
     let Some(ContextValue::String(second)) = error.get(ContextKind::InvalidArg) else { return None };
-    let first = main_program(arguments)?;
-    let stray = error.kind() == clap::error::ErrorKind::UnknownArgument && !second.starts_with('-');
-    stray.then(|| {
-        Failure::usage(notice!(MISTAKEN;
-            "one program is corrected at a time, and `{second}` stands behind `{first}`",
-            "за раз исправляется одна программа, а за `{first}` стоит `{second}`";
-            "many: `vpost batch {first} {second} … -m PROFILE -O corrected`",
-            "несколько: `vpost batch {first} {second} … -m PROFILE -O corrected`"
-        ))
-    })
-}
-
-/// Refuses what by its name is something else.
-pub(crate) fn files(arguments: &Arguments) -> Result<(), Failure> {
-    let (programs, one): (Vec<&PathBuf>, One) = match &arguments.command {
-        None => (arguments.correct.input.iter().collect(), One::Program),
-        Some(Command::Correct(correct)) => (correct.input.iter().collect(), One::Program),
-        Some(Command::Check(check)) => (vec![&check.input, &check.output], One::Program),
-        Some(Command::Restart(restart)) => (vec![&restart.program], One::Program),
-        Some(Command::Batch(batch)) => (batch.programs.inputs.iter().collect(), One::OfMany),
-        _ => (Vec::new(), One::Program),
-    };
-    programs.into_iter().try_for_each(|path| program(path, one))?;
-    arguments.shared.job.machine.as_deref().map_or(Ok(()), profile)
+    if error.kind() != ErrorKind::UnknownArgument || second.starts_with('-') {
+        return None;
+    }
+    let first = main_program(root, arguments)?;
+    Some(Failure::usage(notice!(MISTAKEN;
+        "one program is corrected at a time, and `{second}` stands behind `{first}`",
+        "за раз исправляется одна программа, а за `{first}` стоит `{second}`";
+        "many: `vpost batch {first} {second} … -m PROFILE -O corrected`",
+        "несколько: `vpost batch {first} {second} … -m PROFILE -O corrected`"
+    )))
 }
 
 /// How many programs a path may name.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum One {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Asked {
     Program,
-    OfMany,
+    Many,
 }
 
-fn program(path: &Path, one: One) -> Result<(), Failure> {
+/// Refuses what by its name is no program.
+pub(crate) fn program(path: &Path, asked: Asked) -> Result<(), Failure> {
     let name = file::name(path);
     let (message, help) = match kind(path) {
         _ if path.as_os_str() == "-" => return Ok(()),
@@ -87,17 +73,14 @@ fn program(path: &Path, one: One) -> Result<(), Failure> {
                     "{name} is a pattern, and no shell has expanded it",
                     "{name} — шаблон, и оболочка его не раскрыла"
                 ),
-                both!(
-                    "`vpost batch {folder} --pattern \"{pattern}\" -m PROFILE -O corrected`",
-                    "`vpost batch {folder} --pattern \"{pattern}\" -m PROFILE -O corrected`"
-                ),
+                Text::same(format!("`vpost batch {folder} --pattern \"{pattern}\" -m PROFILE -O corrected`")),
             )
         }
         Kind::Missing => {
             let told = |diagnostic| Failure::File(Report { source: None, diagnostics: vec![diagnostic] });
             return near(path).map_or(Ok(()), |diagnostic| Err(told(diagnostic)));
         }
-        Kind::Folder if one == One::Program => (
+        Kind::Folder if asked == Asked::Program => (
             both!("{name} is a folder", "{name} — папка"),
             both!(
                 "all programs in it: `vpost batch {name} -m PROFILE -O corrected`",
@@ -126,7 +109,8 @@ fn program(path: &Path, one: One) -> Result<(), Failure> {
     Err(Failure::asks(MISTAKEN, message, help))
 }
 
-fn profile(path: &Path) -> Result<(), Failure> {
+/// Refuses what by its name is no profile.
+pub(crate) fn profile(path: &Path) -> Result<(), Failure> {
     let name = file::name(path);
     let (what, way) = match kind(path) {
         Kind::Missing => return near(path).map_or(Ok(()), |diagnostic| Err(Failure::usage(diagnostic))),
@@ -171,10 +155,10 @@ fn kind(path: &Path) -> Kind {
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     let of = |known: &[&str]| known.iter().any(|known| ending == *known);
     match path.metadata() {
-        Err(error) if error.kind() == ErrorKind::NotFound && path.to_string_lossy().contains(['*', '?']) => {
+        Err(error) if error.kind() == FileError::NotFound && path.to_string_lossy().contains(['*', '?']) => {
             Kind::Pattern
         }
-        Err(error) if error.kind() == ErrorKind::NotFound => Kind::Missing,
+        Err(error) if error.kind() == FileError::NotFound => Kind::Missing,
         Ok(found) if found.is_dir() => Kind::Folder,
         _ if of(&["toml"]) => Kind::Toml,
         _ if of(&["csv", "tsv", "xlsx", "ods"]) => Kind::Table,

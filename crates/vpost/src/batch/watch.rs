@@ -1,7 +1,7 @@
 //! `vpost watch IN OUT`: a drop folder. What a CAM system saves into IN is corrected to OUT under the same name.
 //!
-//! Rounds of [`Batch`] over what is whole: a program whose file has stayed as it is for a while. Asked by looking, not by
-//! the system's notices, which network shares do not send.
+//! Rounds of [`Batch`] over what is whole: programs whose files have stayed as they are for a while. Asked by looking,
+//! not by the system's notices, which network shares do not send.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -138,8 +138,8 @@ struct Watched<'a> {
     changed: Option<(Read, Instant)>,
     seen: BTreeMap<String, Seen>,
     records: Records,
-    /// What failed last: said once, however often it fails.
-    said: RefCell<String>,
+    /// What failed since something succeeded: said once, however often it fails.
+    said: RefCell<BTreeSet<String>>,
 }
 
 /// The job, and the files that it depends on.
@@ -301,16 +301,21 @@ impl<'a> Watched<'a> {
     /// Says what became of a program: on standard error, and beside its place where it was not corrected.
     fn tell(&self, outcome: &Outcome) {
         let output = &outcome.record.output;
-        let rendered =
-            || outcome.told.iter().flat_map(|report| self.wording().rendered(report).collect::<Vec<_>>());
+        let told = || outcome.told.iter().for_each(|report| self.messages.report(report));
+        let rendered = || -> Vec<String> {
+            let rendered = |report| self.wording().rendered(report).collect::<Vec<_>>();
+            outcome.told.iter().flat_map(rendered).collect()
+        };
         match outcome.record.status {
             Status::Corrected | Status::Unchanged => {
                 self.mend(output);
+                self.said.borrow_mut().clear();
                 if !outcome.resumed {
+                    told();
                     self.note(&both!("corrected: {output}", "исправлена: {output}"));
                 }
             }
-            Status::Failed => self.once(rendered().collect::<Vec<_>>().join("\n"), &outcome.told),
+            Status::Failed => self.once(rendered().join("\n"), told),
             Status::Refused => {
                 let mut lines = vec![both!(
                     "{output} was refused: it is not corrected.\n",
@@ -322,8 +327,8 @@ impl<'a> Watched<'a> {
                         "Файл {output} в этой папке — исправление ПРЕЖНЕЙ программы.\n"
                     ));
                 }
-                self.leave(output, &lines, &rendered().collect::<Vec<_>>());
-                outcome.told.iter().for_each(|report| self.messages.report(report));
+                self.leave(output, &lines, &rendered());
+                told();
             }
         }
     }
@@ -340,15 +345,13 @@ impl<'a> Watched<'a> {
     }
 
     fn say_once(&self, failure: &Failure) {
-        let text = self.wording().text(failure);
-        if self.said.replace(text.clone()) != text {
-            self.messages.failure(failure);
-        }
+        self.once(self.wording().text(failure), || self.messages.failure(failure));
     }
 
-    fn once(&self, text: String, told: &[Report]) {
-        if self.said.replace(text.clone()) != text {
-            told.iter().for_each(|report| self.messages.report(report));
+    /// Says what failed, once until something succeeds.
+    fn once(&self, text: String, say: impl FnOnce()) {
+        if self.said.borrow_mut().insert(text) {
+            say();
         }
     }
 

@@ -7,6 +7,7 @@ use clap::{Arg, ArgAction, Args};
 use diagnostic::{Code, Diagnostic, Text, both, closest, of_toml};
 use toml_edit::{Document, Item, Key, TableLike, Value};
 
+use super::held::Kept;
 use crate::arguments::Shared;
 use crate::message::{Failure, Source};
 use crate::russian;
@@ -17,28 +18,6 @@ pub(super) const UNFIT: Code = Code(6);
 /// What is said anew in each call: what overrides a refusal, which one file would be written by every call, and from
 /// where settings come.
 const OF_ONE_CALL: [&str; 4] = ["config", "force", "help", "output"];
-
-/// An option, as the file says it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Kept {
-    /// The command whose table it stands in, by its names from the first on; none for every command.
-    pub command: Vec<String>,
-    /// Its long name.
-    pub option: String,
-    /// Its name in clap.
-    pub id: String,
-    /// As they would be typed; paths from the file's folder on.
-    pub values: Vec<String>,
-    /// Where it stands in the file, from 1.
-    pub line: usize,
-}
-
-impl Kept {
-    /// The command whose table it stands in.
-    pub(super) fn names(&self) -> Vec<&str> {
-        self.command.iter().map(String::as_str).collect()
-    }
-}
 
 /// What a file says, or everything wrong with it.
 ///

@@ -6,7 +6,7 @@ use clap::Args;
 use diagnostic::both;
 use serde::Serialize;
 
-use super::{Held, Kept};
+use super::held::{Held, Kept};
 use crate::file;
 use crate::message::{Failure, Messages};
 use crate::summary::json;
