@@ -80,8 +80,7 @@ impl Reading<'_> {
     fn option(&mut self, option: &Arg, names: &[String], key: &Key, item: &Item) {
         let at = item.span().or_else(|| key.span()).unwrap_or_default();
         let long = option.get_long().unwrap_or_default();
-        let words =
-            item.as_value().map_or_else(|| item.as_table_like().and_then(pairs), |value| words(value));
+        let words = item.as_value().map_or_else(|| item.as_table_like().and_then(pairs), words);
         let Some(words) = words else {
             let message = both!("`{long}` cannot be read from this", "`{long}` из этого не прочесть");
             return self.wrong.push(Diagnostic::error(UNFIT, message).at(span(&at), both!("here", "здесь")));
