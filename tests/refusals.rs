@@ -263,9 +263,9 @@ fn empty_and_binary_files() {
 fn paths_that_are_no_programs() {
     let trial = Trial::new();
     insta::assert_snapshot!(trial.refused_path("samples", &[]), @"
-    exit status 1
-    error[VP0001]: cannot read samples: Is a directory (os error 21)
-    help: give a file in it
+    exit status 2
+    error[VP0008]: samples is a folder
+    help: all programs in it: `vpost batch samples -m PROFILE -O corrected`
     ");
     insta::assert_snapshot!(trial.refused_path("no/such/file.nc", &[]), @"
     exit status 1

@@ -44,7 +44,7 @@ pub fn text(
     check_lines(text, name)?;
     let done = in_memory(text, name, settings, manner, progress)?;
     if settings.strict {
-        refuse_doubts(&done.1.warnings)?;
+        refuse_doubts(&done.1.warnings, |_| true)?;
     }
     Ok(done)
 }
@@ -78,9 +78,10 @@ pub fn in_memory(
 ///
 /// # Errors
 /// The doubts, as errors.
-pub fn refuse_doubts(warnings: &[Report]) -> Result<(), Failure> {
+pub fn refuse_doubts(warnings: &[Report], are_refused: impl Fn(&Diagnostic) -> bool) -> Result<(), Failure> {
     let doubts = |report: &Report| {
-        let doubtful = report.diagnostics.iter().filter(|warning| warning.severity == Severity::Doubt);
+        let is_doubt = |warning: &&Diagnostic| warning.severity == Severity::Doubt && are_refused(warning);
+        let doubtful = report.diagnostics.iter().filter(is_doubt);
         let diagnostics: Vec<Diagnostic> =
             doubtful.map(|doubt| Diagnostic { severity: Severity::Error, ..doubt.clone() }).collect();
         (!diagnostics.is_empty()).then(|| Report { source: report.source.clone(), diagnostics })

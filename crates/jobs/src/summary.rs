@@ -1,5 +1,7 @@
 //! What was done, for pipelines.
 
+use std::collections::BTreeMap;
+
 use diagnostic::{Text, both};
 use serde::Serialize;
 
@@ -48,7 +50,18 @@ pub struct Summary<'a> {
     directions_held: Option<DirectionsHeld>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     datums: Vec<DatumUsed>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    settings: Option<SettingsFile<'a>>,
     warnings: Vec<Warning>,
+}
+
+/// What a settings file said that nobody typed.
+#[derive(Debug, Clone, Serialize)]
+pub struct SettingsFile<'a> {
+    /// Its path.
+    pub file: String,
+    /// The options, by their long names, as they would be typed.
+    pub options: BTreeMap<&'a str, &'a [String]>,
 }
 
 /// A touched zero from which deviations count.
@@ -167,6 +180,12 @@ fn tilt(figures: &Figures) -> Option<(f64, u64)> {
 }
 
 impl<'a> Summary<'a> {
+    /// The same with what a settings file said.
+    #[must_use]
+    pub fn held(self, settings: Option<SettingsFile<'a>>) -> Self {
+        Self { settings, ..self }
+    }
+
     /// What is said of a program.
     #[must_use]
     pub fn new(settings: &'a Settings, program: &'a Program) -> Self {
@@ -217,6 +236,7 @@ impl<'a> Summary<'a> {
                 lines: figures.held.lines.clone(),
             }),
             datums: DatumUsed::all(&figures.datums),
+            settings: None,
             warnings: settings
                 .warnings
                 .iter()

@@ -164,9 +164,12 @@ impl Value for EngineId {
     fn read(text: &str) -> Result<Self, Option<Text>> {
         Self::from_name(text).ok_or_else(|| {
             let names: Vec<&str> = Self::ALL.iter().map(|id| id.name()).collect();
+            let near = diagnostic::closest(text, names.iter().copied());
+            let near =
+                near.map_or(Text::EMPTY, |near| both!("did you mean {near}? ", "имелось в виду {near}? "));
             Some(both!(
-                "there is no such engine; there are {}",
-                "такого метода нет; есть {}",
+                "there is no such engine; {near}there are {}",
+                "такого метода нет; {near:#}есть {}",
                 names.join(", ")
             ))
         })

@@ -7,6 +7,7 @@ use diagnostic::Language;
 pub use jobs::options::{Decimal, JobOptions, Outside, finite, size, size_or_zero};
 
 pub use crate::color::Color;
+use crate::config::Held;
 use crate::values::Given;
 
 /// Options of every job.
@@ -15,9 +16,17 @@ pub struct Shared {
     /// What decides the output.
     #[command(flatten)]
     pub job: JobOptions,
+    /// Settings from this file; none: from no file.
+    ///
+    /// Default: the nearest vpost.toml in the program's folder or above it.
+    #[arg(long, value_name = "FILE", global = true, help_heading = "Messages")]
+    pub config: Option<PathBuf>,
     /// What is said meanwhile.
     #[command(flatten)]
     pub messages: MessageOptions,
+    /// What a settings file says.
+    #[arg(skip)]
+    pub held: Held,
 }
 
 /// What is said while a job is done.

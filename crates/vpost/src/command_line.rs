@@ -1,17 +1,22 @@
 //! The command line: the main job, and what is asked for besides it.
 
+use std::path::PathBuf;
+
 use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use diagnostic::Language;
 
 use crate::arguments::{Check, Completions, Correct, Grammar, Manual, Predict, Profile, Shared, Solve};
-use crate::batch::Batch;
+use crate::batch::{Batch, Watch};
 use crate::budget::Budget;
 use crate::calibrate::Calibrate;
+use crate::config::{Config, Held, called};
 use crate::diagnose::{Diagnose, Form};
 use crate::explain::Explain;
 use crate::lsp::Lsp;
 use crate::map::Map;
+use crate::message::Failure;
+use crate::mistaken::{self, Asked};
 use crate::restart::Restart;
 use crate::{language, russian};
 
@@ -44,6 +49,8 @@ pub enum Command {
     Correct(Correct),
     /// Correct many programs, on all cores or on many machines.
     Batch(Batch),
+    /// Correct whatever is saved into a folder.
+    Watch(Watch),
     /// Do two programs cut alike on this machine?
     Check(Check),
     /// Begin a corrected program anew at one of its lines.
@@ -60,6 +67,8 @@ pub enum Command {
     Map(Map),
     /// What each deviation of the machine costs.
     Budget(Budget),
+    /// Which settings of vpost.toml hold, and from where.
+    Config(Config),
     /// Make, check, show or describe machine profiles.
     Profile(Profile),
     /// List or check dialect tables.
@@ -102,14 +111,22 @@ const OF_OUTPUT: [&str; 4] = ["guard", "path_control", "strict", "verbose"];
 /// Of a plan that is written as a program.
 const OF_WRITTEN_PLAN: [&str; 4] = ["dialect", "work_offset", "linuxcnc_ini", "at"];
 
+/// Where settings are read from.
+const OF_FILE: [&str; 1] = ["config"];
+/// Of every command; its help names them beside `--help`.
+pub(crate) const OF_ALL: [&str; 3] = ["quiet", "color", "lang"];
+
 /// Whether a command, by its names from the first on, reads an option of [`Shared`].
-fn reads(command: &[&str], option: &str) -> bool {
+pub(crate) fn reads(command: &[&str], option: &str) -> bool {
     let machine = OF_MACHINE.contains(&option);
     match command {
+        // Of what works on a machine.
+        ["config"] => option == "config",
+        _ if option == "config" => reads(command, "machine"),
         // The manifest says which profile and options hold.
         ["batch", "run" | "merge"] => false,
         ["batch", ..] => option != "verbose",
-        ["correct", ..] => true,
+        ["correct" | "watch", ..] => true,
         ["check", ..] => option == "path_control" || (option != "outside" && !OF_OUTPUT.contains(&option)),
         ["restart"] => option == "machine" || OF_READING.contains(&option),
         // A lathe's program, or points.
@@ -161,7 +178,7 @@ fn lacks(command: &[&str], option: &str, called: &clap::ArgMatches) -> Option<&'
 
 /// The options of [`Shared`] that not every command reads.
 fn shared_options() -> impl Iterator<Item = &'static str> {
-    OF_MACHINE.into_iter().chain(OF_PROGRAM).chain(OF_OUTPUT)
+    OF_MACHINE.into_iter().chain(OF_PROGRAM).chain(OF_OUTPUT).chain(OF_FILE)
 }
 
 /// The command line, each command listing what it reads.
@@ -203,33 +220,53 @@ fn option(argument: &clap::Arg) -> String {
     argument.get_long().map_or_else(|| "IN.nc".to_owned(), |long| format!("--{long}"))
 }
 
+/// What every command takes stands in one line.
+const HELP: &str = "This help; everywhere: -q, --lang en|ru, --color WHEN";
+
 /// Help on one screen, by `-h` and `--help` alike.
 fn compact(command: clap::Command) -> clap::Command {
     let help = clap::Arg::new("help").short('h').long("help").action(clap::ArgAction::HelpShort);
-    command.disable_help_flag(true).arg(help.help("Print this help").help_heading("Messages"))
+    command.disable_help_flag(true).arg(help.help(HELP).help_heading("Messages"))
 }
 
 impl Arguments {
+    /// Refuses files that by their names are something else than what is asked for.
+    pub(crate) fn files_are_right(&self) -> Result<(), Failure> {
+        let (programs, asked): (Vec<&PathBuf>, Asked) = match &self.command {
+            None => (self.correct.input.iter().collect(), Asked::Program),
+            Some(Command::Correct(correct)) => (correct.input.iter().collect(), Asked::Program),
+            Some(Command::Check(check)) => (vec![&check.input, &check.output], Asked::Program),
+            Some(Command::Restart(restart)) => (vec![&restart.program], Asked::Program),
+            Some(Command::Batch(batch)) => (batch.programs.inputs.iter().collect(), Asked::Many),
+            _ => (Vec::new(), Asked::Program),
+        };
+        programs.into_iter().try_for_each(|path| mistaken::program(path, asked))?;
+        self.shared.job.machine.as_deref().map_or(Ok(()), mistaken::profile)
+    }
+
     /// Reads a command line.
     ///
     /// # Errors
     /// What clap refuses, help and version among it; options that the command does not read.
-    pub fn read(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Result<Self, clap::Error> {
+    pub fn read(
+        arguments: impl IntoIterator<Item = std::ffi::OsString>,
+        mut held: Held,
+    ) -> Result<Self, clap::Error> {
         let arguments: Vec<std::ffi::OsString> = arguments.into_iter().collect();
+        let command = held.applied(command());
         let mut command = match language::of_arguments(&arguments) {
-            Language::English => command(),
-            Language::Russian => russian::spoken(command()),
+            Language::English => command,
+            Language::Russian => russian::spoken(command),
         };
+        if let Some(error) = mistaken::command(&command, &arguments) {
+            return Err(error);
+        }
         let matches = command.try_get_matches_from_mut(arguments)?;
         let given = |matches: &clap::ArgMatches, id: &str| {
             matches.try_contains_id(id).is_ok()
                 && matches.value_source(id) == Some(clap::parser::ValueSource::CommandLine)
         };
-        let (mut names, mut at) = (Vec::new(), &matches);
-        while let Some((name, inner)) = at.subcommand() {
-            names.push(name);
-            at = inner;
-        }
+        let (names, at) = called(&matches);
         if let Some((first, _)) = matches.subcommand() {
             let of_main = Correct::augment_args(clap::Command::new("correct"));
             let stray = of_main.get_arguments().find(|argument| given(&matches, argument.get_id().as_str()));
@@ -257,6 +294,43 @@ impl Arguments {
                 return Err(error);
             }
         }
-        clap::FromArgMatches::from_arg_matches(&matches)
+        held.kept.retain(|kept| !given(at, &kept.id) && lacks(&names, &kept.id, at).is_none());
+        let mut read: Self = clap::FromArgMatches::from_arg_matches(&matches)?;
+        read.shared.held = held;
+        Ok(read)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every option that a command reads stands in its help: those of all commands in the line of `--help`.
+    #[test]
+    fn every_option_stands_in_the_help_of_its_command() {
+        fn below(command: &clap::Command, above: &[String], wrong: &mut Vec<String>) {
+            let text = command.clone().render_help().to_string();
+            let names: Vec<&str> = above.iter().map(String::as_str).collect();
+            let read = shared_options().filter(|option| reads(&names, option)).chain(OF_ALL);
+            for id in read {
+                let root = super::command();
+                let option = root.get_arguments().find(|argument| argument.get_id() == id);
+                let option = option.unwrap_or_else(|| panic!("{id} is an option"));
+                let short = option.get_short().map(|short| format!("-{short}"));
+                let long = format!("--{}", option.get_long().unwrap_or_default());
+                if !text.contains(&long) && !short.is_some_and(|short| text.contains(&format!("{short},"))) {
+                    wrong.push(format!("{names:?}: {long}"));
+                }
+            }
+            for inner in command.get_subcommands().filter(|inner| inner.get_name() != "help") {
+                let names: Vec<String> = above.iter().cloned().chain([inner.get_name().to_owned()]).collect();
+                below(inner, &names, wrong);
+            }
+        }
+        let mut root = command();
+        root.build();
+        let mut wrong = Vec::new();
+        below(&root, &[], &mut wrong);
+        assert!(wrong.is_empty(), "{wrong:#?}");
     }
 }

@@ -5,13 +5,13 @@ mod program;
 use std::io::IsTerminal;
 use std::path::Path;
 
-use diagnostic::both;
+use diagnostic::{Text, both};
 use rewrite::Manner;
 
 use crate::arguments::{self, Shared};
 use crate::file;
 use crate::interrupt::Interrupt;
-use crate::message::{Failure, Messages};
+use crate::message::{Deed, Failure, Messages};
 use crate::progress::Progress;
 use crate::roles::Roles;
 use crate::summary::Summary;
@@ -47,12 +47,21 @@ pub(crate) fn run(
         hashes: arguments.summary.is_some(),
     };
     let mut output = file::Output::new(arguments.output.as_deref())?;
-    let done = program(input, &settings, manner, &mut output, &progress)?;
+    let mut done = program(input, &settings, manner, &mut output, &progress)?;
     interrupt.check()?;
     shown.report(1.0);
+    let told = if is_filter(arguments) && !messages.are_quiet() { notifications(&done) } else { Vec::new() };
+    if !told.is_empty() {
+        done.output = output.put_in_front(&told).map_err(|error| {
+            Failure::place(&Text::pair("standard output", "стандартный вывод"), Deed::WriteTo, &error)
+        })?;
+    }
     // All that can fail before the program gets its name.
     let summary = match arguments.summary.as_deref() {
-        Some(path) => Some(file::written(path, &Summary::new(&settings, &done).json())?),
+        Some(path) => {
+            let summary = Summary::new(&settings, &done).held(shared.held.of_summary());
+            Some(file::written(path, &summary.json())?)
+        }
         None => None,
     };
     output.finish()?;
@@ -66,4 +75,31 @@ pub(crate) fn run(
         messages.note(&Summary::line(&done.figures));
     }
     Ok(())
+}
+
+/// LinuxCNC runs vpost as a filter, and reads the program from its standard output.
+fn is_filter(arguments: &arguments::Correct) -> bool {
+    arguments.progress == Some(arguments::Progress::Linuxcnc) && arguments.output.is_none()
+}
+
+/// Warnings as AXIS shows them when it opens a program, a comment each; it shows no messages of a filter that succeeds.
+///
+/// LinuxCNC's "AXIS GUI": the text ends at a comma; "G-code overview": a line has 255 characters.
+fn notifications(done: &Program) -> Vec<String> {
+    const LONGEST: usize = 200;
+    let shown = |letter| match letter {
+        '(' => '[',
+        ')' => ']',
+        ',' => ';',
+        letter if letter.is_ascii() && !letter.is_ascii_control() => letter,
+        _ => '?',
+    };
+    // A program without changes is that which was posted, byte for byte.
+    let warnings = done.warnings.iter().filter(|_| done.changed).flat_map(|report| &report.diagnostics);
+    warnings
+        .map(|warning| {
+            let text = format!("vpost {}: {}", warning.code, warning.message.english());
+            format!("(AXIS,notify,{})", text.chars().map(shown).take(LONGEST).collect::<String>())
+        })
+        .collect()
 }

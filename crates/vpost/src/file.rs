@@ -1,6 +1,6 @@
 //! Files: read whole, written whole or not at all.
 
-use std::io::{IsTerminal, Read, Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, IsTerminal, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 pub(crate) use jobs::lines::{LONGEST_LINE, check_lines, ends_lines, name, read_lines};
@@ -11,6 +11,7 @@ use crate::source::Still;
 use crate::terminal;
 use crate::to_disk::{self, ToDisk};
 use diagnostic::{Text, both};
+use rewrite::Digest;
 
 /// A name without its folders, which stand at the end of a page.
 pub(crate) fn without_folders(name: &str) -> &str {
@@ -129,6 +130,27 @@ impl Output {
             )
         };
         Ok(Self { path: Some(to), place, to_disk: ToDisk::default() })
+    }
+
+    /// Puts lines in front of what standard output will get, behind a `%` that opens it; what is there then.
+    pub(crate) fn put_in_front(&mut self, lines: &[String]) -> std::io::Result<Digest> {
+        let Place::Apart(apart) = &mut self.place else {
+            return Err(std::io::Error::from(std::io::ErrorKind::InvalidInput));
+        };
+        apart.rewind()?;
+        let mut rest = BufReader::new(apart);
+        let mut first = Vec::new();
+        rest.read_until(b'\n', &mut first)?;
+        let end = if first.ends_with(b"\r\n") { "\r\n" } else { "\n" };
+        let lines: String = lines.iter().map(|line| format!("{line}{end}")).collect();
+        let at = if first.starts_with(b"%") { first.len() } else { 0 };
+        first.splice(at..at, lines.into_bytes());
+        let mut grown = tempfile::spooled_tempfile(SPOOLED_BYTES);
+        let bytes = std::io::copy(&mut first.as_slice().chain(rest), &mut grown)?;
+        grown.rewind()?;
+        let hash = blake3::Hasher::new().update_reader(&mut grown)?.finalize();
+        self.place = Place::Apart(grown);
+        Ok(Digest { bytes, hash: Some(hash) })
     }
 
     /// Shows it. A file is then on the disk under its name, whatever becomes of the power.

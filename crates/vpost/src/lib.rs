@@ -9,6 +9,7 @@ pub mod calibrate;
 mod check;
 mod color;
 pub mod command_line;
+pub mod config;
 mod correct;
 pub mod diagnose;
 mod exit_status;
@@ -23,6 +24,7 @@ pub mod lsp;
 pub mod manual;
 pub mod map;
 mod message;
+mod mistaken;
 mod origin;
 mod predict;
 mod profile_command;
@@ -58,37 +60,29 @@ use message::{Failure, Messages};
 /// Runs the command and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let arguments = match Arguments::read(arguments.clone()) {
+    let held = match config::find(&arguments) {
+        Ok(held) => held,
+        Err(failure) => return unusable(&failure, &arguments),
+    };
+    let arguments = match Arguments::read(arguments.clone(), held) {
         Ok(arguments) => arguments,
-        Err(error) => {
-            if let Some(failure) = jobs::options::unread(&error) {
-                Messages::new(Color::Auto, language::of_arguments(&arguments)).failure(&failure);
-                return ExitCode::from(USAGE);
-            }
-            let status = if error.use_stderr() { USAGE } else { DONE };
-            let printed = if error.use_stderr() {
-                // It quotes what was typed, or what a script put there.
-                let text = match language::of_arguments(&arguments) {
-                    Language::English => error.render().to_string(),
-                    Language::Russian => russian::error(&error),
-                };
-                writeln!(std::io::stderr(), "{}", terminal::shown(text.trim_end())).is_ok()
-            } else {
-                error.print().is_ok() && open_streams::is_stdout_open()
-            };
-            // Help that nobody got is not done; a usage error that nobody reads is one all the same.
-            return ExitCode::from(if printed { status } else { status.max(REFUSED) });
-        }
+        Err(error) => return unread(&error, &arguments),
     };
     // From here on: opening a named pipe waits, too.
     let interrupt = Interrupt::listen();
     let MessageOptions { color, quiet, language, .. } = &arguments.shared.messages;
     let language = language::chosen(language.as_deref().copied());
     let messages = Messages::new(*color, language);
+    let held = &arguments.shared.held;
+    // What a file says is not silenced by the file.
+    if let Some(note) = held.note().filter(|_| !*quiet || held.says("quiet")) {
+        messages.note(&note);
+    }
     let messages = if *quiet { messages.quiet() } else { messages };
-    let result = match &arguments.command {
+    let result = arguments.files_are_right().and_then(|()| match &arguments.command {
         Some(Command::Correct(a)) => correct::run(a, &arguments.shared, &messages),
         Some(Command::Batch(a)) => batch::run(a, &arguments.shared, &messages),
+        Some(Command::Watch(a)) => batch::watch(a, &arguments.shared, &messages),
         Some(Command::Check(a)) => check::run(a, &arguments.shared, &messages),
         Some(Command::Restart(a)) => restart::run(a, &arguments.shared, &messages),
         Some(Command::Predict(a)) => predict::run(a, &arguments.shared, &messages),
@@ -97,6 +91,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Diagnose(a)) => diagnose::run(a, &arguments.shared, &messages),
         Some(Command::Map(a)) => map::run(a, &arguments.shared, &messages),
         Some(Command::Budget(a)) => budget::run(a, &arguments.shared, &messages),
+        Some(Command::Config(a)) => config::run(a, held, &messages),
         Some(Command::Profile(a)) => profile_command::run(a, &messages),
         Some(Command::Grammar(a)) => grammar::run(a, &messages),
         Some(Command::Explain(a)) => explain::run(a, language),
@@ -104,7 +99,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Completions(a)) => manual::print_completions(a),
         Some(Command::Man(a)) => manual::run(a, language),
         None => correct::run(&arguments.correct, &arguments.shared, &messages),
-    };
+    });
     match result {
         Ok(()) => ExitCode::from(DONE),
         Err(failure) => {
@@ -123,4 +118,32 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             })
         }
     }
+}
+
+/// Says what is wrong with arguments, or the help that they ask for.
+fn unread(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
+    let said = jobs::options::unread(error)
+        .or_else(|| mistaken::programs(error, &command_line::command(), arguments));
+    if let Some(failure) = said {
+        return unusable(&failure, arguments);
+    }
+    let status = if error.use_stderr() { USAGE } else { DONE };
+    let printed = if error.use_stderr() {
+        // It quotes what was typed, or what a script put there.
+        let text = match language::of_arguments(arguments) {
+            Language::English => error.render().to_string(),
+            Language::Russian => russian::error(error),
+        };
+        writeln!(std::io::stderr(), "{}", terminal::shown(text.trim_end())).is_ok()
+    } else {
+        error.print().is_ok() && open_streams::is_stdout_open()
+    };
+    // Help that nobody got is not done; a usage error that nobody reads is one all the same.
+    ExitCode::from(if printed { status } else { status.max(REFUSED) })
+}
+
+/// Says a usage error that is found before it is known how to say it.
+fn unusable(failure: &Failure, arguments: &[OsString]) -> ExitCode {
+    Messages::new(Color::Auto, language::of_arguments(arguments)).failure(failure);
+    ExitCode::from(USAGE)
 }

@@ -8,6 +8,7 @@ use rewrite::{Corrected, Manner};
 
 use crate::arguments::Color;
 use crate::command_line::Arguments;
+use crate::config::Held;
 use crate::message::{Failure, Messages};
 use crate::settings::Settings;
 use jobs::{check, diagnose, expand};
@@ -30,7 +31,7 @@ impl Session {
     /// The messages of the command.
     pub fn new(options: &[&str], limits: Limits) -> Result<Self, Refusal> {
         let line = ["vpost"].iter().chain(options).chain(&["-"]).map(std::ffi::OsString::from);
-        let arguments = Arguments::read(line).map_err(|error| Refusal(error.to_string()))?;
+        let arguments = Arguments::read(line, Held::default()).map_err(|error| Refusal(error.to_string()))?;
         let messages = Messages::new(Color::Never, Language::English).quiet();
         match Settings::load(&arguments.shared.job) {
             Ok(mut settings) => {

@@ -15,8 +15,9 @@ const CHANGED: Code = Code(3);
 
 /// What changes with a file's bytes: which file it is, its length, when it was last written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Stamp {
-    bytes: u64,
+pub(crate) struct Stamp {
+    /// Its length.
+    pub(crate) bytes: u64,
     modified: Option<SystemTime>,
     /// Device, number, and time of the last change of anything: an editor that sets the time of writing back does not
     /// set this one.
@@ -25,6 +26,11 @@ struct Stamp {
 }
 
 impl Stamp {
+    /// Of what lies at a path; none where nothing does.
+    pub(crate) fn at(path: &Path) -> Option<Self> {
+        path.metadata().ok().map(|found| Self::of(&found))
+    }
+
     fn of(found: &Metadata) -> Self {
         #[cfg(unix)]
         use std::os::unix::fs::MetadataExt;

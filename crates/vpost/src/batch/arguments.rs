@@ -63,12 +63,12 @@ pub struct Work {
 /// Work on many machines.
 #[derive(Debug, Subcommand)]
 pub enum BatchCommand {
-    /// Write down which programs are to be corrected, and how: the manifest.
+    /// Write down the programs and how to correct them: the manifest.
     #[command(override_usage = "vpost batch plan [OPTIONS] -O <OUTDIR> --manifest <FILE> <DIR|FILES>...")]
     Plan(Plan),
     /// Correct one share of a manifest's programs.
     Run(Run),
-    /// Check that every program of a manifest was corrected; say what is missing.
+    /// Say which programs of a manifest are not corrected yet.
     Merge(Merge),
 }
 

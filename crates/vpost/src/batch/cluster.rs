@@ -16,7 +16,7 @@ use super::journal::{self, Journal, Records};
 use super::manifest::{self, Manifest};
 use super::progress::Progress;
 use super::record::{Record, Status};
-use super::report::{finish, has_place, interrupted, passed_over};
+use super::report::{Printing, finish, has_place, interrupted, passed_over};
 use super::shard::{self, Shard};
 use super::work::{self, Results};
 use crate::arguments::Shared;
@@ -31,6 +31,7 @@ pub(crate) fn plan(arguments: &Plan, shared: &Shared, messages: &Messages) -> Re
     let root = arguments.programs.output.as_deref().unwrap_or(Path::new("."));
     let job = Job::load(shared, messages)?;
     let found = inputs::find(&arguments.programs, root)?;
+    shared.held.is_of_all(found.items.iter().map(|item| item.input.as_path()))?;
     passed_over(&found, messages);
     // Other machines know the programs by their names alone.
     found.items.iter().try_for_each(Item::needs_name)?;
@@ -86,7 +87,8 @@ fn share(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Fa
         .reads_all(&both!("read by the profile", "файл, который читает профиль"), &job.settings.files)
         .writes("--results", arguments.work.results.as_deref())
         .are_apart()?;
-    let results = batch.run(&items, &mut journal, &progress, messages);
+    let mut printing = Printing::new(&progress, messages);
+    let results = batch.run(&items, &mut journal, &progress, &mut |outcome| printing.tell(outcome));
     progress.end();
     let results = results.map_err(|failure| interrupted(failure, messages))?;
     let kept = journal.end(&Records::new(), &results.records);

@@ -23,7 +23,7 @@ const ONTO_INPUT: Code = Code(1003);
 const NAME: Code = Code(1004);
 
 /// What part programs are called, from many shops' folders.
-const ENDINGS: [&str; 16] = [
+pub(crate) const ENDINGS: [&str; 16] = [
     "nc", "ngc", "cnc", "tap", "mpf", "spf", "ptp", "min", "eia", "iso", "gcode", "gc", "ncc", "fnc", "din",
     "g",
 ];
@@ -60,6 +60,22 @@ pub(crate) struct Found {
 /// output folder of another run is passed over, too, unless it is the one that is named. A file that is named is taken
 /// whatever its name.
 pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure> {
+    let found = search(programs, output)?;
+    if found.items.is_empty() {
+        let others = found.others.len();
+        return Err(Failure::usage(notice!(NONE_FOUND;
+            "no program was found; {others} other files were",
+            "программ не найдено, а прочих файлов: {others}";
+            "programs are files that end in .{}; others: `--pattern \"*.txt\"`, or name the files",
+            "программы — файлы с расширением .{}; другие: `--pattern \"*.txt\"` или назовите файлы",
+            ENDINGS.join(" .")
+        )));
+    }
+    Ok(found)
+}
+
+/// The same where there may be none yet.
+pub(crate) fn search(programs: &Programs, output: &Path) -> Result<Found, Failure> {
     let search = Search {
         patterns: patterns("--pattern", &programs.pattern)?,
         exclude: patterns("--exclude", &programs.exclude)?,
@@ -75,16 +91,6 @@ pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure>
             let name = input.file_name().map(Path::new).unwrap_or(input);
             found.items.push(item(input.clone(), name, data.len()));
         }
-    }
-    if found.items.is_empty() {
-        let others = found.others.len();
-        return Err(Failure::usage(notice!(NONE_FOUND;
-            "no program was found; {others} other files were",
-            "программ не найдено, а прочих файлов: {others}";
-            "programs are files that end in .{}; others: `--pattern \"*.txt\"`, or name the files",
-            "программы — файлы с расширением .{}; другие: `--pattern \"*.txt\"` или назовите файлы",
-            ENDINGS.join(" .")
-        )));
     }
     found.items.sort_by(|a, b| a.output.cmp(&b.output).then_with(|| a.input.cmp(&b.input)));
     found.items.dedup();

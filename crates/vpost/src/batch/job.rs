@@ -5,6 +5,8 @@ use blake3::{Hash, Hasher};
 use super::inputs::Item;
 use super::record::{Fault, Record, Status};
 use crate::arguments::Shared;
+use jobs::correct::refuse_doubts;
+use nc_program::codes::CUT_OFF;
 use rewrite::Manner;
 
 use crate::conditions::conditions;
@@ -19,6 +21,17 @@ pub(crate) struct Job {
     pub settings: Settings,
     /// Hash of everything that decides the output besides the program and the subprograms it calls.
     pub hash: Hash,
+    /// What becomes of a program that seems to be cut off.
+    pub cut_off: CutOff,
+}
+
+/// What becomes of a program that seems to be cut off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum CutOff {
+    /// It is corrected, and warned of.
+    Warned,
+    /// It is refused: the rest may be on its way.
+    Refused,
 }
 
 impl Job {
@@ -27,7 +40,7 @@ impl Job {
         let settings = crate::settings::load(shared, messages)?;
         settings.path_model()?;
         let hash = hash(&settings, shared)?;
-        Ok(Self { settings, hash })
+        Ok(Self { settings, hash, cut_off: CutOff::Warned })
     }
 
     /// Corrects a program. The one place where batch meets the correction.
@@ -42,7 +55,11 @@ impl Job {
     ) -> Result<Program, Failure> {
         let manner = Manner { force: false, threads, hashes: true };
         let input = Input::File(item.input.clone());
-        correct::program(input, &self.settings, manner, out, &|_| interrupt.check())
+        let done = correct::program(input, &self.settings, manner, out, &|_| interrupt.check())?;
+        if self.cut_off == CutOff::Refused {
+            refuse_doubts(&done.warnings, |doubt| doubt.code == CUT_OFF)?;
+        }
+        Ok(done)
     }
 }
 

@@ -230,7 +230,7 @@ impl Manifest {
 
     /// Profile, dialect and options as they were planned; refused where they are others today.
     pub(crate) fn job(&self, own: &Shared, messages: &Messages) -> Result<Job, Failure> {
-        let shared = Shared { job: self.header.options.clone(), messages: own.messages.clone() };
+        let shared = Shared { job: self.header.options.clone(), ..own.clone() };
         let job = Job::load(&shared, messages)?;
         let changed = |what: Text| {
             Failure::usage(notice!(JOB_CHANGED;

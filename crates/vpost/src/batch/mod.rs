@@ -18,12 +18,16 @@ mod report;
 mod shard;
 mod shelf;
 mod table;
+mod watch;
 mod work;
 
 use std::path::Path;
 
 pub use arguments::Batch;
 use arguments::BatchCommand;
+pub(crate) use inputs::ENDINGS;
+pub use watch::Watch;
+pub(crate) use watch::run as watch;
 
 use diagnostic::both;
 
@@ -37,7 +41,7 @@ use folder::{Company, OutputFolder};
 use job::Job;
 use journal::Journal;
 use progress::Progress;
-use report::{finish, has_place, interrupted, passed_over};
+use report::{Printing, finish, has_place, interrupted, passed_over};
 
 /// `vpost batch`
 pub(crate) fn run(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
@@ -55,6 +59,7 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
     let job = Job::load(shared, messages)?;
     has_place(arguments.work.results.as_deref())?;
     let found = inputs::find(&arguments.programs, root)?;
+    shared.held.is_of_all(found.items.iter().map(|item| item.input.as_path()))?;
     Roles::default()
         .reads_all(&both!("a program", "программа"), found.items.iter().map(|item| &item.input))
         .reads_all(&both!("read by the profile", "файл, который читает профиль"), &job.settings.files)
@@ -78,7 +83,8 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
         threads: work::threads(arguments.work.jobs),
         interrupt: &interrupt,
     };
-    let results = batch.run(&found.items, &mut journal, &progress, messages);
+    let mut printing = Printing::new(&progress, messages);
+    let results = batch.run(&found.items, &mut journal, &progress, &mut |outcome| printing.tell(outcome));
     progress.end();
     let results = results.map_err(|failure| interrupted(failure, messages))?;
     let kept = journal.end(&earlier, &results.records);

@@ -34,6 +34,11 @@ impl Progress {
         progress
     }
 
+    /// Nothing is shown.
+    pub(crate) fn hidden() -> Self {
+        Self { bar: ProgressBar::hidden(), programs: 0, done: std::cell::Cell::new(0) }
+    }
+
     /// A program is done.
     pub(crate) fn done(&self, item: &Item) {
         self.bar.inc(item.bytes);

@@ -1,11 +1,14 @@
 //! What is said before the work and after it.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
+use super::outcome::Outcome;
+use super::progress::Progress;
 use super::work::Results;
 use super::{inputs, record, table};
 use crate::file;
-use crate::message::{Failure, Messages, OPTION, notice};
+use crate::message::{Failure, Messages, OPTION, Report, notice};
 use diagnostic::{Language, Text, both};
 
 /// What a folder held besides programs: a program of an unusual name must not be missed.
@@ -46,6 +49,38 @@ pub(super) fn passed_over(found: &inputs::Found, messages: &Messages) {
                 way
             ));
         }
+    }
+}
+
+/// No more refusals are printed with their lines.
+const MOST_PRINTED: usize = 20;
+
+/// Refusals as they happen.
+pub(super) struct Printing<'a> {
+    progress: &'a Progress,
+    messages: &'a Messages,
+    printed: usize,
+    /// Messages about no line of a program: said once, for a full disk says the same of each.
+    said: BTreeSet<String>,
+}
+
+impl<'a> Printing<'a> {
+    pub(super) fn new(progress: &'a Progress, messages: &'a Messages) -> Self {
+        Self { progress, messages, printed: 0, said: BTreeSet::new() }
+    }
+
+    pub(super) fn tell(&mut self, outcome: &Outcome) {
+        if outcome.record.status.is_done() || self.printed >= MOST_PRINTED {
+            return;
+        }
+        let Self { said, printed, messages, .. } = self;
+        let new = |report: &&Report| match (&report.source, report.diagnostics.as_slice()) {
+            (None, [only]) => said.insert(only.message.english().to_owned()),
+            _ => true,
+        };
+        let told: Vec<&Report> = outcome.told.iter().filter(new).collect();
+        *printed += usize::from(!told.is_empty());
+        self.progress.aside(|| told.into_iter().for_each(|report| messages.report(report)));
     }
 }
 

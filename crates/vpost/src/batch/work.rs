@@ -1,6 +1,6 @@
 //! The work: programs to outputs on all cores, told in order.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::num::NonZero;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -21,7 +21,7 @@ use super::record::{Record, Status};
 use super::shelf::Shelf;
 use crate::file;
 use crate::interrupt::Interrupt;
-use crate::message::{Deed, Failure, Messages, OPTION, Report, notice};
+use crate::message::{Deed, Failure, OPTION, Report, notice};
 
 /// An output would be written over a file that vpost did not write.
 const FOREIGN: Code = Code(1006);
@@ -37,13 +37,10 @@ const TOLD_TOGETHER_BYTES: u64 = 1 << 21;
 /// Nor does anything wait longer than this for others: so much work is done again after a kill.
 const KEPT_BACK: Duration = Duration::from_millis(10);
 
-/// No more refusals are printed with their lines.
-const MOST_PRINTED: usize = 20;
-
 /// One run of many programs.
-pub(crate) struct Batch<'a> {
+pub(crate) struct Batch<'a, 'f> {
     pub job: &'a Job,
-    pub folder: &'a OutputFolder,
+    pub folder: &'f OutputFolder,
     /// What earlier runs left.
     pub earlier: &'a Records,
     /// Correct anew what was corrected, overwrite what is not ours.
@@ -66,16 +63,16 @@ pub(crate) fn threads(jobs: Option<u16>) -> usize {
     jobs.map_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get), usize::from)
 }
 
-impl<'a> Batch<'a> {
+impl<'f> Batch<'_, 'f> {
     /// Corrects the programs. What fails is told, and the others go on.
     ///
-    /// Programs are begun in order, and their results are put in order before anybody sees them.
+    /// Programs are begun in order, and `tell` hears of their results in order, each in its place by then.
     pub(crate) fn run(
         &self,
         items: &[Item],
-        journal: &mut Journal<'a>,
+        journal: &mut Journal<'f>,
         progress: &Progress,
-        messages: &Messages,
+        tell: &mut dyn FnMut(&Outcome),
     ) -> Result<Results, Failure> {
         self.folder.holds(items.iter().map(|item| item.output.as_str()))?;
         let threads = self.threads;
@@ -139,7 +136,7 @@ impl<'a> Batch<'a> {
                         true => progress.was_done(&items[index]),
                         false => progress.done(&items[index]),
                     }
-                    told.take(index, outcome, progress, messages);
+                    told.take(index, outcome, tell);
                 }
             }
             shelf.end().map_err(|error| {
@@ -346,37 +343,17 @@ fn most_open() -> usize {
 struct Told {
     results: Results,
     waiting: BTreeMap<usize, Outcome>,
-    printed: usize,
-    /// Messages about no line of a program: said once, for a full disk says the same of each.
-    said: BTreeSet<String>,
 }
 
 impl Told {
     /// Tells an outcome, and those that waited for it; before its forerunners were told it waits.
-    fn take(&mut self, index: usize, outcome: Outcome, progress: &Progress, messages: &Messages) {
-        if index != self.results.records.len() {
-            self.waiting.insert(index, outcome);
-            return;
-        }
-        self.tell(outcome, progress, messages);
+    fn take(&mut self, index: usize, outcome: Outcome, tell: &mut dyn FnMut(&Outcome)) {
+        self.waiting.insert(index, outcome);
         while let Some(next) = self.waiting.remove(&self.results.records.len()) {
-            self.tell(next, progress, messages);
+            tell(&next);
+            self.results.resumed += usize::from(next.resumed);
+            self.results.records.push(next.record);
         }
-    }
-
-    fn tell(&mut self, outcome: Outcome, progress: &Progress, messages: &Messages) {
-        if !outcome.record.status.is_done() && self.printed < MOST_PRINTED {
-            let Self { said, printed, .. } = self;
-            let new = |report: &&Report| match (&report.source, report.diagnostics.as_slice()) {
-                (None, [only]) => said.insert(only.message.english().to_owned()),
-                _ => true,
-            };
-            let told: Vec<&Report> = outcome.told.iter().filter(new).collect();
-            *printed += usize::from(!told.is_empty());
-            progress.aside(|| told.into_iter().for_each(|report| messages.report(report)));
-        }
-        self.results.resumed += usize::from(outcome.resumed);
-        self.results.records.push(outcome.record);
     }
 }
 

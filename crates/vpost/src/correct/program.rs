@@ -55,7 +55,7 @@ pub(crate) fn program(
 ) -> Result<Program, Failure> {
     let program = whatever_is_doubtful(input, settings, manner, out, progress)?;
     if settings.strict {
-        correct::refuse_doubts(&program.warnings)?;
+        correct::refuse_doubts(&program.warnings, |_| true)?;
     }
     Ok(program)
 }
