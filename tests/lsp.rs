@@ -315,9 +315,9 @@ fn what_is_too_large_is_said() {
     assert_eq!(said["method"], json!("window/showMessage"));
     assert!(said["params"]["message"].as_str().expect("a text").contains("500 MB"), "{said}");
     server.open(&"G0 X1.\n".repeat(3 << 20));
-    assert_eq!(server.codes(), ["VP0008"]);
+    assert_eq!(server.codes(), ["VP0009"]);
     server.put(2, 0, "(A)\n");
-    assert_eq!(server.codes(), ["VP0008"]);
+    assert_eq!(server.codes(), ["VP0009"]);
 }
 
 /// A profile that is mended and saved holds at once.

@@ -7,6 +7,7 @@ use std::io::Write as _;
 use std::process::{Command, Stdio};
 
 use crate::common::{messages, root, run};
+use crate::folders::copy;
 
 const PROFILE: &str = "tests/profiles/corpus.toml";
 const PROGRAM: &str = "samples/bolt_circle_fanuc.nc";
@@ -112,4 +113,46 @@ fn a_profile_is_asked_for() {
     for line in ["\"Mill 5\"", "\"fanuc\"", "[w b X Y Z t]", "[0, 500]", "[-400, 0]", "[-300, 0]"] {
         assert!(profile.contains(line), "{line} in {profile}");
     }
+}
+
+/// A call without a profile asks one question after the other, and keeps the answers where that is wanted.
+#[test]
+fn what_is_missing_is_asked_and_kept() {
+    if !have_terminals() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    copy(&root().join("machine-profiles"), &folder.path().join("machine-profiles"));
+    let program = "G21 G90 G17 G54\nG0 X10. Y10. Z50\nG1 Z1. F300\nG1 X100. Y80.\nM30\n";
+    std::fs::write(folder.path().join("part.nc"), program).expect("writable");
+    let asked = |call: &str, answers: &str| {
+        let line = format!("'{}' {call}", env!("CARGO_BIN_EXE_vpost"));
+        let mut script = Command::new("script")
+            .args(["-q", "-e", "-c", &line, "/dev/null"])
+            .current_dir(folder.path())
+            .env("LC_ALL", "C")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("script is there");
+        script.stdin.take().expect("a pipe").write_all(answers.as_bytes()).expect("read");
+        let ran = script.wait_with_output().expect("it ends");
+        (ran.status.code(), String::from_utf8_lossy(&ran.stdout).into_owned())
+    };
+    // Nobody answers: as in a pipe.
+    let (status, seen) = asked("part.nc -o out.nc", "\n");
+    assert_eq!(status, Some(2), "{seen}");
+    assert!(
+        seen.contains("Which machine?") && seen.contains("1  machine-profiles/generic_lathe.toml"),
+        "{seen}"
+    );
+    let (status, seen) = asked("part.nc -o out.nc", "machine-profiles/generic_vmc.toml\n2\ny\n");
+    assert_eq!(status, Some(0), "{seen}");
+    let settings = std::fs::read_to_string(folder.path().join("vpost.toml")).expect("kept");
+    assert_eq!(settings, "machine = \"machine-profiles/generic_vmc.toml\"\ndecimal = \"millimetres\"\n");
+    // From now on nothing is asked.
+    let by_answers = std::fs::read(folder.path().join("out.nc")).expect("written");
+    let (status, seen) = asked("part.nc -o again.nc", "");
+    assert!(status == Some(0) && !seen.contains("Which"), "{seen}");
+    assert!(by_answers == std::fs::read(folder.path().join("again.nc")).expect("written"));
 }

@@ -13,7 +13,7 @@ use crate::machine::Machine;
 use crate::place::Place;
 
 /// What is not checked while it is typed.
-const TOO_LARGE: Code = Code(8);
+const TOO_LARGE: Code = Code(9);
 /// The largest program that is: some tenths of a second each time.
 const LARGEST_MB: usize = 16;
 

@@ -204,6 +204,19 @@ impl JobOptions {
         self.engine.as_deref().copied()
     }
 
+    /// These options, and where they say nothing those of `below`.
+    #[must_use]
+    pub fn over(&self, below: &Self) -> Self {
+        let said = |options: &Self| match serde_json::to_value(options) {
+            Ok(serde_json::Value::Object(said)) => said,
+            _ => serde_json::Map::new(),
+        };
+        let silent = said(&Self::default());
+        let mut all = said(below);
+        all.extend(said(self).into_iter().filter(|(name, value)| silent.get(name) != Some(value)));
+        serde_json::from_value(serde_json::Value::Object(all)).expect("both were options")
+    }
+
     /// Reads options that are written as on a command line, `--work-offset=G54=100,50,0`.
     ///
     /// # Errors
@@ -234,15 +247,19 @@ pub type Read<'a> = &'a dyn Fn(&Path) -> Result<Vec<u8>, Failure>;
 pub fn read<T: Args>(words: impl IntoIterator<Item = OsString>) -> Result<T, Failure> {
     let command = T::augment_args(clap::Command::new("vpost").no_binary_name(true).disable_help_flag(true));
     let read = command.try_get_matches_from(words).and_then(|matches| T::from_arg_matches(&matches));
-    read.map_err(|error| {
-        unread(&error).unwrap_or_else(|| {
-            let text = error.to_string();
-            let first = text.lines().next().unwrap_or_default();
-            Failure::usage(notice!(OPTION;
-                Text::english_only(first.trim_start_matches("error: "));
-                "see docs/reference.md for what it takes", "что он принимает, сказано в docs/reference.md"
-            ))
-        })
+    read.map_err(|error| misread(&error))
+}
+
+/// What the command says of options that cannot be read.
+#[must_use]
+pub fn misread(error: &clap::Error) -> Failure {
+    unread(error).unwrap_or_else(|| {
+        let text = error.to_string();
+        let first = text.lines().next().unwrap_or_default();
+        Failure::usage(notice!(OPTION;
+            Text::english_only(first.trim_start_matches("error: "));
+            "see docs/reference.md for what it takes", "что он принимает, сказано в docs/reference.md"
+        ))
     })
 }
 

@@ -3,6 +3,7 @@
 //! The roof of the house; [`rewrite`] below it is where the text wing and the mathematics wing meet.
 
 pub mod arguments;
+mod asked;
 pub mod batch;
 pub mod budget;
 pub mod calibrate;
@@ -30,6 +31,7 @@ mod predict;
 mod profile_command;
 pub mod profile_new;
 mod progress;
+mod questions;
 pub mod restart;
 mod roles;
 mod russian;
@@ -60,6 +62,14 @@ use message::{Failure, Messages};
 /// Runs the command and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
+    once(&arguments, Vec::new())
+}
+
+/// Runs the command, and asks somebody at a terminal what is missing.
+///
+/// * `answers` – what they answered so far
+fn once(words: &[OsString], mut answers: asked::Answers) -> ExitCode {
+    let arguments = asked::with(words, &answers);
     let held = match config::find(&arguments) {
         Ok(held) => held,
         Err(failure) => return unusable(&failure, &arguments),
@@ -100,6 +110,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Man(a)) => manual::run(a, language),
         None => correct::run(&arguments.correct, &arguments.shared, &messages),
     });
+    let result = match result {
+        Ok(()) if !answers.is_empty() => asked::keep(&answers, &arguments, &messages),
+        result => result,
+    };
     match result {
         Ok(()) => ExitCode::from(DONE),
         Err(failure) => {
@@ -109,6 +123,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
                 (_, failure) => failure,
             };
             messages.failure(&failure);
+            if let (Failure::Refused(_) | Failure::Usage(_), Some(answer)) =
+                (&failure, asked::answer(&failure, &arguments, &answers, &messages))
+            {
+                answers.push(answer);
+                return once(words, answers);
+            }
             ExitCode::from(match failure {
                 Failure::Refused(_) | Failure::File(_) | Failure::Check => REFUSED,
                 Failure::Usage(_) => USAGE,

@@ -5,6 +5,7 @@
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
+use std::ffi::OsString;
 use std::io::{self, BufRead, Read, Write};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -16,8 +17,9 @@ use editor::Editor;
 use jobs::options::JobOptions;
 use lsp_server::{ErrorCode, Message};
 
-use crate::language;
+use crate::command_line::Arguments;
 use crate::message::{Deed, Failure};
+use crate::{config, language};
 
 /// A message of the protocol is no longer, bytes: what is longer is passed over.
 const LARGEST: u64 = 64 << 20;
@@ -38,9 +40,15 @@ enum Came {
     End,
 }
 
-/// What holds for a program: what the editor said. (What stands in files above the program goes in here.)
-fn options(_program: &Path, told: &JobOptions) -> Result<JobOptions, Failure> {
-    Ok(told.clone())
+/// What holds for a program: what the editor said, and else the settings file above the program.
+fn options(program: &Path, told: &JobOptions) -> Result<JobOptions, Failure> {
+    let line: Vec<OsString> =
+        ["vpost", "correct"].map(OsString::from).into_iter().chain([program.into()]).collect();
+    let held = config::find(&line)?;
+    match Arguments::read(line, held) {
+        Ok(arguments) => Ok(told.over(&arguments.shared.job)),
+        Err(error) => Err(jobs::options::misread(&error)),
+    }
 }
 
 /// Answers an editor until it says that it ends.

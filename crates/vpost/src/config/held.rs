@@ -137,7 +137,11 @@ pub(super) fn folder_of(path: &Path) -> PathBuf {
 
 /// The nearest settings file in a folder or above it.
 pub(super) fn above(folder: &Path) -> Option<PathBuf> {
-    let folder = folder.canonicalize().ok()?;
+    let folder = match folder.canonicalize() {
+        // In a page every folder is below the one that the command works in.
+        Err(error) if error.kind() == std::io::ErrorKind::Unsupported => folder.to_owned(),
+        found => found.ok()?,
+    };
     let file =
         folder.ancestors().map(|folder| folder.join(NAME)).find(|file| file.symlink_metadata().is_ok())?;
     // As it would be named from here, where it is below.

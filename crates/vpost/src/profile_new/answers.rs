@@ -9,7 +9,7 @@ use machine_profile::plus_turns;
 
 use crate::message::{Failure, Messages, OPTION, notice};
 use crate::profile_new::arguments::New;
-use crate::profile_new::questions::Questions;
+use crate::questions::Questions;
 use crate::settings::load_dialect;
 use crate::values::{Centre, Given, Sense, Travel};
 

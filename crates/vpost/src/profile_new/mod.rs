@@ -14,7 +14,6 @@ use crate::{file, profile};
 
 mod answers;
 mod arguments;
-mod questions;
 
 use answers::Answers;
 pub(crate) use arguments::New;

@@ -7,19 +7,19 @@ use diagnostic::Text;
 use crate::message::{Deed, Failure, Messages, OPTION, notice};
 
 /// Asks on standard error and reads standard input.
-pub(super) struct Questions<'m> {
+pub(crate) struct Questions<'m> {
     messages: &'m Messages,
 }
 
 impl<'m> Questions<'m> {
     /// Somebody to ask; `None` in pipes and scripts, and where the user wants no words.
-    pub(super) fn at_a_terminal(messages: &'m Messages) -> Option<Self> {
+    pub(crate) fn at_a_terminal(messages: &'m Messages) -> Option<Self> {
         let there = std::io::stdin().is_terminal() && std::io::stderr().is_terminal();
         (there && !messages.are_quiet()).then_some(Self { messages })
     }
 
     /// The answer to a question; asked again until it can be read.
-    pub(super) fn ask<T>(
+    pub(crate) fn ask<T>(
         &self,
         question: &Text,
         read: impl Fn(&str) -> Result<T, Text>,
@@ -33,7 +33,7 @@ impl<'m> Questions<'m> {
                 .map_err(|error| Failure::place(&Text::pair("the answer", "ответ"), Deed::Read, &error))?;
             if bytes == 0 {
                 return Err(Failure::usage(notice!(OPTION;
-                    "the answers ended before the profile was complete", "ответы кончились раньше вопросов";
+                    "the answers ended before the questions", "ответы кончились раньше вопросов";
                     "nothing was written; begin again", "ничего не записано; начните снова"
                 )));
             }

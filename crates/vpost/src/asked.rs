@@ -1,0 +1,232 @@
+//! `vpost part.nc` at a terminal and without a profile: what has to be known is asked, one question at a time.
+//!
+//! The questions are the refusals that the command has anyway, their answers the options that a refusal's help offers. What
+//! was answered is kept as settings beside the program where somebody wants that.
+
+use std::ffi::OsString;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use diagnostic::{Text, both};
+
+use crate::command_line::{Arguments, Command};
+use crate::file;
+use crate::message::{Failure, Messages};
+use crate::questions::Questions;
+
+/// What was answered so far, as options of the command line.
+pub(crate) type Answers = Vec<String>;
+
+/// The option that answers a failure, if somebody is asked and answers.
+///
+/// Somebody is asked at a terminal whose call corrects a program and names no profile.
+pub(crate) fn answer(
+    failure: &Failure,
+    arguments: &Arguments,
+    answers: &Answers,
+    messages: &Messages,
+) -> Option<String> {
+    let program = program(arguments)?;
+    let has_profile = arguments.shared.job.machine.is_some();
+    if has_profile && answers.is_empty() {
+        return None;
+    }
+    let questions = Questions::at_a_terminal(messages)?;
+    let answer = if has_profile {
+        option(&questions, &offers(&messages.text(failure)))
+    } else {
+        profile(&questions, &profiles(program))
+    };
+    // Who asks the same again has been answered already.
+    answer.filter(|answer| !answers.contains(answer))
+}
+
+/// Offers to keep the answers that led to a corrected program.
+///
+/// # Errors
+/// The settings cannot be written.
+pub(crate) fn keep(answers: &Answers, arguments: &Arguments, messages: &Messages) -> Result<(), Failure> {
+    let (Some(program), Some(questions)) = (program(arguments), Questions::at_a_terminal(messages)) else {
+        return Ok(());
+    };
+    let place = file::folder_of(program).join("vpost.toml");
+    if arguments.shared.held.file.is_some() || place.exists() {
+        return Ok(());
+    }
+    let name = file::name(&place);
+    let question = both!(
+        "Keep these answers for all programs of this folder, in {name}? y or n",
+        "Сохранить ответы для всех программ этой папки, в {name}? д или н"
+    );
+    let wants = questions.ask(&question, |text| match text.to_lowercase().as_str() {
+        "y" | "yes" | "д" | "да" => Ok(true),
+        "n" | "no" | "н" | "нет" | "" => Ok(false),
+        _ => Err(Text::pair("y or n", "д или н")),
+    });
+    // Who says nothing keeps nothing; the program is corrected all the same.
+    if wants.unwrap_or(false) { file::write(&place, kept(answers).as_bytes()) } else { Ok(()) }
+}
+
+/// The program of a call that corrects one.
+fn program(arguments: &Arguments) -> Option<&Path> {
+    let correct = match &arguments.command {
+        None => &arguments.correct,
+        Some(Command::Correct(correct)) => correct,
+        Some(_) => return None,
+    };
+    // A program that comes through standard input leaves no line for answers.
+    correct.input.as_deref().filter(|input| input.as_os_str() != "-")
+}
+
+/// Which of the profiles that lie about, or another one.
+fn profile(questions: &Questions<'_>, known: &[PathBuf]) -> Option<String> {
+    let list = listed(known.iter().map(|path| path.display()));
+    let question = both!(
+        "Which machine?{list}\nA number, the path of a profile, or nothing to end (`vpost profile new` makes one)",
+        "Какой станок?{list}\nНомер, путь к профилю или пусто, чтобы закончить (`vpost profile new` создаёт новый)"
+    );
+    let read = |text: &str| match (text, number(text, known)) {
+        ("", _) => Ok(None),
+        (_, Some(path)) => Ok(Some(path.clone())),
+        (path, None) if Path::new(path).is_file() => Ok(Some(PathBuf::from(path))),
+        (path, None) => Err(both!("{path}: there is no such file", "{path}: такого файла нет")),
+    };
+    let path = questions.ask(&question, read).ok().flatten()?;
+    Some(format!("--machine={}", path.display()))
+}
+
+/// One of the options that a refusal offers, or another one.
+fn option(questions: &Questions<'_>, offers: &[String]) -> Option<String> {
+    let list = listed(offers);
+    let question = both!(
+        "Which answer?{list}\nA number, an option as it is typed, or nothing to end",
+        "Какой ответ?{list}\nНомер, ключ, как он набирается, или пусто, чтобы закончить"
+    );
+    let read = |text: &str| match (text, number(text, offers)) {
+        ("", _) => Ok(None),
+        (_, Some(offer)) => Ok(Some(offer.clone())),
+        (typed, None) if typed.starts_with("--") => Ok(Some(typed.to_owned())),
+        (typed, None) => Err(both!("{typed}: no option begins so", "{typed}: ключ так не начинается")),
+    };
+    let chosen = questions.ask(&question, read).ok().flatten()?;
+    let (name, value) = chosen.split_once([' ', '=']).unwrap_or((&chosen, ""));
+    if !is_open(value) {
+        return Some(if value.is_empty() { name.to_owned() } else { format!("{name}={value}") });
+    }
+    let question = both!("{name}: what stands for {value}?", "{name}: что вместо {value}?");
+    let value = questions.ask(&question, |text| Ok(text.to_owned())).ok().filter(|text| !text.is_empty())?;
+    Some(format!("{name}={value}"))
+}
+
+/// A value in which somebody has yet to say something: `G54=X,Y,Z`, `B=…`.
+fn is_open(value: &str) -> bool {
+    let is_name = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_uppercase());
+    let said = value.split_once('=').map_or(value, |(_, said)| said);
+    value.contains('…') || said.split(',').any(is_name)
+}
+
+/// Choices with their numbers, a line each.
+fn listed(choices: impl IntoIterator<Item = impl std::fmt::Display>) -> String {
+    choices.into_iter().enumerate().map(|(at, choice)| format!("\n  {}  {choice}", at + 1)).collect()
+}
+
+fn number<'a, T>(text: &str, of: &'a [T]) -> Option<&'a T> {
+    of.get(text.parse::<usize>().ok()?.checked_sub(1)?)
+}
+
+/// The options between backticks of a message.
+fn offers(text: &str) -> Vec<String> {
+    let mut offers: Vec<String> = Vec::new();
+    for quoted in text.split('`').skip(1).step_by(2) {
+        if quoted.starts_with("--") && !offers.iter().any(|offer| offer == quoted) {
+            offers.push(quoted.to_owned());
+        }
+    }
+    offers
+}
+
+/// Profiles beside the program and here, and in folders of their name.
+fn profiles(program: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for folder in [file::folder_of(program), Path::new(".")] {
+        for folder in [folder.to_owned(), folder.join("machine-profiles")] {
+            let entries = std::fs::read_dir(&folder).into_iter().flatten().flatten();
+            found.extend(entries.map(|entry| entry.path()).filter(|path| is_profile(path)));
+        }
+    }
+    for path in &mut found {
+        if let Ok(short) = path.strip_prefix(".") {
+            *path = short.to_owned();
+        }
+    }
+    found.sort();
+    found.dedup();
+    found
+}
+
+fn is_profile(path: &Path) -> bool {
+    let text = || std::fs::read_to_string(path).unwrap_or_default();
+    path.extension().is_some_and(|ending| ending == "toml")
+        && text().lines().any(|line| line.split('=').next().is_some_and(|key| key.trim() == "chain"))
+}
+
+/// Answers as a settings file has them; what was answered more than once is a list.
+fn kept(answers: &Answers) -> String {
+    let mut keys: Vec<(&str, Vec<&str>)> = Vec::new();
+    for answer in answers {
+        let (name, value) = answer.trim_start_matches('-').split_once('=').unwrap_or((answer, ""));
+        match keys.iter_mut().find(|(key, _)| *key == name) {
+            Some((_, values)) => values.push(value),
+            None => keys.push((name.trim_start_matches('-'), vec![value])),
+        }
+    }
+    let quoted = |value: &str| toml_edit::Value::from(value).to_string();
+    let mut text = String::new();
+    for (key, values) in keys {
+        let value = match values[..] {
+            [""] => "true".to_owned(),
+            [value] => quoted(value),
+            _ => format!("[{}]", values.iter().map(|value| quoted(value)).collect::<Vec<_>>().join(", ")),
+        };
+        let _ = writeln!(text, "{key} = {value}");
+    }
+    text
+}
+
+/// The words of a call with its answers behind them.
+pub(crate) fn with(words: &[OsString], answers: &Answers) -> Vec<OsString> {
+    words.iter().cloned().chain(answers.iter().map(OsString::from)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refusal_s_options_are_its_answers() {
+        let text = "error[VP0241]: …\nhelp: `--decimal increments` where Z10 is ten steps, `--decimal millimetres` \
+                    where it is Z10.; or `decimal = \"…\"` under `[program]`, `--decimal increments`";
+        assert_eq!(offers(text), ["--decimal increments", "--decimal millimetres"]);
+    }
+
+    #[test]
+    fn what_somebody_has_yet_to_say_is_open() {
+        for value in ["G54=X,Y,Z", "X,Y,Z", "B=…,C=…", "H1=LENGTH"] {
+            assert!(is_open(value), "{value}");
+        }
+        for value in ["", "exact", "G54=1,2,3", "B=0,C=0", "touched"] {
+            assert!(!is_open(value), "{value}");
+        }
+    }
+
+    #[test]
+    fn answers_are_kept_as_settings() {
+        let answers =
+            ["--machine=mill.toml", "--work-offset=G54=1,2,3", "--strict", "--work-offset=G55=4,5,6"];
+        let answers: Answers = answers.map(str::to_owned).to_vec();
+        assert_eq!(
+            kept(&answers),
+            "machine = \"mill.toml\"\nwork-offset = [\"G54=1,2,3\", \"G55=4,5,6\"]\nstrict = true\n"
+        );
+    }
+}
