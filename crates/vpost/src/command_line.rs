@@ -258,10 +258,15 @@ impl Arguments {
             Language::English => command,
             Language::Russian => russian::spoken(command),
         };
-        if let Some(error) = mistaken::command(&command, &arguments) {
+        let matches = command.try_get_matches_from_mut(&arguments);
+        let is_plain = matches.as_ref().is_ok_and(|matches| {
+            let is_there = |input: &PathBuf| input.exists();
+            matches.subcommand().is_some() || matches.get_one("input").is_none_or(is_there)
+        });
+        if !is_plain && let Some(error) = mistaken::command(&command, &arguments) {
             return Err(error);
         }
-        let matches = command.try_get_matches_from_mut(arguments)?;
+        let matches = matches?;
         let given = |matches: &clap::ArgMatches, id: &str| {
             matches.try_contains_id(id).is_ok()
                 && matches.value_source(id) == Some(clap::parser::ValueSource::CommandLine)

@@ -21,7 +21,7 @@ use super::journal::{self, Journal, Records};
 use super::outcome::Outcome;
 use super::progress::Progress;
 use super::record::Status;
-use super::report::interrupted;
+use super::report::{interrupted, passed_over};
 use super::work::{self, Batch};
 use crate::arguments::{Shared, size};
 use crate::exit_status::REFUSED;
@@ -75,17 +75,19 @@ pub(crate) fn run(arguments: &Watch, shared: &Shared, messages: &Messages) -> Re
             "дайте папку, в которую сохраняются программы, и папку для исправленных: `vpost watch IN OUT`"
         )));
     }
+    let programs = Programs {
+        inputs: vec![arguments.input.clone()],
+        output: Some(arguments.output.clone()),
+        pattern: arguments.pattern.clone(),
+        exclude: arguments.exclude.clone(),
+    };
     let (job, read) = loaded(shared, messages)?;
     let folder = OutputFolder::open(&arguments.output, Company::Alone)?;
+    passed_over(&inputs::search(&programs, &arguments.output)?, messages);
     let records = journal::read(&folder.journal(), None)?;
     let mut journal = Journal::begin(&folder, journal::WHOLE)?;
     let mut watched = Watched {
-        programs: Programs {
-            inputs: vec![arguments.input.clone()],
-            output: Some(arguments.output.clone()),
-            pattern: arguments.pattern.clone(),
-            exclude: arguments.exclude.clone(),
-        },
+        programs,
         settle: Duration::from_secs_f64(arguments.settle),
         until: if arguments.once { Until::Done } else { Until::Told },
         shared,

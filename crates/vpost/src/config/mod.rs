@@ -31,12 +31,12 @@ const NONE: &str = "none";
 /// A file that cannot be read, or that says what no option is.
 pub(crate) fn find(arguments: &[OsString]) -> Result<Held, Failure> {
     // Wrong arguments are told when they are read in earnest.
-    let Ok(call) = command().ignore_errors(true).try_get_matches_from(arguments) else {
+    let root = command();
+    let Ok(call) = root.clone().ignore_errors(true).try_get_matches_from(arguments) else {
         return Ok(Held::default());
     };
     let (names, at) = called(&call);
     let names = if names.is_empty() { vec!["correct"] } else { names };
-    let root = command();
     let first = first_path(&root, &names, at);
     if !reads(&names, "config") || (names == ["correct"] && first.is_none()) {
         return Ok(Held::default());
