@@ -326,7 +326,8 @@ fn a_profile_is_read_again() {
     let place = Place::new();
     let axes = ["X", "Y", "Z"].map(|axis| format!("axis.{axis} = {{ travel_mm = [0, 500] }}\n")).concat();
     let head = "format = 1\nname = \"Square\"\ncontrol = \"fanuc\"\nchain = \"[w X Y b Z t]\"\n";
-    let profile = &format!("{head}{axes}work_offsets_mm = {{ G54 = [0, 0, 0] }}\n");
+    let rest = "work_offsets_mm = { G54 = [0, 0, 0] }\nsquareness = { EC0Y_urad = 60 }\n";
+    let profile = &format!("{head}{axes}{rest}");
     let path = place.write("machine.toml", &profile.replace("[0, 0, 0]", "[0, 0]"));
     let mut server = Server::with(&json!({ "machine": path }));
     server.open("G21 G17 G90 G54\nG0 X10. Y10. Z30.\nM30\n");
