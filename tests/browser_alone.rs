@@ -1,7 +1,7 @@
-//! `vpost.html`, the command in a page: the command's bytes, nothing asked of a network, a person's way by the keyboard.
+//! `vpost.html`, the command in a page: the command's bytes, no network, a person's way by the keyboard.
 //!
-//! The page is made by `cargo xtask page` (minutes), into `target/page` or where `VPOST_PAGE` says. Where it is not there
-//! the tests say that they were skipped.
+//! The page is made by `cargo xtask page` (minutes), into `target/page` or where `VPOST_PAGE` says. Where it is not
+//! there the tests say that they were skipped.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -32,7 +32,8 @@ fn opened() -> Option<Browser> {
 /// The bytes of a file that the page holds.
 fn held(browser: &mut Browser, name: &str) -> Vec<u8> {
     let script = format!(
-        "(async () => {{ const blob = files.get({name:?}); if (!blob) return [...files.keys()].join(); const read = new FileReader(); \
+        "(async () => {{ const blob = files.get({name:?}); const read = new FileReader(); \
+         if (!blob) return [...files.keys()].join(); \
          await new Promise(done => {{ read.onload = done; read.readAsDataURL(blob); }}); return read.result; }})()"
     );
     let read = browser.evaluate(&script);
@@ -271,7 +272,9 @@ fn the_page_has_no_fault_of_accessibility() {
     for language in ["en", "ru"] {
         browser.evaluate(&format!("speak({language:?})"));
         browser.wait(&format!("document.documentElement.lang === {language:?}"));
-        browser.evaluate("(files.clear(), by('example').click(), typed.clear(), typed.set('dialect', 'linuxcnc'), job = JOBS[0], show(), by('status').textContent = '', by('run').click(), 0)");
+        browser
+            .evaluate("(files.clear(), typed.clear(), typed.set('dialect', 'linuxcnc'), job = JOBS[0], 0)");
+        browser.evaluate("(by('example').click(), by('status').textContent = '', by('run').click(), 0)");
         browser.wait("by('cancel').hidden && by('status').textContent && by('looked')");
         for (name, view) in [
             ("desk", View::DESK),
@@ -348,7 +351,10 @@ fn a_question_is_answered_by_a_click() {
     run_in(&mut browser, "correct", &given, &[]);
     let said = browser.evaluate("by('status').className + ' ' + by('status').textContent");
     assert!(said.as_str().is_some_and(|said| said.starts_with("error")), "{said}");
-    browser.evaluate("(by('status').textContent = '', [...document.querySelectorAll('.question button')].find(button => button.textContent === '--decimal millimetres').click(), 0)");
+    browser.evaluate(
+        "(by('status').textContent = '', [...document.querySelectorAll('.question button')]
+        .find(button => button.textContent === '--decimal millimetres').click(), 0)",
+    );
     browser.wait("by('cancel').hidden && by('status').textContent");
     let said = browser.evaluate("by('found').textContent");
     assert_eq!(browser.evaluate("by('status').className"), "good", "{said}");

@@ -198,7 +198,11 @@ impl Browser {
     /// Waits until a script's value is true.
     pub(crate) fn wait(&mut self, script: &str) {
         let waited = format!(
-            "new Promise(done => {{ const look = () => {{ try {{ if ({script}) return done(true); }} catch {{}} setTimeout(look, 20); }}; look(); setTimeout(() => done(false), 120000); }})"
+            "new Promise(done => {{
+                const look = () => {{ try {{ if ({script}) return done(true); }} catch {{}} setTimeout(look, 20); }};
+                look();
+                setTimeout(() => done(false), 120000);
+            }})"
         );
         assert_eq!(self.evaluate(&waited), json!(true), "{}: never `{script}`", self.page);
     }

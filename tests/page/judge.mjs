@@ -21,8 +21,12 @@ const PATIENCE = 300_000;
 const { values: given, positionals: programs } = parseArgs({
   allowPositionals: true,
   options: {
-    vpost: { type: "string" }, page: { type: "string" }, machine: { type: "string" }, dialect: { type: "string" },
-    browser: { type: "string", multiple: true, default: ["chromium", "firefox"] }, speed: { type: "string", multiple: true, default: [] },
+    vpost: { type: "string" },
+    page: { type: "string" },
+    machine: { type: "string" },
+    dialect: { type: "string" },
+    browser: { type: "string", multiple: true, default: ["chromium", "firefox"] },
+    speed: { type: "string", multiple: true, default: [] },
   },
 });
 
@@ -30,7 +34,8 @@ const { values: given, positionals: programs } = parseArgs({
 async function socket(address) {
   const line = new WebSocket(address);
   await new Promise((done, failed) => Object.assign(line, { onopen: done, onerror: failed }));
-  const waiting = new Map(), events = [];
+  const waiting = new Map(),
+    events = [];
   let next = 1;
   line.onmessage = ({ data }) => {
     const told = JSON.parse(data);
@@ -40,10 +45,11 @@ async function socket(address) {
     if (told.error) asked.failed(new Error(JSON.stringify(told)));
     else asked.done(told.result);
   };
-  const ask = (method, params = {}, more = {}) => new Promise((done, failed) => {
-    waiting.set(next, { done, failed });
-    line.send(JSON.stringify({ id: next++, method, params, ...more }));
-  });
+  const ask = (method, params = {}, more = {}) =>
+    new Promise((done, failed) => {
+      waiting.set(next, { done, failed });
+      line.send(JSON.stringify({ id: next++, method, params, ...more }));
+    });
   return { ask, events };
 }
 
@@ -65,8 +71,18 @@ function address(command, args, pattern) {
 }
 
 async function chromium(page, folder) {
-  const [child, at] = await address("chromium", ["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-port=0",
-    `--user-data-dir=${folder}`, "about:blank"], /DevTools listening on (ws:\S+)/);
+  const [child, at] = await address(
+    "chromium",
+    [
+      "--headless",
+      "--no-sandbox",
+      "--disable-gpu",
+      "--remote-debugging-port=0",
+      `--user-data-dir=${folder}`,
+      "about:blank",
+    ],
+    /DevTools listening on (ws:\S+)/,
+  );
   const { ask, events } = await socket(at);
   const { targetId } = await ask("Target.createTarget", { url: "about:blank" });
   const { sessionId } = await ask("Target.attachToTarget", { targetId, flatten: true });
@@ -76,7 +92,11 @@ async function chromium(page, folder) {
   return {
     end: () => child.kill(),
     evaluate: async (expression) => {
-      const { result, exceptionDetails } = await tell("Runtime.evaluate", { expression, awaitPromise: true, returnByValue: true });
+      const { result, exceptionDetails } = await tell("Runtime.evaluate", {
+        expression,
+        awaitPromise: true,
+        returnByValue: true,
+      });
       if (exceptionDetails) throw new Error(JSON.stringify(exceptionDetails));
       return result.value;
     },
@@ -85,14 +105,21 @@ async function chromium(page, folder) {
       const { nodeId } = await tell("DOM.querySelector", { nodeId: root.nodeId, selector: "#picked" });
       await tell("DOM.setFileInputFiles", { files, nodeId });
     },
-    told: () => events.filter(({ method, params }) => /consoleAPICalled|exceptionThrown|entryAdded/.test(method)
-      || (method === "Network.requestWillBeSent" && !/^(file|blob|data|about):/.test(params.request.url))),
+    told: () =>
+      events.filter(
+        ({ method, params }) =>
+          /consoleAPICalled|exceptionThrown|entryAdded/.test(method) ||
+          (method === "Network.requestWillBeSent" && !/^(file|blob|data|about):/.test(params.request.url)),
+      ),
   };
 }
 
 async function firefox(page, folder) {
-  const [child, at] = await address("firefox-esr", ["--headless", "--remote-debugging-port", "0", "--profile", folder, "--no-remote",
-    "about:blank"], /WebDriver BiDi listening on (ws:\S+)/);
+  const [child, at] = await address(
+    "firefox-esr",
+    ["--headless", "--remote-debugging-port", "0", "--profile", folder, "--no-remote", "about:blank"],
+    /WebDriver BiDi listening on (ws:\S+)/,
+  );
   const { ask, events } = await socket(`${at}/session`);
   await ask("session.new", { capabilities: {} });
   const context = (await ask("browsingContext.getTree")).contexts[0].context;
@@ -101,16 +128,27 @@ async function firefox(page, folder) {
   return {
     end: () => child.kill(),
     evaluate: async (expression) => {
-      const answer = await ask("script.evaluate", { expression: `(async () => JSON.stringify(await (${expression})))()`, target: { context }, awaitPromise: true });
+      const answer = await ask("script.evaluate", {
+        expression: `(async () => JSON.stringify(await (${expression})))()`,
+        target: { context },
+        awaitPromise: true,
+      });
       if (answer.type === "exception") throw new Error(JSON.stringify(answer.exceptionDetails));
       return answer.result.value === undefined ? undefined : JSON.parse(answer.result.value);
     },
     choose: async (files) => {
-      const { nodes } = await ask("browsingContext.locateNodes", { context, locator: { type: "css", value: "#picked" } });
+      const { nodes } = await ask("browsingContext.locateNodes", {
+        context,
+        locator: { type: "css", value: "#picked" },
+      });
       await ask("input.setFiles", { context, element: { sharedId: nodes[0].sharedId }, files });
     },
-    told: () => events.filter(({ method, params }) => method === "log.entryAdded"
-      || (method === "network.beforeRequestSent" && !/^(file|blob|data|about):/.test(params.request.url))),
+    told: () =>
+      events.filter(
+        ({ method, params }) =>
+          method === "log.entryAdded" ||
+          (method === "network.beforeRequestSent" && !/^(file|blob|data|about):/.test(params.request.url)),
+      ),
   };
 }
 
@@ -126,7 +164,9 @@ async function wait(browser, script, seconds = 120) {
 
 /** A profile with its tables. */
 function withTables(profile) {
-  const tables = [...readFileSync(profile, "utf8").matchAll(/"([^"]+\.csv)"/g)].map(([, table]) => join(dirname(profile), table));
+  const tables = [...readFileSync(profile, "utf8").matchAll(/"([^"]+\.csv)"/g)].map(([, table]) =>
+    join(dirname(profile), table),
+  );
   return [profile, ...tables].map((path) => resolve(path));
 }
 
@@ -136,7 +176,9 @@ async function inPage(browser, program) {
   await browser.evaluate("(files.clear(), made.clear(), typed.clear(), job = JOBS[0], show(), 0)");
   await browser.choose(files);
   await wait(browser, `files.size === ${files.length}`);
-  await browser.evaluate(`(typed.set("dialect", ${JSON.stringify(given.dialect)}), show(), by("status").textContent = "", window.begun = performance.now(), by("run").click(), 0)`);
+  await browser.evaluate(
+    `(typed.set("dialect", ${JSON.stringify(given.dialect)}), show(), by("status").textContent = "", window.begun = performance.now(), by("run").click(), 0)`,
+  );
   await wait(browser, 'by("cancel").hidden && by("status").textContent', 300);
   return browser.evaluate(`(async () => {
     const hash = async (blob) => [...new Uint8Array(await crypto.subtle.digest("SHA-256", await blob.arrayBuffer()))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
@@ -159,8 +201,18 @@ function byCommand(program) {
   const dot = name.lastIndexOf(".");
   const [stem, ending] = dot > 0 ? [name.slice(0, dot), name.slice(dot)] : [name, ""];
   const made = [`${stem}_corrected${ending}`, `${stem}_summary.json`];
-  const ran = spawnSync(resolve(given.vpost), ["correct", name, `--machine=${basename(given.machine)}`, `--dialect=${given.dialect}`,
-    `--output=${made[0]}`, `--summary=${made[1]}`], { cwd: folder, env: { ...process.env, LC_ALL: "C" }, timeout: PATIENCE });
+  const ran = spawnSync(
+    resolve(given.vpost),
+    [
+      "correct",
+      name,
+      `--machine=${basename(given.machine)}`,
+      `--dialect=${given.dialect}`,
+      `--output=${made[0]}`,
+      `--summary=${made[1]}`,
+    ],
+    { cwd: folder, env: { ...process.env, LC_ALL: "C" }, timeout: PATIENCE },
+  );
   const all = {};
   if (ran.status === 0) {
     for (const file of made) all[file] = execFileSync("sha256sum", [file], { cwd: folder }).toString().slice(0, 64);
@@ -183,13 +235,18 @@ for (const name of given.browser) {
       const found = await inPage(browser, program);
       const isSame = found.isDone === isDone && JSON.stringify(found.all) === JSON.stringify(all);
       if (isSame) same++;
-      else console.log(`${name}: ${program}: ${JSON.stringify(found)} where the command has ${JSON.stringify({ isDone, all })}`);
+      else
+        console.log(
+          `${name}: ${program}: ${JSON.stringify(found)} where the command has ${JSON.stringify({ isDone, all })}`,
+        );
       done += isDone;
       if (given.speed.includes(program)) console.log(`${name}: ${program}: ${(found.ms / 1000).toFixed(1)} s`);
     }
-    const longest = Math.max(0, ...await browser.evaluate("tasks"));
+    const longest = Math.max(0, ...(await browser.evaluate("tasks")));
     const told = browser.told();
-    console.log(`${name}: ${same} of ${expected.size} the same, ${done} of them corrected, ${expected.size - done} refused alike; longest task ${longest} ms; ${told.length} requests and console messages`);
+    console.log(
+      `${name}: ${same} of ${expected.size} the same, ${done} of them corrected, ${expected.size - done} refused alike; longest task ${longest} ms; ${told.length} requests and console messages`,
+    );
     if (told.length) console.log(JSON.stringify(told).slice(0, 2000));
     wrong += expected.size - same + told.length + (longest > LONGEST_MS);
   } finally {

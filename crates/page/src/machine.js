@@ -1,8 +1,18 @@
 // A computer of its own for the command, in memory: the part of WASI preview 1 that it uses. Files that were dropped are read
 // piece by piece from where they lie; what is written grows here in pieces of a megabyte.
 
-const OK = 0, BADF = 8, EXIST = 20, INVAL = 28, ISDIR = 31, NOENT = 44, NOSYS = 52, NOTDIR = 54, NOTEMPTY = 55, ROFS = 69;
-const DIRECTORY = 3, REGULAR = 4;
+const OK = 0,
+  BADF = 8,
+  EXIST = 20,
+  INVAL = 28,
+  ISDIR = 31,
+  NOENT = 44,
+  NOSYS = 52,
+  NOTDIR = 54,
+  NOTEMPTY = 55,
+  ROFS = 69;
+const DIRECTORY = 3,
+  REGULAR = 4;
 const PIECE = 1 << 20;
 
 /** What the program ended with. */
@@ -24,8 +34,12 @@ class Given {
     this.from = 0;
     this.window = new Uint8Array(0);
   }
-  get size() { return this.blob.size; }
-  get modified() { return this.blob.lastModified ?? 0; }
+  get size() {
+    return this.blob.size;
+  }
+  get modified() {
+    return this.blob.lastModified ?? 0;
+  }
   read(at, into) {
     if (at >= this.size) return 0;
     if (at < this.from || at >= this.from + this.window.length) {
@@ -41,8 +55,12 @@ class Given {
     into.set(part);
     return part.length;
   }
-  write() { return null; }
-  cut() { return false; }
+  write() {
+    return null;
+  }
+  cut() {
+    return false;
+  }
 }
 
 /** A file that the command writes. */
@@ -55,7 +73,8 @@ class Grown {
   read(at, into) {
     let done = 0;
     while (done < into.length && at + done < this.size) {
-      const place = at + done, inside = place % PIECE;
+      const place = at + done,
+        inside = place % PIECE;
       const count = Math.min(PIECE - inside, into.length - done, this.size - place);
       into.set(this.pieces[Math.floor(place / PIECE)].subarray(inside, inside + count), done);
       done += count;
@@ -65,7 +84,9 @@ class Grown {
   write(at, bytes) {
     let done = 0;
     while (done < bytes.length) {
-      const place = at + done, inside = place % PIECE, which = Math.floor(place / PIECE);
+      const place = at + done,
+        inside = place % PIECE,
+        which = Math.floor(place / PIECE);
       while (this.pieces.length <= which) this.pieces.push(new Uint8Array(PIECE));
       const count = Math.min(PIECE - inside, bytes.length - done);
       this.pieces[which].set(bytes.subarray(done, done + count), inside);
@@ -86,14 +107,18 @@ class Grown {
   }
   blob() {
     const left = this.size % PIECE;
-    const parts = this.pieces.map((piece, at) => (at + 1 === this.pieces.length && left ? piece.subarray(0, left) : piece));
+    const parts = this.pieces.map((piece, at) =>
+      at + 1 === this.pieces.length && left ? piece.subarray(0, left) : piece,
+    );
     return new Blob(parts);
   }
 }
 
 /** Names and what they stand for. */
 class Folder {
-  constructor() { this.entries = new Map(); }
+  constructor() {
+    this.entries = new Map();
+  }
 }
 
 /** The files of one run. */
@@ -151,7 +176,9 @@ class Disk {
 class Machine {
   constructor(args, environment, disk, said) {
     this.disk = disk;
-    [this.args, this.environment] = [args, environment].map((texts) => texts.map((text) => new TextEncoder().encode(`${text}\0`)));
+    [this.args, this.environment] = [args, environment].map((texts) =>
+      texts.map((text) => new TextEncoder().encode(`${text}\0`)),
+    );
     this.out = new Grown();
     this.said = said;
     this.open = new Map([
@@ -176,9 +203,15 @@ class Machine {
     }
   }
 
-  get view() { return new DataView(this.memory.buffer); }
-  bytes(at, length) { return new Uint8Array(this.memory.buffer, at, length); }
-  text(at, length) { return new TextDecoder().decode(this.bytes(at, length).slice()); }
+  get view() {
+    return new DataView(this.memory.buffer);
+  }
+  bytes(at, length) {
+    return new Uint8Array(this.memory.buffer, at, length);
+  }
+  text(at, length) {
+    return new TextDecoder().decode(this.bytes(at, length).slice());
+  }
   path(descriptor, at, length) {
     const above = this.open.get(descriptor)?.path ?? "";
     return `${above}/${this.text(at, length)}`;
@@ -205,7 +238,7 @@ class Machine {
     for (let k = 0; k < 64; k += 8) view.setBigUint64(at + k, 0n, true);
     view.setUint8(at + 16, file instanceof Folder ? DIRECTORY : REGULAR);
     view.setBigUint64(at + 24, 1n, true);
-    view.setBigUint64(at + 32, BigInt(file instanceof Folder ? 0 : file?.size ?? 0), true);
+    view.setBigUint64(at + 32, BigInt(file instanceof Folder ? 0 : (file?.size ?? 0)), true);
     for (const k of [40, 48, 56]) view.setBigUint64(at + k, time, true);
     return OK;
   }
@@ -221,7 +254,11 @@ class Machine {
 
   sizes(count, size, texts) {
     this.view.setUint32(count, texts.length, true);
-    this.view.setUint32(size, texts.reduce((sum, text) => sum + text.length, 0), true);
+    this.view.setUint32(
+      size,
+      texts.reduce((sum, text) => sum + text.length, 0),
+      true,
+    );
     return OK;
   }
 
@@ -249,19 +286,22 @@ class Machine {
         return OK;
       },
       sched_yield: () => OK,
-      proc_exit: (status) => { throw new Ended(status); },
+      proc_exit: (status) => {
+        throw new Ended(status);
+      },
       fd_close: (descriptor) => (this.open.delete(descriptor) ? OK : BADF),
       fd_sync: () => OK,
       fd_datasync: () => OK,
       fd_filestat_set_times: () => OK,
       fd_fdstat_set_flags: () => OK,
-      fd_fdstat_get: (descriptor, at) => this.with(descriptor, ({ file }) => {
-        this.view.setUint8(at, file instanceof Folder ? DIRECTORY : REGULAR);
-        this.view.setUint16(at + 2, 0, true);
-        this.view.setBigUint64(at + 8, 0xffffffffffffffffn, true);
-        this.view.setBigUint64(at + 16, 0xffffffffffffffffn, true);
-        return OK;
-      }),
+      fd_fdstat_get: (descriptor, at) =>
+        this.with(descriptor, ({ file }) => {
+          this.view.setUint8(at, file instanceof Folder ? DIRECTORY : REGULAR);
+          this.view.setUint16(at + 2, 0, true);
+          this.view.setBigUint64(at + 8, 0xffffffffffffffffn, true);
+          this.view.setBigUint64(at + 16, 0xffffffffffffffffn, true);
+          return OK;
+        }),
       fd_filestat_get: (descriptor, at) => this.with(descriptor, ({ file }) => this.stat(file, at)),
       fd_filestat_set_size: (descriptor, size) =>
         this.with(descriptor, ({ file }) => (file?.cut?.(Number(size)) ? OK : INVAL)),
@@ -275,61 +315,67 @@ class Machine {
         this.bytes(at, 1)[0] = 0x2f;
         return OK;
       },
-      fd_read: (descriptor, at, count, done) => this.with(descriptor, (opened) => {
-        if (!opened.file || opened.file instanceof Folder) return ISDIR;
-        const ended = this.vectors(at, count, done, (buffer, sum) => opened.file.read(opened.at + sum, buffer));
-        opened.at += this.view.getUint32(done, true);
-        return ended;
-      }),
-      fd_pread: (descriptor, at, count, from, done) => this.with(descriptor, ({ file }) => {
-        if (!file || file instanceof Folder) return ISDIR;
-        return this.vectors(at, count, done, (buffer, sum) => file.read(Number(from) + sum, buffer));
-      }),
-      fd_write: (descriptor, at, count, done) => this.with(descriptor, (opened) => {
-        if (descriptor === 2) {
-          return this.vectors(at, count, done, (buffer) => {
-            this.said(buffer.slice());
-            return buffer.length;
-          });
-        }
-        if (opened.isAppended) opened.at = opened.file.size;
-        const ended = this.vectors(at, count, done, (buffer, sum) => opened.file.write(opened.at + sum, buffer));
-        if (ended === OK) opened.at += this.view.getUint32(done, true);
-        return ended;
-      }),
-      fd_seek: (descriptor, offset, whence, at) => this.with(descriptor, (opened) => {
-        const base = whence === 0 ? 0 : whence === 1 ? opened.at : opened.file?.size ?? 0;
-        const place = base + Number(offset);
-        if (place < 0) return INVAL;
-        opened.at = place;
-        this.view.setBigUint64(at, BigInt(place), true);
-        return OK;
-      }),
-      fd_tell: (descriptor, at) => this.with(descriptor, (opened) => {
-        this.view.setBigUint64(at, BigInt(opened.at), true);
-        return OK;
-      }),
-      fd_readdir: (descriptor, buffer, length, cookie, used) => this.with(descriptor, ({ file }) => {
-        if (!(file instanceof Folder)) return NOTDIR;
-        const into = this.bytes(buffer, length);
-        let filled = 0;
-        for (const [k, [name, entry]] of [...file.entries].entries()) {
-          if (k < Number(cookie)) continue;
-          const text = new TextEncoder().encode(name);
-          const row = new Uint8Array(24 + text.length);
-          const view = new DataView(row.buffer);
-          view.setBigUint64(0, BigInt(k + 1), true);
-          view.setBigUint64(8, BigInt(k + 1), true);
-          view.setUint32(16, text.length, true);
-          view.setUint8(20, entry instanceof Folder ? DIRECTORY : REGULAR);
-          row.set(text, 24);
-          into.set(row.subarray(0, length - filled), filled);
-          filled = Math.min(length, filled + row.length);
-          if (filled === length) break;
-        }
-        this.view.setUint32(used, filled, true);
-        return OK;
-      }),
+      fd_read: (descriptor, at, count, done) =>
+        this.with(descriptor, (opened) => {
+          if (!opened.file || opened.file instanceof Folder) return ISDIR;
+          const ended = this.vectors(at, count, done, (buffer, sum) => opened.file.read(opened.at + sum, buffer));
+          opened.at += this.view.getUint32(done, true);
+          return ended;
+        }),
+      fd_pread: (descriptor, at, count, from, done) =>
+        this.with(descriptor, ({ file }) => {
+          if (!file || file instanceof Folder) return ISDIR;
+          return this.vectors(at, count, done, (buffer, sum) => file.read(Number(from) + sum, buffer));
+        }),
+      fd_write: (descriptor, at, count, done) =>
+        this.with(descriptor, (opened) => {
+          if (descriptor === 2) {
+            return this.vectors(at, count, done, (buffer) => {
+              this.said(buffer.slice());
+              return buffer.length;
+            });
+          }
+          if (opened.isAppended) opened.at = opened.file.size;
+          const ended = this.vectors(at, count, done, (buffer, sum) => opened.file.write(opened.at + sum, buffer));
+          if (ended === OK) opened.at += this.view.getUint32(done, true);
+          return ended;
+        }),
+      fd_seek: (descriptor, offset, whence, at) =>
+        this.with(descriptor, (opened) => {
+          const base = whence === 0 ? 0 : whence === 1 ? opened.at : (opened.file?.size ?? 0);
+          const place = base + Number(offset);
+          if (place < 0) return INVAL;
+          opened.at = place;
+          this.view.setBigUint64(at, BigInt(place), true);
+          return OK;
+        }),
+      fd_tell: (descriptor, at) =>
+        this.with(descriptor, (opened) => {
+          this.view.setBigUint64(at, BigInt(opened.at), true);
+          return OK;
+        }),
+      fd_readdir: (descriptor, buffer, length, cookie, used) =>
+        this.with(descriptor, ({ file }) => {
+          if (!(file instanceof Folder)) return NOTDIR;
+          const into = this.bytes(buffer, length);
+          let filled = 0;
+          for (const [k, [name, entry]] of [...file.entries].entries()) {
+            if (k < Number(cookie)) continue;
+            const text = new TextEncoder().encode(name);
+            const row = new Uint8Array(24 + text.length);
+            const view = new DataView(row.buffer);
+            view.setBigUint64(0, BigInt(k + 1), true);
+            view.setBigUint64(8, BigInt(k + 1), true);
+            view.setUint32(16, text.length, true);
+            view.setUint8(20, entry instanceof Folder ? DIRECTORY : REGULAR);
+            row.set(text, 24);
+            into.set(row.subarray(0, length - filled), filled);
+            filled = Math.min(length, filled + row.length);
+            if (filled === length) break;
+          }
+          this.view.setUint32(used, filled, true);
+          return OK;
+        }),
       path_open: (descriptor, follow, at, length, flags, rights, inherited, ways, into) => {
         const [create, isFolder, exclusive, truncate] = [1, 2, 4, 8].map((bit) => (flags & bit) !== 0);
         const path = this.path(descriptor, at, length);

@@ -15,21 +15,54 @@ const part = (tag, with_ = {}, ...children) => {
 /** What the page offers: commands, the options that stand at the top, what each run writes; `isAlone`: it makes profiles
  * and needs none. */
 const JOBS = [
-  { id: "correct", path: ["correct"], top: ["machine", "dialect", "tolerance", "path-control"],
-    made: ({ stem, ending }) => ({ output: `${stem}_corrected${ending}`, summary: `${stem}_summary.json` }) },
-  { id: "check", path: ["check"], top: ["machine", "dialect", "tolerance"],
-    made: ({ stem }) => ({ html: `${stem}_check.html`, viewer: `${stem}_path.html` }) },
-  { id: "diagnose", path: ["diagnose"], top: ["machine", "holdout"],
-    made: ({ stem }) => ({ html: `${stem}_diagnosis.html`, json: `${stem}_diagnosis.json`, "write-profile": `${stem}_profile.toml` }) },
-  { id: "map", path: ["map"], top: ["machine", "part-box", "clamp"],
-    made: () => ({ html: "map.html", viewer: "map_viewer.html", json: "map.json" }) },
-  { id: "calibrate", path: ["calibrate"], top: ["machine", "name", "chain"], isAlone: true,
-    made: () => ({ output: "calibrated.toml", html: "calibration.html", json: "calibration.json" }) },
-  { id: "profile_new", path: ["profile", "new"], top: ["name", "control", "chain", "travel", "table"],
-    made: () => ({ output: "machine.toml" }) },
+  {
+    id: "correct",
+    path: ["correct"],
+    top: ["machine", "dialect", "tolerance", "path-control"],
+    made: ({ stem, ending }) => ({ output: `${stem}_corrected${ending}`, summary: `${stem}_summary.json` }),
+  },
+  {
+    id: "check",
+    path: ["check"],
+    top: ["machine", "dialect", "tolerance"],
+    made: ({ stem }) => ({ html: `${stem}_check.html`, viewer: `${stem}_path.html` }),
+  },
+  {
+    id: "diagnose",
+    path: ["diagnose"],
+    top: ["machine", "holdout"],
+    made: ({ stem }) => ({
+      html: `${stem}_diagnosis.html`,
+      json: `${stem}_diagnosis.json`,
+      "write-profile": `${stem}_profile.toml`,
+    }),
+  },
+  {
+    id: "map",
+    path: ["map"],
+    top: ["machine", "part-box", "clamp"],
+    made: () => ({ html: "map.html", viewer: "map_viewer.html", json: "map.json" }),
+  },
+  {
+    id: "calibrate",
+    path: ["calibrate"],
+    top: ["machine", "name", "chain"],
+    isAlone: true,
+    made: () => ({ output: "calibrated.toml", html: "calibration.html", json: "calibration.json" }),
+  },
+  {
+    id: "profile_new",
+    path: ["profile", "new"],
+    top: ["name", "control", "chain", "travel", "table"],
+    made: () => ({ output: "machine.toml" }),
+  },
   { id: "budget", path: ["budget"], top: ["machine", "target"], made: () => ({ json: "budget.json" }) },
-  { id: "restart", path: ["restart"], top: ["machine", "line"],
-    made: ({ stem, ending }) => ({ output: `${stem}_restart${ending}` }) },
+  {
+    id: "restart",
+    path: ["restart"],
+    top: ["machine", "line"],
+    made: ({ stem, ending }) => ({ output: `${stem}_restart${ending}` }),
+  },
 ];
 /** Options that a page has no use for. */
 const UNASKED = ["quiet", "verbose", "color", "lang", "help", "version", "progress", "json"];
@@ -44,7 +77,10 @@ const CARDS = 20;
 const PATTERNS = {
   interferometer: ["interferometer_x.csv", "position_mm,EXX_um\n0,0.0\n100,1.2\n200,2.9\n"],
   squareness: ["points.csv", "run,x_mm,y_mm,z_mm,dy_um\nr1,0,0,0,0\nr1,300,0,0,6.0\n"],
-  ballbar: ["ballbar.csv", "run,x_mm,y_mm,z_mm,bx_mm,by_mm,bz_mm,length_mm\nr1,100,0,0,0,0,0,100.0012\nr1,0,100,0,0,0,0,99.9987\n"],
+  ballbar: [
+    "ballbar.csv",
+    "run,x_mm,y_mm,z_mm,bx_mm,by_mm,bz_mm,length_mm\nr1,100,0,0,0,0,0,100.0012\nr1,0,100,0,0,0,0,99.9987\n",
+  ],
 };
 
 /** What the command looks for beside a program. */
@@ -96,10 +132,13 @@ let queue = Promise.resolve();
 
 /** One task of the worker after the other. */
 function ask(task, progress) {
-  const next = queue.then(() => new Promise((resolve, reject) => {
-    waiting = { resolve, reject, progress };
-    worker.postMessage(task);
-  }));
+  const next = queue.then(
+    () =>
+      new Promise((resolve, reject) => {
+        waiting = { resolve, reject, progress };
+        worker.postMessage(task);
+      }),
+  );
   queue = next.catch(() => {});
   return next;
 }
@@ -177,25 +216,78 @@ function size(bytes) {
 
 function list() {
   const said = words();
-  const remove = (path) => part("button", { type: "button", "aria-label": `${said.remove}: ${path}`, onclick: () => {
-    files.delete(path);
-    show();
-    by("list").focus();
-  } }, "×");
-  const row = (path) => part("tr", {}, part("td", {}, path), part("td", {}, said[kindOf(path)]),
-    part("td", { class: "n" }, size(files.get(path).size)), part("td", {}, remove(path)));
-  const table = (some) => part("div", { class: "scroll" }, part("table", {},
-    part("thead", {}, part("tr", {}, ...["name", "kind", "size"].map((word) => part("th", { scope: "col" }, said[word])), part("td"))),
-    part("tbody", {}, ...some.map(row))));
+  const remove = (path) =>
+    part(
+      "button",
+      {
+        type: "button",
+        "aria-label": `${said.remove}: ${path}`,
+        onclick: () => {
+          files.delete(path);
+          show();
+          by("list").focus();
+        },
+      },
+      "×",
+    );
+  const row = (path) =>
+    part(
+      "tr",
+      {},
+      part("td", {}, path),
+      part("td", {}, said[kindOf(path)]),
+      part("td", { class: "n" }, size(files.get(path).size)),
+      part("td", {}, remove(path)),
+    );
+  const table = (some) =>
+    part(
+      "div",
+      { class: "scroll" },
+      part(
+        "table",
+        {},
+        part(
+          "thead",
+          {},
+          part(
+            "tr",
+            {},
+            ...["name", "kind", "size"].map((word) => part("th", { scope: "col" }, said[word])),
+            part("td"),
+          ),
+        ),
+        part("tbody", {}, ...some.map(row)),
+      ),
+    );
   const all = [...files.keys()];
   const first = all.filter((path) => ["program", "profile"].includes(kindOf(path)));
   const others = all.filter((path) => !first.includes(path));
   const isOpen = by("list").querySelector("details")?.open ?? first.length === 0;
-  by("list").replaceChildren(...(all.length ? [
-    ...(first.length ? [table(first)] : []),
-    ...(others.length ? [part("details", { open: isOpen }, part("summary", {}, said.others(others.length)), table(others))] : []),
-    part("p", {}, part("button", { type: "button", onclick: () => { files.clear(); show(); } }, said.clear)),
-  ] : [part("p", { class: "muted" }, said.none)]));
+  by("list").replaceChildren(
+    ...(all.length
+      ? [
+          ...(first.length ? [table(first)] : []),
+          ...(others.length
+            ? [part("details", { open: isOpen }, part("summary", {}, said.others(others.length)), table(others))]
+            : []),
+          part(
+            "p",
+            {},
+            part(
+              "button",
+              {
+                type: "button",
+                onclick: () => {
+                  files.clear();
+                  show();
+                },
+              },
+              said.clear,
+            ),
+          ),
+        ]
+      : [part("p", { class: "muted" }, said.none)]),
+  );
 }
 
 /** Files of a kind first, then the others. */
@@ -232,17 +324,30 @@ function asks(found) {
 const keyOf = (argument, found) => argument.long ?? `${found.path.join(" ")} ${argument.id}`;
 
 function field(argument, found) {
-  const said = words(), key = keyOf(argument, found), id = `field ${key}`.replaceAll(" ", "-");
+  const said = words(),
+    key = keyOf(argument, found),
+    id = `field ${key}`.replaceAll(" ", "-");
   const value = typed.get(key) ?? chosen(argument, found).value ?? "";
-  const keep = (event) => { typed.set(key, event.target.type === "checkbox" ? (event.target.checked ? "yes" : "") : event.target.value); };
+  const keep = (event) => {
+    typed.set(key, event.target.type === "checkbox" ? (event.target.checked ? "yes" : "") : event.target.value);
+  };
   // A page has no standard input.
-  const help = [(argument.help ?? "").replace(/; - .*$/, ""), argument.many && argument.value ? said.many : null, argument.required ? said.required : null]
-    .filter(Boolean).join(" · ");
+  const help = [
+    (argument.help ?? "").replace(/; - .*$/, ""),
+    argument.many && argument.value ? said.many : null,
+    argument.required ? said.required : null,
+  ]
+    .filter(Boolean)
+    .join(" · ");
   const label = part("label", { for: id }, help, argument.long ? part("code", {}, ` --${argument.long}`) : null);
   const common = { id, onchange: keep, oninput: keep };
-  const select = (choices, empty) => part("select", common,
-    part("option", { value: "" }, empty),
-    ...choices.map((choice) => part("option", { value: choice, selected: choice === value }, choice)));
+  const select = (choices, empty) =>
+    part(
+      "select",
+      common,
+      part("option", { value: "" }, empty),
+      ...choices.map((choice) => part("option", { value: choice, selected: choice === value }, choice)),
+    );
   const kind = fileKind(argument);
   if (!argument.value) {
     return part("p", { class: "flag" }, part("input", { type: "checkbox", checked: value !== "", ...common }), label);
@@ -253,7 +358,11 @@ function field(argument, found) {
   else if (argument.value === "DIALECT") input = select(dialects, "–");
   else if (kind && !argument.many) input = select(paths(kind), said.choice);
   else if (argument.many) {
-    input = part("textarea", { rows: Math.max(1, Math.min(6, value.split("\n").length)), placeholder: argument.value, ...common });
+    input = part("textarea", {
+      rows: Math.max(1, Math.min(6, value.split("\n").length)),
+      placeholder: argument.value,
+      ...common,
+    });
     input.value = value;
   } else input = part("input", { type: "text", placeholder: argument.default ?? argument.value, value, ...common });
   return part("p", {}, label, input);
@@ -264,12 +373,28 @@ function chains(argument, key) {
   const said = words();
   const choice = ([chain, name]) => {
     const id = `chain ${chain}`.replaceAll(" ", "-");
-    return part("label", { class: "chain", for: id },
-      part("input", { type: "radio", name: "chain", id, value: chain, checked: typed.get(key) === chain, onchange: () => typed.set(key, chain) }),
-      drawing(chain), part("span", {}, name), part("code", {}, chain));
+    return part(
+      "label",
+      { class: "chain", for: id },
+      part("input", {
+        type: "radio",
+        name: "chain",
+        id,
+        value: chain,
+        checked: typed.get(key) === chain,
+        onchange: () => typed.set(key, chain),
+      }),
+      drawing(chain),
+      part("span", {}, name),
+      part("code", {}, chain),
+    );
   };
-  return part("fieldset", {}, part("legend", {}, said.chain, part("code", {}, " --chain")),
-    part("div", { class: "chains" }, ...Object.entries(said.chains).map(choice)));
+  return part(
+    "fieldset",
+    {},
+    part("legend", {}, said.chain, part("code", {}, " --chain")),
+    part("div", { class: "chains" }, ...Object.entries(said.chains).map(choice)),
+  );
 }
 
 function drawing(chain) {
@@ -279,13 +404,21 @@ function drawing(chain) {
     return made;
   };
   const names = chain.replace(/[[\]]/g, "").split(" ");
-  const drawn = shape("svg", { viewBox: `0 0 ${names.length * 30} 34`, width: names.length * 26, height: 30, "aria-hidden": "true" });
+  const drawn = shape("svg", {
+    viewBox: `0 0 ${names.length * 30} 34`,
+    width: names.length * 26,
+    height: 30,
+    "aria-hidden": "true",
+  });
   drawn.append(shape("path", { d: `M15 17H${names.length * 30 - 15}`, class: "axis" }));
   for (const [at, name] of names.entries()) {
     const x = at * 30 + 15;
     if (name === "t") drawn.append(shape("path", { d: `M${x - 8} 7h16l-8 22z`, class: "frame" }));
     else if ("ABC".includes(name)) drawn.append(shape("circle", { cx: x, cy: 17, r: 12, class: "frame" }));
-    else drawn.append(shape("rect", { x: x - 12, y: 5, width: 24, height: 24, class: name === "b" ? "frame bed" : "frame" }));
+    else
+      drawn.append(
+        shape("rect", { x: x - 12, y: 5, width: 24, height: 24, class: name === "b" ? "frame bed" : "frame" }),
+      );
     const letter = shape("text", { x, y: name === "t" ? 17 : 21, class: "c" });
     letter.textContent = { w: "▣", b: "▤", t: "" }[name] ?? name;
     drawn.append(letter);
@@ -294,7 +427,8 @@ function drawing(chain) {
 }
 
 function form() {
-  const said = words(), found = command();
+  const said = words(),
+    found = command();
   if (!found) return;
   const asked = asks(found);
   const isTop = (argument) => !argument.long || argument.required || job.top.includes(argument.long);
@@ -303,16 +437,48 @@ function form() {
     const heading = argument.heading ?? said.more;
     groups.set(heading, [...(groups.get(heading) ?? []), argument]);
   }
-  const kinds = job.id === "calibrate" ? described.get(language).command.commands.find((inner) => inner.name === "calibrate").commands : [];
-  const top = asked.filter(isTop).sort((a, b) => (a.long ? 1 + job.top.indexOf(a.long) : 0) - (b.long ? 1 + job.top.indexOf(b.long) : 0));
+  const kinds =
+    job.id === "calibrate"
+      ? described.get(language).command.commands.find((inner) => inner.name === "calibrate").commands
+      : [];
+  const top = asked
+    .filter(isTop)
+    .sort((a, b) => (a.long ? 1 + job.top.indexOf(a.long) : 0) - (b.long ? 1 + job.top.indexOf(b.long) : 0));
   by("form").replaceChildren(
     part("p", { class: "muted" }, found.about ?? ""),
-    ...(kinds.length ? [part("p", {}, part("label", { for: "instrument" }, described.get(language).command.commands.find((inner) => inner.name === "calibrate").about),
-      part("select", { id: "instrument", onchange: (event) => { typed.set("calibrate", event.target.value); form(); by("instrument").focus(); } },
-        ...kinds.map((kind) => part("option", { value: kind.name, selected: kind.name === found.name }, `${kind.name}: ${kind.about}`))))] : []),
+    ...(kinds.length
+      ? [
+          part(
+            "p",
+            {},
+            part(
+              "label",
+              { for: "instrument" },
+              described.get(language).command.commands.find((inner) => inner.name === "calibrate").about,
+            ),
+            part(
+              "select",
+              {
+                id: "instrument",
+                onchange: (event) => {
+                  typed.set("calibrate", event.target.value);
+                  form();
+                  by("instrument").focus();
+                },
+              },
+              ...kinds.map((kind) =>
+                part("option", { value: kind.name, selected: kind.name === found.name }, `${kind.name}: ${kind.about}`),
+              ),
+            ),
+          ),
+        ]
+      : []),
     ...top.map((argument) => field(argument, found)),
-    ...[...groups].map(([heading, some]) => part("details", {}, part("summary", {}, heading), ...some.map((argument) => field(argument, found)))),
-    part("p", {}, part("button", { type: "submit", id: "run", disabled: isBusy }, said.run)));
+    ...[...groups].map(([heading, some]) =>
+      part("details", {}, part("summary", {}, heading), ...some.map((argument) => field(argument, found))),
+    ),
+    part("p", {}, part("button", { type: "submit", id: "run", disabled: isBusy }, said.run)),
+  );
 }
 
 /** What stands in a field: what was typed, else the files that it can mean, where only one way is possible. */
@@ -333,13 +499,21 @@ function chosen(argument, found) {
 /** The call that the form means, or what is missing for it. */
 function call() {
   const found = command();
-  const options = [], places = [];
+  const options = [],
+    places = [];
   let first = "";
   for (const argument of asks(found)) {
     const { value, said } = chosen(argument, found);
     if (said) return { said };
-    const values = argument.many && argument.value ? value.split("\n").map((line) => line.trim()).filter(Boolean) : [value].filter(Boolean);
-    if (argument.long) options.push(...values.map((each) => (argument.value ? `--${argument.long}=${each}` : `--${argument.long}`)));
+    const values =
+      argument.many && argument.value
+        ? value
+            .split("\n")
+            .map((line) => line.trim())
+            .filter(Boolean)
+        : [value].filter(Boolean);
+    if (argument.long)
+      options.push(...values.map((each) => (argument.value ? `--${argument.long}=${each}` : `--${argument.long}`)));
     else places.push(...values);
     if (!argument.long && !first) first = values[0] ?? "";
   }
@@ -349,7 +523,12 @@ function call() {
   const outputs = Object.entries(job.made({ stem, ending }))
     .filter(([option]) => found.arguments.some((argument) => argument.long === option))
     .map(([option, path]) => [option, free(path, [...places, ...options.map((each) => each.replace(/^[^=]*=/, ""))])]);
-  return { args: [...found.path, ...places, ...options, ...outputs.map(([option, path]) => `--${option}=${path}`)], places, options, outputs };
+  return {
+    args: [...found.path, ...places, ...options, ...outputs.map(([option, path]) => `--${option}=${path}`)],
+    places,
+    options,
+    outputs,
+  };
 }
 
 /** A name for an output: what was made before is made anew, what was dropped or is read stays. */
@@ -388,7 +567,14 @@ async function submit(event) {
       status(words().checking);
       const stem = output.replace(/\.[^.]*$/, "");
       const shared = asked.options.filter((option) => reads("check", option));
-      const drawn = await run(["check", asked.places[0], output, ...shared, `--html=${stem}_check.html`, `--viewer=${stem}_path.html`]);
+      const drawn = await run([
+        "check",
+        asked.places[0],
+        output,
+        ...shared,
+        `--html=${stem}_check.html`,
+        `--viewer=${stem}_path.html`,
+      ]);
       keep(drawn);
       results.push(drawn);
     }
@@ -406,7 +592,10 @@ async function submit(event) {
 
 function reads(name, option) {
   const long = option.slice(2).split("=")[0];
-  return described.get(language).command.commands.find((inner) => inner.name === name).arguments.some((argument) => argument.long === long);
+  return described
+    .get(language)
+    .command.commands.find((inner) => inner.name === name)
+    .arguments.some((argument) => argument.long === long);
 }
 
 function keep(result) {
@@ -436,10 +625,15 @@ function advance(percent) {
 
 /** What is written in a result's summary, for people. */
 async function figures(path) {
-  const said = words(), summary = JSON.parse(await files.get(path).text());
-  const um = (value) => (typeof value === "number" ? `${value.toLocaleString(language, { maximumSignificantDigits: 3 })} ${said.um}` : said.unknown);
+  const said = words(),
+    summary = JSON.parse(await files.get(path).text());
+  const um = (value) =>
+    typeof value === "number"
+      ? `${value.toLocaleString(language, { maximumSignificantDigits: 3 })} ${said.um}`
+      : said.unknown;
   const rows = [
-    [said.before, um(summary.deviation_before_um)], [said.after, um(summary.deviation_after_um)],
+    [said.before, um(summary.deviation_before_um)],
+    [said.after, um(summary.deviation_after_um)],
     [said.corrections, um(summary.largest_correction_um?.value ?? summary.largest_correction_um)],
     [said.blocks, `${summary.blocks_in}, ${summary.blocks_out}`],
   ];
@@ -447,43 +641,85 @@ async function figures(path) {
 }
 
 async function found(asked, results) {
-  const said = words(), last = results[0];
+  const said = words(),
+    last = results[0];
   status(said[STATUS[last.status]] ?? `${said.crashed} (${last.status}).`, last.status === 0 ? "good" : "error");
   const shown = by("found");
   const summary = new Map(asked.outputs).get("summary");
   if (last.status === 0 && files.has(summary)) shown.append(await figures(summary));
-  for (const [wanted, path] of results.flatMap((result) => result.guessed)) shown.append(part("p", { class: "muted" }, said.guessed(wanted.replace(/^\/+/, ""), path)));
+  for (const [wanted, path] of results.flatMap((result) => result.guessed))
+    shown.append(part("p", { class: "muted" }, said.guessed(wanted.replace(/^\/+/, ""), path)));
   const messages = results.map((result) => result.messages).join("");
   const cards = questions(last.messages);
   if (last.status !== 0) shown.append(...cards);
   const outputs = results.flatMap((result) => result.outputs);
   if (outputs.length) {
-    shown.append(part("ul", { class: "made" }, ...outputs.map(({ path, blob }) => part("li", {},
-      part("code", {}, path), ` ${size(blob.size)} `, save(path, blob),
-      /\.html$/.test(path) ? part("button", { type: "button", onclick: (event) => look(path, event.target) }, said.open) : null))));
+    shown.append(
+      part(
+        "ul",
+        { class: "made" },
+        ...outputs.map(({ path, blob }) =>
+          part(
+            "li",
+            {},
+            part("code", {}, path),
+            ` ${size(blob.size)} `,
+            save(path, blob),
+            /\.html$/.test(path)
+              ? part("button", { type: "button", onclick: (event) => look(path, event.target) }, said.open)
+              : null,
+          ),
+        ),
+      ),
+    );
     if (outputs.length > 1) {
-      shown.append(part("button", { type: "button", onclick: async () => {
-        const archive = await ask({ kind: "zip", files: outputs });
-        download("vpost.zip", archive);
-      } }, said.all));
+      shown.append(
+        part(
+          "button",
+          {
+            type: "button",
+            onclick: async () => {
+              const archive = await ask({ kind: "zip", files: outputs });
+              download("vpost.zip", archive);
+            },
+          },
+          said.all,
+        ),
+      );
     }
   }
   const printed = await last.printed.slice(0, SHOWN).text();
   if (printed) shown.append(part("h3", {}, said.printed), part("pre", { tabindex: 0 }, printed));
   if (last.status === 0) shown.append(...cards);
-  if (!cards.length && messages) shown.append(part("h3", {}, said.messages), part("pre", { tabindex: 0 }, messages.slice(0, SHOWN)));
+  if (!cards.length && messages)
+    shown.append(part("h3", {}, said.messages), part("pre", { tabindex: 0 }, messages.slice(0, SHOWN)));
   if (messages) shown.append(part("p", {}, `${said.messages}: `, save("messages.txt", new Blob([messages]))));
   if (asked.options.length && !files.has(SETTINGS)) {
-    shown.append(part("p", {}, part("button", { type: "button", onclick: (event) => {
-      files.set(SETTINGS, new Blob([settings()]));
-      made.add(SETTINGS);
-      download(SETTINGS, files.get(SETTINGS));
-      event.target.disabled = true;
-      list();
-    } }, said.keep)));
+    shown.append(
+      part(
+        "p",
+        {},
+        part(
+          "button",
+          {
+            type: "button",
+            onclick: (event) => {
+              files.set(SETTINGS, new Blob([settings()]));
+              made.add(SETTINGS);
+              download(SETTINGS, files.get(SETTINGS));
+              event.target.disabled = true;
+              list();
+            },
+          },
+          said.keep,
+        ),
+      ),
+    );
   }
   const quoted = asked.args.map((word) => (/^[\w./=,:+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`));
-  shown.append(part("details", {}, part("summary", {}, said.copy), part("pre", { tabindex: 0 }, `vpost ${quoted.join(" ")}`)));
+  shown.append(
+    part("details", {}, part("summary", {}, said.copy), part("pre", { tabindex: 0 }, `vpost ${quoted.join(" ")}`)),
+  );
   list();
   const viewer = outputs.find(({ path }) => /_path\.html$|viewer\.html$/.test(path));
   if (viewer) look(viewer.path);
@@ -497,14 +733,29 @@ function download(name, blob) {
   setTimeout(() => URL.revokeObjectURL(link.href), 60000);
 }
 
-const save = (path, blob) => part("button", { type: "button", "aria-label": `${words().download}: ${path}`, onclick: () => download(path, blob) }, words().download);
+const save = (path, blob) =>
+  part(
+    "button",
+    { type: "button", "aria-label": `${words().download}: ${path}`, onclick: () => download(path, blob) },
+    words().download,
+  );
 
 /** A page of the command inside this one; it can run nothing but the viewer's own script, which the policy names. */
 async function look(path, from) {
   by("looked")?.remove();
   const text = await files.get(path).text();
   const frame = part("iframe", { sandbox: "allow-scripts", title: path, srcdoc: text });
-  const close = part("button", { type: "button", onclick: () => { by("looked").remove(); from?.focus(); } }, words().close);
+  const close = part(
+    "button",
+    {
+      type: "button",
+      onclick: () => {
+        by("looked").remove();
+        from?.focus();
+      },
+    },
+    words().close,
+  );
   by("found").append(part("div", { id: "looked" }, part("h3", {}, path, " ", close), frame));
   if (from) by("looked").scrollIntoView({ block: "start" });
 }
@@ -522,10 +773,14 @@ function questions(messages) {
     });
     // Source lines keep their columns, what to do is read as a sentence.
     const sentences = rest.filter((line) => /^[^\s\d]/.test(line));
-    return part("details", { class: "question", open: at === 0 }, part("summary", {}, title),
+    return part(
+      "details",
+      { class: "question", open: at === 0 },
+      part("summary", {}, title),
       part("pre", { tabindex: 0 }, rest.filter((line) => !sentences.includes(line)).join("\n")),
       ...sentences.map((line) => part("p", {}, line)),
-      answers.length ? part("p", { class: "row" }, `${said.answer}: `, ...answers) : null);
+      answers.length ? part("p", { class: "row" }, `${said.answer}: `, ...answers) : null,
+    );
   };
   return all.length ? [part("h3", {}, said.question), ...all.slice(0, CARDS).map(card)] : [];
 }
@@ -549,7 +804,8 @@ function answer(long, value) {
 /** The options of the form as settings that the command finds beside its program; those that it shares with the check
  * hold for all. */
 function settings() {
-  const found = command(), lines = { all: [], own: [] };
+  const found = command(),
+    lines = { all: [], own: [] };
   for (const argument of asks(found).filter((argument) => argument.long && typed.get(argument.long))) {
     const given = typed.get(argument.long);
     const value = !argument.value ? "true" : JSON.stringify(argument.many ? given.split("\n").filter(Boolean) : given);
@@ -563,17 +819,38 @@ function settings() {
 
 function jobs() {
   const said = words();
-  by("jobs").replaceChildren(...JOBS.map((each) => part("button", {
-    type: "button", "aria-pressed": String(each === job), onclick: () => { job = each; show(); },
-  }, said[each.id])));
+  by("jobs").replaceChildren(
+    ...JOBS.map((each) =>
+      part(
+        "button",
+        {
+          type: "button",
+          "aria-pressed": String(each === job),
+          onclick: () => {
+            job = each;
+            show();
+          },
+        },
+        said[each.id],
+      ),
+    ),
+  );
 }
 
 function show() {
   document.documentElement.lang = language;
   document.title = words().title;
   for (const each of document.querySelectorAll("[data-word]")) each.textContent = words()[each.dataset.word];
-  for (const [id, name] of [["english", "en"], ["russian", "ru"]]) by(id).setAttribute("aria-pressed", String(name === language));
-  by("pattern").replaceChildren(...["", ...Object.keys(PATTERNS)].map((name) => part("option", { value: name }, name ? words().patterns[name] : words().pattern)));
+  for (const [id, name] of [
+    ["english", "en"],
+    ["russian", "ru"],
+  ])
+    by(id).setAttribute("aria-pressed", String(name === language));
+  by("pattern").replaceChildren(
+    ...["", ...Object.keys(PATTERNS)].map((name) =>
+      part("option", { value: name }, name ? words().patterns[name] : words().pattern),
+    ),
+  );
   jobs();
   list();
   form();
@@ -588,13 +865,20 @@ async function speak(name) {
   }
   if (!dialects.length) {
     const { printed } = await run(["grammar", "list"]);
-    dialects = (await printed.text()).split("\n").map((line) => /^([a-z0-9_]+)\b/.exec(line)?.[1]).filter(Boolean);
+    dialects = (await printed.text())
+      .split("\n")
+      .map((line) => /^([a-z0-9_]+)\b/.exec(line)?.[1])
+      .filter(Boolean);
   }
   show();
 }
 
 function begin() {
-  if (typeof WebAssembly === "undefined" || typeof DecompressionStream === "undefined" || typeof Worker === "undefined") {
+  if (
+    typeof WebAssembly === "undefined" ||
+    typeof DecompressionStream === "undefined" ||
+    typeof Worker === "undefined"
+  ) {
     by("old").hidden = false;
     by("old").textContent = WORDS[language].old;
     return;
@@ -605,7 +889,10 @@ function begin() {
   by("cancel").addEventListener("click", stop);
   by("english").addEventListener("click", () => speak("en"));
   by("russian").addEventListener("click", () => speak("ru"));
-  for (const [button, input] of [["choose", "picked"], ["folder", "picked-folder"]]) {
+  for (const [button, input] of [
+    ["choose", "picked"],
+    ["folder", "picked-folder"],
+  ]) {
     by(button).addEventListener("click", () => by(input).click());
     by(input).addEventListener("change", async () => {
       await takeAll([...by(input).files]);
@@ -613,7 +900,8 @@ function begin() {
     });
   }
   by("example").addEventListener("click", () => {
-    for (const [path, text] of Object.entries(JSON.parse(by("example-files").textContent))) files.set(path, new Blob([text]));
+    for (const [path, text] of Object.entries(JSON.parse(by("example-files").textContent)))
+      files.set(path, new Blob([text]));
     show();
   });
   by("pattern").addEventListener("change", () => {

@@ -14,7 +14,8 @@ async function ran({ args, language, files }) {
   const disk = new Disk();
   for (const { path, blob } of files) disk.add(path, new Given(path, blob));
   const decoder = new TextDecoder();
-  let messages = "", line = "";
+  let messages = "",
+    line = "";
   const say = (text) => {
     const lines = (line + text).split("\n");
     line = lines.pop();
@@ -24,7 +25,9 @@ async function ran({ args, language, files }) {
       else messages += `${each}\n`;
     }
   };
-  const machine = new Machine(["vpost", ...args], [`LANG=${language}`], disk, (bytes) => say(decoder.decode(bytes, { stream: true })));
+  const machine = new Machine(["vpost", ...args], [`LANG=${language}`], disk, (bytes) =>
+    say(decoder.decode(bytes, { stream: true })),
+  );
   const status = machine.run(await compiled);
   messages += line;
   const outputs = [...disk.files()]
@@ -74,18 +77,32 @@ const CRC = Uint32Array.from({ length: 256 }, (_, k) => {
 
 /** A zip archive of files, stored as they are; its dates are the format's first day, so that it is the same each time. */
 async function zipped(files) {
-  const parts = [], list = [];
+  const parts = [],
+    list = [];
   let at = 0;
   for (const { path, blob } of files) {
     const name = new TextEncoder().encode(path);
     let crc = ~0;
     for (const byte of new Uint8Array(await blob.arrayBuffer())) crc = CRC[(crc ^ byte) & 255] ^ (crc >>> 8);
     const fields = (view, from) => {
-      for (const [offset, value] of [[0, 20], [2, 0x800], [4, 0], [6, 0], [8, 33]]) view.setUint16(from + offset, value, true);
-      for (const [offset, value] of [[10, ~crc], [14, blob.size], [18, blob.size]]) view.setUint32(from + offset, value >>> 0, true);
+      for (const [offset, value] of [
+        [0, 20],
+        [2, 0x800],
+        [4, 0],
+        [6, 0],
+        [8, 33],
+      ])
+        view.setUint16(from + offset, value, true);
+      for (const [offset, value] of [
+        [10, ~crc],
+        [14, blob.size],
+        [18, blob.size],
+      ])
+        view.setUint32(from + offset, value >>> 0, true);
       view.setUint16(from + 22, name.length, true);
     };
-    const head = new DataView(new ArrayBuffer(30)), row = new DataView(new ArrayBuffer(46));
+    const head = new DataView(new ArrayBuffer(30)),
+      row = new DataView(new ArrayBuffer(46));
     head.setUint32(0, 0x04034b50, true);
     fields(head, 4);
     row.setUint32(0, 0x02014b50, true);
@@ -96,7 +113,8 @@ async function zipped(files) {
     list.push(row.buffer, name);
     at += 30 + name.length + blob.size;
   }
-  const length = new Blob(list).size, end = new DataView(new ArrayBuffer(22));
+  const length = new Blob(list).size,
+    end = new DataView(new ArrayBuffer(22));
   end.setUint32(0, 0x06054b50, true);
   for (const offset of [8, 10]) end.setUint16(offset, files.length, true);
   end.setUint32(12, length, true);

@@ -211,6 +211,10 @@ pub struct Completions {
     pub shell: clap_complete::Shell,
 }
 
+/// `vpost lsp`
+#[derive(Debug, Args)]
+pub struct Lsp {}
+
 /// `vpost man`
 #[derive(Debug, Args)]
 pub struct Manual {

@@ -1,7 +1,7 @@
 //! `vpost part.nc` at a terminal and without a profile: what has to be known is asked, one question at a time.
 //!
-//! The questions are the refusals that the command has anyway, their answers the options that a refusal's help offers. What
-//! was answered is kept as settings beside the program where somebody wants that.
+//! The questions are the refusals that the command has anyway, their answers the options that a refusal's help offers.
+//! What was answered is kept as settings beside the program where somebody wants that.
 
 use std::ffi::OsString;
 use std::fmt::Write as _;
@@ -83,7 +83,7 @@ fn profile(questions: &Questions<'_>, known: &[PathBuf]) -> Option<String> {
     let list = listed(known.iter().map(|path| path.display()));
     let question = both!(
         "Which machine?{list}\nA number, the path of a profile, or nothing to end (`vpost profile new` makes one)",
-        "Какой станок?{list}\nНомер, путь к профилю или пусто, чтобы закончить (`vpost profile new` создаёт новый)"
+        "Какой станок?{list}\nНомер, путь к профилю или пусто: закончить (новый создаёт `vpost profile new`)"
     );
     let read = |text: &str| match (text, number(text, known)) {
         ("", _) => Ok(None),

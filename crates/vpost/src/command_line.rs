@@ -6,14 +6,13 @@ use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use diagnostic::Language;
 
-use crate::arguments::{Check, Completions, Correct, Grammar, Manual, Predict, Profile, Shared, Solve};
+use crate::arguments::{Check, Completions, Correct, Grammar, Lsp, Manual, Predict, Profile, Shared, Solve};
 use crate::batch::{Batch, Watch};
 use crate::budget::Budget;
 use crate::calibrate::Calibrate;
 use crate::config::{Config, Held, called};
 use crate::diagnose::{Diagnose, Form};
 use crate::explain::Explain;
-use crate::lsp::Lsp;
 use crate::map::Map;
 use crate::message::Failure;
 use crate::mistaken::{self, Asked};

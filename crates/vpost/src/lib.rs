@@ -21,7 +21,7 @@ mod grammar;
 mod growing;
 mod interrupt;
 pub mod language;
-pub mod lsp;
+mod lsp;
 pub mod manual;
 pub mod map;
 mod message;

@@ -11,12 +11,12 @@ use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
-use clap::Args;
 use diagnostic::{Language, Text};
 use editor::Editor;
 use jobs::options::JobOptions;
 use lsp_server::{ErrorCode, Message};
 
+use crate::arguments::Lsp;
 use crate::command_line::Arguments;
 use crate::message::{Deed, Failure};
 use crate::{config, language};
@@ -25,10 +25,6 @@ use crate::{config, language};
 const LARGEST: u64 = 64 << 20;
 /// So many messages wait, no more are read.
 const WAITING: usize = 256;
-
-/// `vpost lsp`
-#[derive(Debug, Args)]
-pub struct Lsp {}
 
 /// What came from the editor.
 enum Came {
