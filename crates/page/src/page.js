@@ -634,7 +634,8 @@ async function figures(path) {
   const rows = [
     [said.before, um(summary.deviation_before_um)],
     [said.after, um(summary.deviation_after_um)],
-    [said.corrections, um(summary.largest_correction_um?.value ?? summary.largest_correction_um)],
+    [said.control, um(summary.control_um)],
+    [said.corrections, um(summary.largest_correction_um)],
     [said.blocks, `${summary.blocks_in}, ${summary.blocks_out}`],
   ];
   return part("dl", {}, ...rows.flatMap(([name, value]) => [part("dt", {}, name), part("dd", {}, value)]));
@@ -643,7 +644,9 @@ async function figures(path) {
 async function found(asked, results) {
   const said = words(),
     last = results[0];
-  status(said[STATUS[last.status]] ?? `${said.crashed} (${last.status}).`, last.status === 0 ? "good" : "error");
+  const isWhole = results.every((result) => result.status === 0);
+  const ended = last.status === 0 && !isWhole ? said.unlike : said[STATUS[last.status]];
+  status(ended ?? `${said.crashed} (${last.status}).`, isWhole ? "good" : "error");
   const shown = by("found");
   const summary = new Map(asked.outputs).get("summary");
   if (last.status === 0 && files.has(summary)) shown.append(await figures(summary));
@@ -688,9 +691,14 @@ async function found(asked, results) {
       );
     }
   }
-  const printed = await last.printed.slice(0, SHOWN).text();
-  if (printed) shown.append(part("h3", {}, said.printed), part("pre", { tabindex: 0 }, printed));
+  for (const [at, result] of results.entries()) {
+    const printed = await result.printed.slice(0, SHOWN).text();
+    if (printed) shown.append(part("h3", {}, at ? said.check : said.printed), part("pre", { tabindex: 0 }, printed));
+  }
   if (last.status === 0) shown.append(...cards);
+  // What is said besides, of settings that were found: no message of a code.
+  const besides = last.messages.split(/^\S+\[VP\d{4}\]/m)[0].trim();
+  if (cards.length && besides) shown.append(part("p", { class: "muted" }, besides));
   if (!cards.length && messages)
     shown.append(part("h3", {}, said.messages), part("pre", { tabindex: 0 }, messages.slice(0, SHOWN)));
   if (messages) shown.append(part("p", {}, `${said.messages}: `, save("messages.txt", new Blob([messages]))));
