@@ -183,7 +183,7 @@ async function inPage(browser, program) {
   return browser.evaluate(`(async () => {
     const hash = async (blob) => [...new Uint8Array(await crypto.subtle.digest("SHA-256", await blob.arrayBuffer()))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
     const all = {};
-    for (const name of made) if (/_(corrected|summary)\\.[^.]*$/.test(name)) all[name] = await hash(files.get(name));
+    for (const name of made.keys()) if (/_(corrected|summary)\\.[^.]*$/.test(name)) all[name] = await hash(files.get(name));
     return { isDone: by("status").className === "good", all, ms: performance.now() - window.begun };
   })()`);
 }

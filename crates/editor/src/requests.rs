@@ -57,7 +57,6 @@ impl Editor {
                 kind: Some(CodeActionKind::QUICKFIX),
                 diagnostics: Some(vec![marked.squiggle.clone()]),
                 edit: Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }),
-                is_preferred: Some(true),
                 ..CodeAction::default()
             }))
         })

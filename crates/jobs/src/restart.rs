@@ -11,7 +11,7 @@ use crate::settings::Settings;
 pub struct Begun {
     /// Its bytes.
     pub text: Vec<u8>,
-    /// What the program had switched before and this one does not.
+    /// What the program had switched before and this one does not, and that it bears no mark of a correction.
     pub warning: Option<Report>,
 }
 
@@ -36,15 +36,26 @@ pub fn from_line(
     let Restarted { text: written, left_out } = rewrite::restart(&job, text, line, safe_mm)
         .map_err(|diagnostics| Failure::refused(name, text, diagnostics))?;
     let named = |(code, line): &(String, u64)| both!("{code} (line {line})", "{code} (строка {line})");
-    let warning = (!left_out.is_empty()).then(|| {
+    let mut said = Vec::new();
+    if rewrite::corrected_before(text).is_none() {
+        let message = both!(
+            "the program does not say that it was corrected",
+            "в программе не сказано, что она исправлена"
+        );
+        said.push(Diagnostic::doubt(NO_RESTART, message).help(both!(
+            "give the corrected program, as the control ran it; one in which nothing had to be changed says nothing",
+            "дайте исправленную программу, ту, что исполняла стойка; если менять было нечего, отметки в ней нет"
+        )));
+    }
+    if !left_out.is_empty() {
         let all = Text::join(&left_out.iter().map(named).collect::<Vec<_>>(), ", ");
         let message = both!("the program had said {all} before", "до этого программа говорила {all:#}");
-        let help = both!(
+        said.push(Diagnostic::doubt(NO_RESTART, message).help(both!(
             "where one of them still matters, do it by hand before the start",
             "если что-то из этого ещё нужно, сделайте это вручную до пуска"
-        );
-        let diagnostic = Diagnostic::doubt(NO_RESTART, message).help(help);
-        Report { source: Some(Source::whole(name, text)), diagnostics: vec![diagnostic] }
-    });
+        )));
+    }
+    let warning =
+        (!said.is_empty()).then(|| Report { source: Some(Source::whole(name, text)), diagnostics: said });
     Ok(Begun { text: written, warning })
 }

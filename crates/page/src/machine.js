@@ -14,6 +14,8 @@ const OK = 0,
 const DIRECTORY = 3,
   REGULAR = 4;
 const PIECE = 1 << 20;
+/** Files are read in windows of this size. */
+const WINDOW = 4 * PIECE;
 
 /** What the program ended with. */
 class Ended extends Error {
@@ -26,13 +28,24 @@ class Ended extends Error {
 /** A file that was given and can be read no longer: changed, moved, or its disk is gone. */
 class Unread extends Error {}
 
-/** A file that the person gave: read only, a window of it in memory. */
+/** What changes with the bytes of a piece. */
+function mark(bytes) {
+  let mark = bytes.length;
+  const words = new Uint32Array(bytes.buffer, 0, bytes.length >> 2);
+  for (const word of words) mark = Math.imul(mark ^ word, 0x9e3779b1) ^ (mark >>> 15);
+  for (const byte of bytes.subarray(words.length * 4)) mark = Math.imul(mark ^ byte, 0x9e3779b1);
+  return mark;
+}
+
+/** A file that the person gave: read only, a window of it in memory; the same from first to last, or it is refused. */
 class Given {
   constructor(path, blob) {
     this.path = path;
     this.blob = blob;
     this.from = 0;
     this.window = new Uint8Array(0);
+    /** Of each window that was read. */
+    this.marks = new Map();
   }
   get size() {
     return this.blob.size;
@@ -40,20 +53,36 @@ class Given {
   get modified() {
     return this.blob.lastModified ?? 0;
   }
+  /** The window that begins at a place. */
+  load(from) {
+    let bytes;
+    try {
+      bytes = new Uint8Array(new FileReaderSync().readAsArrayBuffer(this.blob.slice(from, from + WINDOW)));
+    } catch {
+      throw new Unread(this.path);
+    }
+    // Not every browser says that a file changed since it was chosen.
+    const found = mark(bytes);
+    if (bytes.length !== Math.min(WINDOW, this.size - from) || (this.marks.get(from) ?? found) !== found) {
+      throw new Unread(this.path);
+    }
+    this.marks.set(from, found);
+    return bytes;
+  }
   read(at, into) {
     if (at >= this.size) return 0;
-    if (at < this.from || at >= this.from + this.window.length) {
-      const piece = this.blob.slice(at, at + 4 * PIECE);
-      try {
-        this.window = new Uint8Array(new FileReaderSync().readAsArrayBuffer(piece));
-      } catch {
-        throw new Unread(this.path);
-      }
-      this.from = at;
+    const from = Math.floor(at / WINDOW) * WINDOW;
+    if (from !== this.from || this.window.length === 0) {
+      this.window = this.load(from);
+      this.from = from;
     }
-    const part = this.window.subarray(at - this.from, at - this.from + into.length);
+    const part = this.window.subarray(at - from, at - from + into.length);
     into.set(part);
     return part.length;
+  }
+  /** Reads once more what was read. */
+  reread() {
+    for (const from of this.marks.keys()) this.load(from);
   }
   write() {
     return null;
@@ -154,15 +183,16 @@ class Disk {
     if (name === undefined) return folder ?? this.root;
     return folder?.entries.get(name);
   }
-  /** Files are dropped without their folders: a table is taken by its name where only one has it. */
+  /** Files come without their folders: a table is taken by its name from those that came so. Settings are not, for they
+   * hold where they lie. */
   findGiven(path) {
     const found = this.find(path);
     if (found) return found;
     const name = path.split("/").at(-1);
-    const same = [...this.files()].filter(([place, file]) => file instanceof Given && place.split("/").at(-1) === name);
-    if (same.length !== 1) return undefined;
-    this.guessed.set(path, same[0][0]);
-    return same[0][1];
+    const bare = this.root.entries.get(name);
+    if (!(bare instanceof Given) || name === "vpost.toml") return undefined;
+    this.guessed.set(path, name);
+    return bare;
   }
   *files(folder = this.root, above = "") {
     for (const [name, entry] of folder.entries) {

@@ -90,8 +90,8 @@ let language = navigator.language.toLowerCase().startsWith("ru") ? "ru" : "en";
 let job = JOBS[0];
 /** @type {Map<string, Blob>} dropped and made, by path */
 const files = new Map();
-/** Those that a run made. */
-const made = new Set();
+/** Those that runs made, each with the job and the file that it was made of. */
+const made = new Map();
 /** What was typed, by option or by command and place: kept from job to job. */
 const typed = new Map();
 /** The command line as data, by language. */
@@ -149,28 +149,34 @@ function stop() {
   settle("reject", new Error("stopped"));
 }
 
-/** Runs the command on all files, in the page's language as a shell's locale gives it. */
-const run = (args, progress) =>
-  ask({ kind: "run", args, language, files: [...files].map(([path, blob]) => ({ path, blob })) }, progress);
+/** Runs the command on all files but some, in the page's language as a shell's locale gives it. */
+const run = (args, progress, without = []) => {
+  const given = [...files].filter(([path]) => !without.includes(path)).map(([path, blob]) => ({ path, blob }));
+  return ask({ kind: "run", args, language, files: given }, progress);
+};
 
 // Files
 
 function kindOf(path) {
   const ending = path.split(".").at(-1).toLowerCase();
-  if (ending === "toml") return path.split("/").at(-1) === SETTINGS ? "other" : "profile";
+  if (ending === "toml") return path.split("/").at(-1).toLowerCase() === SETTINGS ? "other" : "profile";
   if (["csv", "json", "xml", "rtl", "pos", "txt", "ini", "tbl", "var", "htm", "html", "pdf"].includes(ending)) {
     return ["csv", "txt", "rtl", "pos"].includes(ending) ? "measurement" : "other";
   }
   return "program";
 }
 
+/** Puts a file into the list; one that was there goes, which is said. */
+function put(path, blob) {
+  if (files.has(path)) tell(words().replaced(path));
+  files.set(path, blob);
+  made.delete(path);
+}
+
 async function take(path, blob) {
-  if (!/\.zip$/i.test(path)) {
-    files.set(path, blob);
-    return;
-  }
+  if (!/\.zip$/i.test(path)) return put(path, blob);
   try {
-    for (const inside of await ask({ kind: "unzip", blob })) files.set(inside.path, inside.blob);
+    for (const inside of await ask({ kind: "unzip", blob })) put(inside.path, inside.blob);
   } catch {
     tell(words().zip(path));
   }
@@ -204,9 +210,11 @@ async function dropped(transfer) {
   show();
 }
 
+/** Says something of files, a line each; nothing clears it. */
 function tell(text) {
-  by("list-said").hidden = !text;
-  by("list-said").textContent = text;
+  const said = by("list-said");
+  said.textContent = text && said.textContent ? `${said.textContent} ${text}` : text;
+  said.hidden = !text;
 }
 
 function size(bytes) {
@@ -224,6 +232,7 @@ function list() {
         "aria-label": `${said.remove}: ${path}`,
         onclick: () => {
           files.delete(path);
+          for (const [key, value] of typed) if (value === path) typed.delete(key);
           show();
           by("list").focus();
         },
@@ -279,6 +288,7 @@ function list() {
                 type: "button",
                 onclick: () => {
                   files.clear();
+                  typed.clear();
                   show();
                 },
               },
@@ -475,7 +485,12 @@ function form() {
       : []),
     ...top.map((argument) => field(argument, found)),
     ...[...groups].map(([heading, some]) =>
-      part("details", {}, part("summary", {}, heading), ...some.map((argument) => field(argument, found))),
+      part(
+        "details",
+        { open: some.some((argument) => typed.get(keyOf(argument, found))) },
+        part("summary", {}, heading),
+        ...some.map((argument) => field(argument, found)),
+      ),
     ),
     part("p", {}, part("button", { type: "submit", id: "run", disabled: isBusy }, said.run)),
   );
@@ -489,8 +504,12 @@ function chosen(argument, found) {
   if (given === undefined && kind && argument.many && !argument.long) return { value: fit.join("\n") };
   if (given || !kind || argument.many) return { value: given ?? "" };
   if (argument.long && (argument.long !== "machine" || job.isAlone)) return { value: "" };
-  const own = fit.filter((path) => !/_corrected\.[^.]*$/.test(path));
-  const able = argument.id === "output" && !argument.long ? fit.filter((path) => !own.includes(path)) : own;
+  // Settings that lie about may name the profile.
+  if (argument.long && fit.length !== 1 && [...files.keys()].some((path) => path.split("/").at(-1) === SETTINGS)) {
+    return { value: "" };
+  }
+  const isCorrected = (path) => /_corrected(_\d+)?(\.[^.]*)?$/.test(path);
+  const able = fit.filter((path) => isCorrected(path) === /^OUT/.test(argument.value));
   if (able.length === 1) return { value: able[0] };
   if (able.length > 1) return { said: words().several(words()[kind], able.length) };
   return argument.required || argument.long === "machine" ? { said: words().missing(words()[kind]) } : { value: "" };
@@ -514,34 +533,39 @@ function call() {
         : [value].filter(Boolean);
     if (argument.long)
       options.push(...values.map((each) => (argument.value ? `--${argument.long}=${each}` : `--${argument.long}`)));
-    else places.push(...values);
-    if (!argument.long && !first) first = values[0] ?? "";
+    else places.push(...values.map((each) => (each.startsWith("-") ? `./${each}` : each)));
+    // Of `runs.csv=EXX:um` the file.
+    if (!argument.long && !first) first = argument.many ? (values[0] ?? "").replace(/=.*$/, "") : (values[0] ?? "");
   }
-  const name = first.split("/").at(-1).replace(/=.*$/, "") || "machine";
-  const dot = name.lastIndexOf(".");
-  const [stem, ending] = dot > 0 ? [name.slice(0, dot), name.slice(dot)] : [name, ""];
+  const of = `${job.id} ${first}`;
+  const [stem, ending] = parted(first.split("/").at(-1) || "machine");
+  const read = [...places, ...options.map((each) => each.replace(/^[^=]*=/, ""))];
   const outputs = Object.entries(job.made({ stem, ending }))
     .filter(([option]) => found.arguments.some((argument) => argument.long === option))
-    .map(([option, path]) => [option, free(path, [...places, ...options.map((each) => each.replace(/^[^=]*=/, ""))])]);
+    .map(([option, path]) => [option, free(path, of, read)]);
   return {
     args: [...found.path, ...places, ...options, ...outputs.map(([option, path]) => `--${option}=${path}`)],
+    of,
+    job,
     places,
     options,
     outputs,
   };
 }
 
-/** A name for an output: what was made before is made anew, what was dropped or is read stays. */
-function free(path, read) {
-  const dot = path.lastIndexOf(".");
+/** A name for an output: what the same job made of the same file is made anew, all else stays. */
+function free(path, of, read) {
+  const [stem, ending] = parted(path);
   for (let number = 1; ; number++) {
-    const name = number === 1 ? path : `${path.slice(0, dot)}_${number}${path.slice(dot)}`;
-    if (!files.has(name)) return name;
-    if (made.has(name) && !read.includes(name)) {
-      files.delete(name);
-      return name;
-    }
+    const name = number === 1 ? path : `${stem}_${number}${ending}`;
+    if (!files.has(name) || (made.get(name) === of && !read.includes(name))) return name;
   }
+}
+
+/** A name and its ending. */
+function parted(name) {
+  const dot = name.lastIndexOf(".");
+  return dot > 0 ? [name.slice(0, dot), name.slice(dot)] : [name, ""];
 }
 
 // Results
@@ -559,24 +583,18 @@ async function submit(event) {
   status(words().running);
   busy(true);
   try {
-    const result = await run(job.id === "correct" ? [...asked.args, "--progress=linuxcnc"] : asked.args, advance);
+    const outputs = asked.outputs.map(([, path]) => path);
+    const isCorrection = asked.job.id === "correct";
+    const result = await run(isCorrection ? [...asked.args, "--progress=linuxcnc"] : asked.args, advance, outputs);
     const results = [result];
-    keep(result);
-    const output = new Map(asked.outputs).get("output");
-    if (job.id === "correct" && result.status === 0 && files.get(output)?.size <= DRAWN_BYTES) {
+    keep(result, asked.of);
+    if (isCorrection && result.status === 0 && files.get(outputs[0])?.size <= DRAWN_BYTES) {
       status(words().checking);
-      const stem = output.replace(/\.[^.]*$/, "");
-      const shared = asked.options.filter((option) => reads("check", option));
-      const drawn = await run([
-        "check",
-        asked.places[0],
-        output,
-        ...shared,
-        `--html=${stem}_check.html`,
-        `--viewer=${stem}_path.html`,
-      ]);
-      keep(drawn);
-      results.push(drawn);
+      // A comparison that was stopped takes nothing from the program.
+      await compared(asked, outputs[0]).then(
+        (drawn) => results.push(drawn),
+        () => {},
+      );
     }
     await found(asked, results);
   } catch (error) {
@@ -590,6 +608,18 @@ async function submit(event) {
   busy(false);
 }
 
+/** A corrected program against the posted one, as pages. */
+async function compared(asked, output) {
+  const [stem] = parted(output);
+  const shared = asked.options.filter((option) => reads("check", option));
+  const pages = [`${stem}_check.html`, `${stem}_path.html`].map((path) => free(path, asked.of, []));
+  const places = [asked.places[0], output.startsWith("-") ? `./${output}` : output];
+  const args = ["check", ...places, ...shared, `--html=${pages[0]}`, `--viewer=${pages[1]}`];
+  const drawn = await run(args, undefined, pages);
+  keep(drawn, asked.of);
+  return drawn;
+}
+
 function reads(name, option) {
   const long = option.slice(2).split("=")[0];
   return described
@@ -598,10 +628,11 @@ function reads(name, option) {
     .arguments.some((argument) => argument.long === long);
 }
 
-function keep(result) {
+/** Takes what a run made into the list. */
+function keep(result, of) {
   for (const { path, blob } of result.outputs) {
     files.set(path, blob);
-    made.add(path);
+    made.set(path, made.get(path) ?? of);
   }
 }
 
@@ -645,7 +676,8 @@ async function found(asked, results) {
   const said = words(),
     last = results[0];
   const isWhole = results.every((result) => result.status === 0);
-  const ended = last.status === 0 && !isWhole ? said.unlike : said[STATUS[last.status]];
+  const isUnlike = (last.status === 0 && !isWhole) || (asked.job.id === "check" && last.outputs.length > 0 && !isWhole);
+  const ended = isUnlike ? said.unlike : said[STATUS[last.status]];
   status(ended ?? `${said.crashed} (${last.status}).`, isWhole ? "good" : "error");
   const shown = by("found");
   const summary = new Map(asked.outputs).get("summary");
@@ -653,7 +685,7 @@ async function found(asked, results) {
   for (const [wanted, path] of results.flatMap((result) => result.guessed))
     shown.append(part("p", { class: "muted" }, said.guessed(wanted.replace(/^\/+/, ""), path)));
   const messages = results.map((result) => result.messages).join("");
-  const cards = questions(last.messages);
+  const cards = questions(last.messages, asked.job);
   if (last.status !== 0) shown.append(...cards);
   const outputs = results.flatMap((result) => result.outputs);
   if (outputs.length) {
@@ -713,7 +745,7 @@ async function found(asked, results) {
             type: "button",
             onclick: (event) => {
               files.set(SETTINGS, new Blob([settings()]));
-              made.add(SETTINGS);
+              made.set(SETTINGS, "");
               download(SETTINGS, files.get(SETTINGS));
               event.target.disabled = true;
               list();
@@ -769,7 +801,7 @@ async function look(path, from) {
 }
 
 /** Messages as questions, the first one open: each option that its text offers is one click away. */
-function questions(messages) {
+function questions(messages, of) {
   const said = words();
   const all = messages.split(/\n(?=\S+\[VP\d{4}\])/).filter((text) => /^\S+\[VP\d{4}\]/.test(text));
   const card = (text, at) => {
@@ -777,7 +809,7 @@ function questions(messages) {
     const offers = [...new Set([...text.matchAll(/`(--[a-z-]+(?:[ =][^`]*)?)`/g)].map(([, offer]) => offer))];
     const answers = offers.map((offer) => {
       const [, long, value] = /^--([a-z-]+)[ =]?(.*)$/s.exec(offer);
-      return part("button", { type: "button", onclick: () => answer(long, value) }, offer);
+      return part("button", { type: "button", onclick: () => answer(of, long, value) }, offer);
     });
     // Source lines keep their columns, what to do is read as a sentence.
     const sentences = rest.filter((line) => /^[^\s\d]/.test(line));
@@ -793,34 +825,36 @@ function questions(messages) {
   return all.length ? [part("h3", {}, said.question), ...all.slice(0, CARDS).map(card)] : [];
 }
 
-function answer(long, value) {
+/** Puts an answer into the form of the job that asked, and runs it; what only the person can say is left to them. */
+function answer(of, long, offered) {
+  job = of;
   const argument = command().arguments.find((argument) => argument.long === long);
   if (!argument) return;
-  // What stands there in capitals or as dots is for the person to say.
-  const open = (!value && argument.value) || /…|(^|[=,])[A-Z]+(?=$|,)/.test(value);
+  // Quotes are the shell's, numbers those of an example.
+  const value = offered.replace(/^(["'])(.*)\1$/, "$2").replace(/(^|[=,])-?\d[\d.]*/g, "$1…");
+  const isOpen = (!value && argument.value) || /…|[\s[]|(^|[=,])[A-Z]+(?=$|,)/.test(value);
   const kept = typed.get(long);
   typed.set(long, argument.value ? (argument.many && kept ? `${kept}\n${value}` : value) : "yes");
-  form();
+  show();
   const input = by(`field-${long}`);
   input?.closest("details")?.setAttribute("open", "");
-  if (open) {
+  if (isOpen) {
     input?.focus();
     input?.scrollIntoView({ block: "center" });
   } else submit();
 }
 
-/** The options of the form as settings that the command finds beside its program; those that it shares with the check
- * hold for all. */
+/** The options of the form that hold for a check as well, as settings that the command finds beside its program. */
 function settings() {
-  const found = command(),
-    lines = { all: [], own: [] };
-  for (const argument of asks(found).filter((argument) => argument.long && typed.get(argument.long))) {
-    const given = typed.get(argument.long);
-    const value = !argument.value ? "true" : JSON.stringify(argument.many ? given.split("\n").filter(Boolean) : given);
-    const isShared = ["correct", "check"].every((name) => reads(name, `--${argument.long}`));
-    lines[isShared ? "all" : "own"].push(`${argument.long} = ${value}\n`);
-  }
-  return [...lines.all, ...(lines.own.length ? [`[${found.path.join(".")}]\n`, ...lines.own] : [])].join("");
+  const isShared = ({ long }) => long && ["correct", "check"].every((name) => reads(name, `--${long}`));
+  const found = command();
+  const line = (argument) => {
+    const given = typed.get(argument.long) || (argument.long === "machine" ? chosen(argument, found).value : "");
+    if (!given) return "";
+    const value = argument.many ? given.split("\n").filter(Boolean) : given;
+    return `${argument.long} = ${argument.value ? JSON.stringify(value) : "true"}\n`;
+  };
+  return asks(found).filter(isShared).map(line).join("");
 }
 
 // All together

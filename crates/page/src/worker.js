@@ -30,13 +30,23 @@ async function ran({ args, language, files }) {
   );
   const status = machine.run(await compiled);
   messages += line;
+  for (const [, file] of disk.files()) if (file instanceof Given) file.reread();
   const outputs = [...disk.files()]
     .filter(([path, file]) => file instanceof Grown && !path.split("/").at(-1).startsWith(".vpost-"))
     .map(([path, file]) => ({ path, blob: file.blob() }));
   return { status, messages, printed: machine.out.blob(), outputs, guessed: [...disk.guessed] };
 }
 
-/** The files of a zip archive. */
+/** A name of an archive: Linux and new programs write UTF-8, Russian Windows as DOS did, and not all say which. */
+function named(bytes) {
+  try {
+    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+  } catch {
+    return new TextDecoder("ibm866").decode(bytes);
+  }
+}
+
+/** The files of a zip archive, each as its checksum says. */
 async function unzipped(archive) {
   const ends = async (from, to) => new DataView(await archive.slice(from, to).arrayBuffer());
   const tail = Math.min(archive.size, 65557);
@@ -52,18 +62,19 @@ async function unzipped(archive) {
   for (let k = 0; k < count; k++) {
     const [method, packed] = [list.getUint16(row + 10, true), list.getUint32(row + 20, true)];
     const lengths = [28, 30, 32].map((offset) => list.getUint16(row + offset, true));
-    const isUtf8 = (list.getUint16(row + 8, true) & 0x800) !== 0;
+    const isLocked = (list.getUint16(row + 8, true) & 1) !== 0;
     const name = new Uint8Array(list.buffer, list.byteOffset + row + 46, lengths[0]);
-    // Archives of Russian Windows write names as DOS did.
-    const path = new TextDecoder(isUtf8 ? "utf-8" : "ibm866").decode(name).replaceAll("\\", "/");
+    const path = named(name).replaceAll("\\", "/");
     const head = list.getUint32(row + 42, true);
     const own = await ends(head, head + 30);
     const start = head + 30 + own.getUint16(26, true) + own.getUint16(28, true);
     const body = archive.slice(start, start + packed);
     if (!path.endsWith("/")) {
-      if (method !== 0 && method !== 8) throw new Error("zip");
+      if (isLocked || (method !== 0 && method !== 8)) throw new Error("zip");
       const stream = body.stream().pipeThrough(new DecompressionStream("deflate-raw"));
-      files.push({ path, blob: method === 0 ? body : await new Response(stream).blob() });
+      const blob = method === 0 ? body : await new Response(stream).blob();
+      if (crc(new Uint8Array(await blob.arrayBuffer())) !== list.getUint32(row + 16, true)) throw new Error("zip");
+      files.push({ path, blob });
     }
     row += 46 + lengths[0] + lengths[1] + lengths[2];
   }
@@ -75,6 +86,12 @@ const CRC = Uint32Array.from({ length: 256 }, (_, k) => {
   return k;
 });
 
+function crc(bytes) {
+  let crc = ~0;
+  for (const byte of bytes) crc = CRC[(crc ^ byte) & 255] ^ (crc >>> 8);
+  return ~crc >>> 0;
+}
+
 /** A zip archive of files, stored as they are; its dates are the format's first day, so that it is the same each time. */
 async function zipped(files) {
   const parts = [],
@@ -82,8 +99,7 @@ async function zipped(files) {
   let at = 0;
   for (const { path, blob } of files) {
     const name = new TextEncoder().encode(path);
-    let crc = ~0;
-    for (const byte of new Uint8Array(await blob.arrayBuffer())) crc = CRC[(crc ^ byte) & 255] ^ (crc >>> 8);
+    const sum = crc(new Uint8Array(await blob.arrayBuffer()));
     const fields = (view, from) => {
       for (const [offset, value] of [
         [0, 20],
@@ -94,7 +110,7 @@ async function zipped(files) {
       ])
         view.setUint16(from + offset, value, true);
       for (const [offset, value] of [
-        [10, ~crc],
+        [10, sum],
         [14, blob.size],
         [18, blob.size],
       ])

@@ -9,10 +9,15 @@ use std::path::{Path, PathBuf};
 
 use diagnostic::{Text, both};
 
-use crate::command_line::{Arguments, Command};
+use crate::command_line::{Arguments, Command, command};
 use crate::file;
 use crate::message::{Failure, Messages};
 use crate::questions::Questions;
+
+/// Answers that are paths.
+const PATHS: [&str; 4] = ["--machine", "--tool-table", "--linuxcnc-ini", "--include"];
+/// Answers that hold for one call alone.
+const ONCE: &str = "--force";
 
 /// What was answered so far, as options of the command line.
 pub(crate) type Answers = Vec<String>;
@@ -64,7 +69,19 @@ pub(crate) fn keep(answers: &Answers, arguments: &Arguments, messages: &Messages
         _ => Err(Text::pair("y or n", "д или н")),
     });
     // Who says nothing keeps nothing; the program is corrected all the same.
-    if wants.unwrap_or(false) { file::write(&place, kept(answers).as_bytes()) } else { Ok(()) }
+    if !wants.unwrap_or(false) {
+        return Ok(());
+    }
+    // Paths of settings count from their file.
+    let is_here = file::folder_of(program) == Path::new(".");
+    let placed = |answer: &String| match answer.split_once('=') {
+        Some((name, path)) if !is_here && PATHS.contains(&name) => {
+            let path = std::path::absolute(path).unwrap_or_else(|_| PathBuf::from(path));
+            format!("{name}={}", path.display())
+        }
+        _ => answer.clone(),
+    };
+    file::write(&place, kept(&answers.iter().map(placed).collect()).as_bytes())
 }
 
 /// The program of a call that corrects one.
@@ -88,7 +105,7 @@ fn profile(questions: &Questions<'_>, known: &[PathBuf]) -> Option<String> {
     let read = |text: &str| match (text, number(text, known)) {
         ("", _) => Ok(None),
         (_, Some(path)) => Ok(Some(path.clone())),
-        (path, None) if Path::new(path).is_file() => Ok(Some(PathBuf::from(path))),
+        (path, None) if Path::new(unquoted(path)).is_file() => Ok(Some(PathBuf::from(unquoted(path)))),
         (path, None) => Err(both!("{path}: there is no such file", "{path}: такого файла нет")),
     };
     let path = questions.ask(&question, read).ok().flatten()?;
@@ -109,13 +126,52 @@ fn option(questions: &Questions<'_>, offers: &[String]) -> Option<String> {
         (typed, None) => Err(both!("{typed}: no option begins so", "{typed}: ключ так не начинается")),
     };
     let chosen = questions.ask(&question, read).ok().flatten()?;
+    let is_offered = offers.contains(&chosen);
     let (name, value) = chosen.split_once([' ', '=']).unwrap_or((&chosen, ""));
-    if !is_open(value) {
-        return Some(if value.is_empty() { name.to_owned() } else { format!("{name}={value}") });
+    let value = unquoted(value);
+    if value.is_empty() && !takes_value(name) {
+        return Some(name.to_owned());
+    }
+    // Who typed it meant it; of what is offered, numbers are an example's.
+    let value = if is_offered { blank(value) } else { value.to_owned() };
+    if !value.is_empty() && !is_open(&value) {
+        return Some(format!("{name}={value}"));
     }
     let question = both!("{name}: what stands for {value}?", "{name}: что вместо {value}?");
     let value = questions.ask(&question, |text| Ok(text.to_owned())).ok().filter(|text| !text.is_empty())?;
     Some(format!("{name}={value}"))
+}
+
+/// The option of a correction has a value.
+fn takes_value(name: &str) -> bool {
+    let root = command();
+    let correct = root.find_subcommand("correct");
+    let long = name.trim_start_matches('-');
+    let option = correct
+        .into_iter()
+        .flat_map(clap::Command::get_arguments)
+        .find(|known| known.get_long() == Some(long));
+    option.is_some_and(|option| option.get_action().takes_values())
+}
+
+/// A word without the shell's quotes.
+fn unquoted(word: &str) -> &str {
+    let inner = |quote| word.strip_prefix(quote)?.strip_suffix(quote);
+    inner('"').or_else(|| inner('\'')).unwrap_or(word)
+}
+
+/// A value of an example without its numbers: `H7=120` is `H7=…`.
+fn blank(value: &str) -> String {
+    let without =
+        |part: &str| match part.trim_start_matches('-').starts_with(|letter: char| letter.is_ascii_digit()) {
+            true => "…".to_owned(),
+            false => part.to_owned(),
+        };
+    let parts = value.split(',').map(|part| match part.split_once('=') {
+        Some((name, number)) => format!("{name}={}", without(number)),
+        None => without(part),
+    });
+    parts.collect::<Vec<_>>().join(",")
 }
 
 /// A value in which somebody has yet to say something: `G54=X,Y,Z`, `B=…`.
@@ -173,7 +229,7 @@ fn is_profile(path: &Path) -> bool {
 /// Answers as a settings file has them; what was answered more than once is a list.
 fn kept(answers: &Answers) -> String {
     let mut keys: Vec<(&str, Vec<&str>)> = Vec::new();
-    for answer in answers {
+    for answer in answers.iter().filter(|answer| *answer != ONCE) {
         let (name, value) = answer.trim_start_matches('-').split_once('=').unwrap_or((answer, ""));
         match keys.iter_mut().find(|(key, _)| *key == name) {
             Some((_, values)) => values.push(value),
@@ -217,6 +273,23 @@ mod tests {
         for value in ["", "exact", "G54=1,2,3", "B=0,C=0", "touched"] {
             assert!(!is_open(value), "{value}");
         }
+    }
+
+    #[test]
+    fn an_example_s_numbers_are_nobody_s_answer() {
+        for (offered, left) in [
+            ("H7=120", "H7=…"),
+            ("Z=300,A=0", "Z=…,A=…"),
+            ("temp_c=24", "temp_c=…"),
+            ("-5.5", "…"),
+            ("X,Y,Z", "X,Y,Z"),
+            ("millimetres", "millimetres"),
+        ] {
+            assert_eq!(blank(offered), left);
+            assert_eq!(is_open(left), left != "millimetres");
+        }
+        assert_eq!(unquoted("\"#<depth>=12.5\""), "#<depth>=12.5");
+        assert!(takes_value("--dialect") && !takes_value("--strict"));
     }
 
     #[test]
