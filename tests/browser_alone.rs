@@ -361,3 +361,76 @@ fn a_question_is_answered_by_a_click() {
     browser.was_quiet();
     browser.end();
 }
+
+/// Found by an outside hand: what was made before stays, and what another folder has is nobody's.
+#[test]
+fn a_page_takes_and_loses_nothing_by_its_name_alone() {
+    let Some(mut browser) = opened() else { return };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        std::fs::write(&path, text).expect("writable");
+        path
+    };
+    let text = "G21 G90 G17 G54 G61\nG0 X10 Y10 Z50\nG1 Z30 F300\nG1 X60 Y50\nM2\n";
+    let mut given = with_tables(&root(), STAN);
+    given.push(write("p.ngc", text));
+    run_in(&mut browser, "correct", &given, &[("dialect", "linuxcnc"), ("zero", "true")]);
+    let first = held(&mut browser, "p_corrected.ngc");
+    let again = |browser: &mut Browser, option: &str, value: &str| {
+        browser.evaluate(&format!("(typed.set({option:?}, {value:?}), show(), 0)"));
+        browser.evaluate("(by('status').textContent = '', by('run').click(), 0)");
+        browser.wait("by('cancel').hidden && by('status').textContent");
+    };
+    // A refusal leaves what was there.
+    again(&mut browser, "work-offset", "G54=9000,9000,9000");
+    assert_eq!(browser.evaluate("by('status').className"), "error");
+    assert!(held(&mut browser, "p_corrected.ngc") == first);
+    // A program of the same name and another ending has a summary of its own.
+    let other = write("p.nc", text);
+    browser.choose("#picked", &[&other]);
+    browser.wait("files.has('p.nc')");
+    browser.evaluate("(typed.delete('work-offset'), typed.set('correct input', 'p.nc'), 0)");
+    again(&mut browser, "zero", "true");
+    let summary = String::from_utf8(held(&mut browser, "p_summary_2.json")).expect("text");
+    assert!(summary.contains("\"p.nc\""), "{summary}");
+    // The same file anew is said.
+    browser.choose("#picked", &[&other]);
+    browser.wait("!by('list-said').hidden");
+    let said = browser.evaluate("by('list-said').textContent");
+    assert!(said.as_str().is_some_and(|said| said.starts_with("p.nc was there already")), "{said}");
+    // Tables and settings of a folder are not another's.
+    let profile = std::fs::read_to_string(root().join(STAN)).expect("a profile");
+    let in_page = format!(
+        "(files.clear(), typed.clear(), files.set('A/mill.toml', new Blob([{profile:?}])), \
+         files.set('B/stan_s500/interferometer_x.csv', new Blob(['position_mm,EXX_um\\n0,0\\n'])), \
+         files.set('B/vpost.toml', new Blob(['work-offset = \"G54=1,2,3\"'])), \
+         files.set('A/part.ngc', new Blob([{text:?}])), job = JOBS[0], typed.set('machine', 'A/mill.toml'), 0)"
+    );
+    browser.evaluate(&in_page);
+    again(&mut browser, "dialect", "linuxcnc");
+    let found = browser.evaluate("by('found').textContent");
+    let found = found.as_str().expect("a text");
+    assert!(found.contains("cannot read the table stan_s500/interferometer_x.csv"), "{found}");
+    assert!(!found.contains("was taken from"), "{found}");
+    browser.was_quiet();
+    browser.end();
+}
+
+/// An example's number is nobody's answer: the field waits for a person.
+#[test]
+fn a_number_of_an_example_is_left_to_be_said() {
+    let Some(mut browser) = opened() else { return };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let program = folder.path().join("part.ngc");
+    std::fs::write(&program, "G21 G90 G17 G54\nG43 H7\nG0 X10 Y10 Z50\nG1 Z30 F300\nM2\n").expect("writable");
+    let mut given = with_tables(&root(), STAN);
+    given.push(program);
+    run_in(&mut browser, "correct", &given, &[("dialect", "linuxcnc")]);
+    let buttons = "[...document.querySelectorAll('.question button')]";
+    browser.evaluate(&format!("({buttons}.find(one => one.textContent.startsWith('--tool H7')).click(), 0)"));
+    assert_eq!(browser.evaluate("document.activeElement.id"), "field-tool");
+    assert_eq!(browser.evaluate("document.activeElement.value"), "H7=…");
+    browser.end();
+}
