@@ -675,17 +675,18 @@ async function figures(path) {
 async function found(asked, results) {
   const said = words(),
     last = results[0];
-  const isWhole = results.every((result) => result.status === 0);
-  const isUnlike = (last.status === 0 && !isWhole) || (asked.job.id === "check" && last.outputs.length > 0 && !isWhole);
+  // A program that feeds nowhere has nothing to be drawn, which takes nothing from it.
+  const unlike = results.find((result, at) => result.status === 1 && (at > 0 || result.outputs.length > 0));
+  const isUnlike = last.status !== 2 && unlike !== undefined;
   const ended = isUnlike ? said.unlike : said[STATUS[last.status]];
-  status(ended ?? `${said.crashed} (${last.status}).`, isWhole ? "good" : "error");
+  status(ended ?? `${said.crashed} (${last.status}).`, last.status === 0 && !isUnlike ? "good" : "error");
   const shown = by("found");
   const summary = new Map(asked.outputs).get("summary");
   if (last.status === 0 && files.has(summary)) shown.append(await figures(summary));
   for (const [wanted, path] of results.flatMap((result) => result.guessed))
     shown.append(part("p", { class: "muted" }, said.guessed(wanted.replace(/^\/+/, ""), path)));
   const messages = results.map((result) => result.messages).join("");
-  const cards = questions(last.messages, asked.job);
+  const cards = questions((unlike ?? last).messages, asked.job);
   if (last.status !== 0) shown.append(...cards);
   const outputs = results.flatMap((result) => result.outputs);
   if (outputs.length) {
