@@ -13,8 +13,6 @@ const TARGET: &str = "wasm32-wasip1";
 /// A program, and the profile of its machine with the tables that this names: for whoever has no file yet.
 const PROGRAM: &str = "samples/plate_linuxcnc.nc";
 const PROFILE: &str = "machine-profiles/stan_s500.toml";
-/// The profile of what is given away.
-pub(crate) const RELEASED: &str = "dist";
 /// A wrong program may call itself as deep as the reader lets it.
 const STACK: [&str; 2] = ["-C", "link-arg=-zstack-size=8388608"];
 
@@ -24,34 +22,20 @@ pub(crate) struct Options {
     /// The page.
     #[arg(long, default_value = "target/page/vpost.html")]
     output: PathBuf,
-    /// Cargo's profile: `dev` is compiled sooner and computes slower, for tests.
-    #[arg(long, default_value = RELEASED)]
-    profile: String,
 }
 
 /// Makes the page, and says how large it is.
 pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
-    write(&options.output, &options.profile)
+    write(&options.output)
 }
 
 /// Builds the command for a browser, and puts the page together.
-/// * `profile` – cargo's, of the command
-pub(crate) fn write(output: &Path, profile: &str) -> anyhow::Result<String> {
+pub(crate) fn write(output: &Path) -> anyhow::Result<String> {
     let root = dist::root()?;
     let mut flags = dist::pathless(&root)?;
     flags.extend(STACK.map(str::to_owned));
     let built = Command::new("cargo")
-        .args([
-            "build",
-            "--locked",
-            "--quiet",
-            "--profile",
-            profile,
-            "--package",
-            "vpost",
-            "--target",
-            TARGET,
-        ])
+        .args(["build", "--locked", "--quiet", "--profile", "dist", "--package", "vpost", "--target", TARGET])
         .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\u{1f}"))
         .status()
         .context("cargo does not start")?;
@@ -60,9 +44,7 @@ pub(crate) fn write(output: &Path, profile: &str) -> anyhow::Result<String> {
         "the command cannot be built for {TARGET}: `rustup target add {TARGET}` brings what the compiler lacks"
     );
     let folder = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
-    // Cargo's folder of its profile `dev` has another name.
-    let built = folder.join(TARGET).join(if profile == "dev" { "debug" } else { profile });
-    let module = built.join("vpost.wasm");
+    let module = folder.join(TARGET).join("dist/vpost.wasm");
     let module = std::fs::read(&module).with_context(|| format!("{}: unreadable", module.display()))?;
     let page = page::assembled(&module, &example()?)?;
     if let Some(folder) = output.parent() {

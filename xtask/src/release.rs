@@ -21,7 +21,7 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
     let packed = dist::Options::of_this_version(&options.folder);
     dist::run(&packed)?;
     let folder = options.folder.canonicalize()?;
-    page::write(&folder.join("vpost.html"), page::RELEASED)?;
+    page::write(&folder.join("vpost.html"))?;
     dist::run_to_end(
         Command::new("maturin")
             .args(["build", "--quiet", "--release", "--locked", "--out"])
