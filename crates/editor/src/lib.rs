@@ -232,7 +232,7 @@ impl Editor {
                 self.language = self.asked.or(language).unwrap_or(self.language);
                 Vec::new()
             }
-            Err(failure) => self.said(failure),
+            Err(failure) => self.said(&failure),
         }
     }
 
@@ -261,9 +261,8 @@ impl Editor {
         capabilities::capabilities()
     }
 
-    fn said(&self, failure: Failure) -> Vec<Message> {
-        let all = messages::reports(failure);
-        all.iter().flat_map(|report| &report.diagnostics).map(|one| self.shown(one)).collect()
+    fn said(&self, failure: &Failure) -> Vec<Message> {
+        failure.reports().iter().flat_map(|report| &report.diagnostics).map(|one| self.shown(one)).collect()
     }
 
     fn shown(&self, one: &Diagnostic) -> Message {

@@ -41,7 +41,7 @@ pub(crate) fn check(
     }
     let machine = match machine {
         Ok(machine) => machine,
-        Err(failure) => return Some(reports(failure)),
+        Err(failure) => return Some(failure.reports().to_vec()),
     };
     let manner = Manner { force: false, threads: 1, hashes: false };
     let goes_on = |_| if stop() { Err(Failure::Interrupted(0)) } else { Ok(()) };
@@ -49,18 +49,9 @@ pub(crate) fn check(
     let said = match correct::text(document.text().as_bytes(), place.name(), settings, manner, goes_on) {
         Ok((_, program)) => program.warnings,
         Err(Failure::Interrupted(_)) => return None,
-        Err(failure) => reports(failure),
+        Err(failure) => failure.reports().to_vec(),
     };
     Some(settings.warnings.iter().cloned().chain(said).collect())
-}
-
-/// What a failure says.
-pub(crate) fn reports(failure: Failure) -> Vec<Report> {
-    match failure {
-        Failure::Refused(reports) | Failure::Usage(reports) => reports,
-        Failure::File(report) | Failure::Later(report) => vec![report],
-        Failure::Check | Failure::Interrupted(_) | Failure::Said(_) => Vec::new(),
-    }
 }
 
 /// Reports as an editor shows them: what another file says stands in the first line, and leads there.

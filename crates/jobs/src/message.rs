@@ -115,6 +115,16 @@ pub const FILE: Code = Code(1);
 pub const OPTION: Code = Code(2);
 
 impl Failure {
+    /// What it says.
+    #[must_use]
+    pub fn reports(&self) -> &[Report] {
+        match self {
+            Self::Refused(reports) | Self::Usage(reports) => reports,
+            Self::File(report) | Self::Later(report) => std::slice::from_ref(report),
+            Self::Check | Self::Interrupted(_) | Self::Said(_) => &[],
+        }
+    }
+
     /// One diagnostic about a text.
     #[must_use]
     pub fn refused(name: &str, bytes: &[u8], diagnostics: Vec<Diagnostic>) -> Self {
@@ -286,14 +296,13 @@ impl Wording {
     #[must_use]
     pub fn text(&self, failure: &Failure) -> String {
         match failure {
-            Failure::Refused(reports) | Failure::Usage(reports) => {
-                reports.iter().flat_map(|report| self.rendered(report)).collect::<Vec<_>>().join("\n")
-            }
-            Failure::File(report) | Failure::Later(report) => {
-                self.rendered(report).collect::<Vec<_>>().join("\n")
-            }
             Failure::Interrupted(_) => INTERRUPTED.in_language(self.language).to_owned(),
-            Failure::Check | Failure::Said(_) => String::new(),
+            failure => failure
+                .reports()
+                .iter()
+                .flat_map(|report| self.rendered(report))
+                .collect::<Vec<_>>()
+                .join("\n"),
         }
     }
 

@@ -51,12 +51,10 @@ fn one(diagnostic: &Diagnostic, source: Option<&Source>, text: String) -> Told {
 /// A failure as an exception: `vpost.Refused`, or what Python itself raised meanwhile.
 pub(crate) fn raised(py: Python<'_>, failure: &Failure) -> PyErr {
     let text = Wording::plain().text(failure);
-    let messages = match failure {
-        Failure::Refused(reports) | Failure::Usage(reports) => told(reports),
-        Failure::File(report) | Failure::Later(report) => told(std::slice::from_ref(report)),
-        Failure::Interrupted(_) => return pyo3::exceptions::PyKeyboardInterrupt::new_err(text),
-        Failure::Check | Failure::Said(_) => Vec::new(),
-    };
+    if matches!(failure, Failure::Interrupted(_)) {
+        return pyo3::exceptions::PyKeyboardInterrupt::new_err(text);
+    }
+    let messages = told(failure.reports());
     let exception = py
         .import("vpost._messages")
         .and_then(|module| module.getattr("Refused"))
