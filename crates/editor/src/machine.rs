@@ -1,5 +1,6 @@
 //! The machine that a program is for: profile, dialect and options, read once.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use diagnostic::{Language, Text, both, of_toml};
@@ -33,12 +34,14 @@ impl Machine {
 pub(crate) struct Machines {
     find: Find,
     told: JobOptions,
+    /// What was found for each program.
+    found: BTreeMap<PathBuf, JobOptions>,
     known: Vec<(JobOptions, Machine)>,
 }
 
 impl Machines {
     pub(crate) const fn new(find: Find, told: JobOptions) -> Self {
-        Self { find, told, known: Vec::new() }
+        Self { find, told, found: BTreeMap::new(), known: Vec::new() }
     }
 
     /// Other options hold.
@@ -48,12 +51,23 @@ impl Machines {
 
     /// Files that they were read from may be others now.
     pub(crate) fn forget(&mut self) {
+        self.found.clear();
         self.known.clear();
+    }
+
+    /// What holds for a program. Settings are looked for once, not behind every key that is pressed.
+    fn options(&mut self, program: &Path) -> Result<JobOptions, Failure> {
+        if let Some(found) = self.found.get(program) {
+            return Ok(found.clone());
+        }
+        let found = (self.find)(program, &self.told)?;
+        self.found.insert(program.to_owned(), found.clone());
+        Ok(found)
     }
 
     /// How a program is spelled, where its machine is not known too.
     pub(crate) fn dialect(&mut self, program: &Path) -> Option<&Dialect> {
-        let name = (self.find)(program, &self.told).ok()?.dialect;
+        let name = self.options(program).ok()?.dialect;
         match self.of(program) {
             Ok(machine) => Some(&machine.settings.dialect),
             Err(_) => nc_dialect::builtin(&name?),
@@ -62,7 +76,7 @@ impl Machines {
 
     /// The machine of a program.
     pub(crate) fn of(&mut self, program: &Path) -> Result<&Machine, Failure> {
-        let options = (self.find)(program, &self.told)?;
+        let options = self.options(program)?;
         let known = self.known.iter().position(|(known, _)| *known == options);
         let at = match known {
             Some(at) => at,
