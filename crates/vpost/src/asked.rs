@@ -3,21 +3,14 @@
 //! The questions are the refusals that the command has anyway, their answers the options that a refusal's help offers.
 //! What was answered is kept as settings beside the program where somebody wants that.
 
-use std::ffi::OsString;
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use diagnostic::{Text, both};
 
 use crate::command_line::{Arguments, Command, command};
-use crate::file;
 use crate::message::{Failure, Messages};
 use crate::questions::Questions;
-
-/// Answers that are paths.
-const PATHS: [&str; 4] = ["--machine", "--tool-table", "--linuxcnc-ini", "--include"];
-/// Answers that hold for one call alone.
-const ONCE: &str = "--force";
+use crate::{config, file};
 
 /// What was answered so far, as options of the command line.
 pub(crate) type Answers = Vec<String>;
@@ -54,7 +47,8 @@ pub(crate) fn keep(answers: &Answers, arguments: &Arguments, messages: &Messages
     let (Some(program), Some(questions)) = (program(arguments), Questions::at_a_terminal(messages)) else {
         return Ok(());
     };
-    let place = file::folder_of(program).join("vpost.toml");
+    let folder = file::folder_of(program);
+    let place = folder.join(config::NAME);
     if arguments.shared.held.file.is_some() || place.exists() {
         return Ok(());
     }
@@ -69,19 +63,11 @@ pub(crate) fn keep(answers: &Answers, arguments: &Arguments, messages: &Messages
         _ => Err(Text::pair("y or n", "д или н")),
     });
     // Who says nothing keeps nothing; the program is corrected all the same.
-    if !wants.unwrap_or(false) {
-        return Ok(());
+    if wants.unwrap_or(false) {
+        file::write(&place, config::written(answers, folder).as_bytes())
+    } else {
+        Ok(())
     }
-    // Paths of settings count from their file.
-    let is_here = file::folder_of(program) == Path::new(".");
-    let placed = |answer: &String| match answer.split_once('=') {
-        Some((name, path)) if !is_here && PATHS.contains(&name) => {
-            let path = std::path::absolute(path).unwrap_or_else(|_| PathBuf::from(path));
-            format!("{name}={}", path.display())
-        }
-        _ => answer.clone(),
-    };
-    file::write(&place, kept(&answers.iter().map(placed).collect()).as_bytes())
 }
 
 /// The program of a call that corrects one.
@@ -102,13 +88,10 @@ fn profile(questions: &Questions<'_>, known: &[PathBuf]) -> Option<String> {
         "Which machine?{list}\nA number, the path of a profile, or nothing to end (`vpost profile new` makes one)",
         "Какой станок?{list}\nНомер, путь к профилю или пусто: закончить (новый создаёт `vpost profile new`)"
     );
-    let read = |text: &str| match (text, number(text, known)) {
-        ("", _) => Ok(None),
-        (_, Some(path)) => Ok(Some(path.clone())),
-        (path, None) if Path::new(unquoted(path)).is_file() => Ok(Some(PathBuf::from(unquoted(path)))),
-        (path, None) => Err(both!("{path}: there is no such file", "{path}: такого файла нет")),
-    };
-    let path = questions.ask(&question, read).ok().flatten()?;
+    let path = chosen(questions, &question, known, |path| match PathBuf::from(unquoted(path)) {
+        path if path.is_file() => Ok(path),
+        path => Err(both!("{}: there is no such file", "{}: такого файла нет", path.display())),
+    })?;
     Some(format!("--machine={}", path.display()))
 }
 
@@ -119,13 +102,10 @@ fn option(questions: &Questions<'_>, offers: &[String]) -> Option<String> {
         "Which answer?{list}\nA number, an option as it is typed, or nothing to end",
         "Какой ответ?{list}\nНомер, ключ, как он набирается, или пусто, чтобы закончить"
     );
-    let read = |text: &str| match (text, number(text, offers)) {
-        ("", _) => Ok(None),
-        (_, Some(offer)) => Ok(Some(offer.clone())),
-        (typed, None) if typed.starts_with("--") => Ok(Some(typed.to_owned())),
-        (typed, None) => Err(both!("{typed}: no option begins so", "{typed}: ключ так не начинается")),
-    };
-    let chosen = questions.ask(&question, read).ok().flatten()?;
+    let chosen = chosen(questions, &question, offers, |typed| match typed.starts_with("--") {
+        true => Ok(typed.to_owned()),
+        false => Err(both!("{typed}: no option begins so", "{typed}: ключ так не начинается")),
+    })?;
     let is_offered = offers.contains(&chosen);
     let (name, value) = chosen.split_once([' ', '=']).unwrap_or((&chosen, ""));
     let value = unquoted(value);
@@ -144,14 +124,9 @@ fn option(questions: &Questions<'_>, offers: &[String]) -> Option<String> {
 
 /// The option of a correction has a value.
 fn takes_value(name: &str) -> bool {
-    let root = command();
-    let correct = root.find_subcommand("correct");
-    let long = name.trim_start_matches('-');
-    let option = correct
-        .into_iter()
-        .flat_map(clap::Command::get_arguments)
-        .find(|known| known.get_long() == Some(long));
-    option.is_some_and(|option| option.get_action().takes_values())
+    let long = Some(name.trim_start_matches('-'));
+    let takes = |option: &clap::Arg| option.get_long() == long && option.get_action().takes_values();
+    command().find_subcommand("correct").is_some_and(|correct| correct.get_arguments().any(takes))
 }
 
 /// A word without the shell's quotes.
@@ -162,11 +137,9 @@ fn unquoted(word: &str) -> &str {
 
 /// A value of an example without its numbers: `H7=120` is `H7=…`.
 fn blank(value: &str) -> String {
-    let without =
-        |part: &str| match part.trim_start_matches('-').starts_with(|letter: char| letter.is_ascii_digit()) {
-            true => "…".to_owned(),
-            false => part.to_owned(),
-        };
+    let is_number =
+        |part: &str| part.trim_start_matches('-').starts_with(|first: char| first.is_ascii_digit());
+    let without = |part: &str| if is_number(part) { "…".to_owned() } else { part.to_owned() };
     let parts = value.split(',').map(|part| match part.split_once('=') {
         Some((name, number)) => format!("{name}={}", without(number)),
         None => without(part),
@@ -186,8 +159,19 @@ fn listed(choices: impl IntoIterator<Item = impl std::fmt::Display>) -> String {
     choices.into_iter().enumerate().map(|(at, choice)| format!("\n  {}  {choice}", at + 1)).collect()
 }
 
-fn number<'a, T>(text: &str, of: &'a [T]) -> Option<&'a T> {
-    of.get(text.parse::<usize>().ok()?.checked_sub(1)?)
+/// One of the choices by its number, or what else can be read; `None` for nothing.
+fn chosen<T: Clone>(
+    questions: &Questions<'_>,
+    question: &Text,
+    choices: &[T],
+    other: impl Fn(&str) -> Result<T, Text>,
+) -> Option<T> {
+    let by_number = |text: &str| choices.get(text.parse::<usize>().ok()?.checked_sub(1)?).cloned();
+    let read = |text: &str| match text {
+        "" => Ok(None),
+        text => by_number(text).map_or_else(|| other(text), Ok).map(Some),
+    };
+    questions.ask(question, read).ok().flatten()
 }
 
 /// The options between backticks of a message.
@@ -207,12 +191,8 @@ fn profiles(program: &Path) -> Vec<PathBuf> {
     for folder in [file::folder_of(program), Path::new(".")] {
         for folder in [folder.to_owned(), folder.join("machine-profiles")] {
             let entries = std::fs::read_dir(&folder).into_iter().flatten().flatten();
-            found.extend(entries.map(|entry| entry.path()).filter(|path| is_profile(path)));
-        }
-    }
-    for path in &mut found {
-        if let Ok(short) = path.strip_prefix(".") {
-            *path = short.to_owned();
+            let profiles = entries.map(|entry| entry.path()).filter(|path| is_profile(path));
+            found.extend(profiles.map(|path| path.strip_prefix(".").map_or(path.clone(), Path::to_owned)));
         }
     }
     found.sort();
@@ -224,34 +204,6 @@ fn is_profile(path: &Path) -> bool {
     let text = || std::fs::read_to_string(path).unwrap_or_default();
     path.extension().is_some_and(|ending| ending == "toml")
         && text().lines().any(|line| line.split('=').next().is_some_and(|key| key.trim() == "chain"))
-}
-
-/// Answers as a settings file has them; what was answered more than once is a list.
-fn kept(answers: &Answers) -> String {
-    let mut keys: Vec<(&str, Vec<&str>)> = Vec::new();
-    for answer in answers.iter().filter(|answer| *answer != ONCE) {
-        let (name, value) = answer.trim_start_matches('-').split_once('=').unwrap_or((answer, ""));
-        match keys.iter_mut().find(|(key, _)| *key == name) {
-            Some((_, values)) => values.push(value),
-            None => keys.push((name.trim_start_matches('-'), vec![value])),
-        }
-    }
-    let quoted = |value: &str| toml_edit::Value::from(value).to_string();
-    let mut text = String::new();
-    for (key, values) in keys {
-        let value = match values[..] {
-            [""] => "true".to_owned(),
-            [value] => quoted(value),
-            _ => format!("[{}]", values.iter().map(|value| quoted(value)).collect::<Vec<_>>().join(", ")),
-        };
-        let _ = writeln!(text, "{key} = {value}");
-    }
-    text
-}
-
-/// The words of a call with its answers behind them.
-pub(crate) fn with(words: &[OsString], answers: &Answers) -> Vec<OsString> {
-    words.iter().cloned().chain(answers.iter().map(OsString::from)).collect()
 }
 
 #[cfg(test)]
@@ -290,16 +242,5 @@ mod tests {
         }
         assert_eq!(unquoted("\"#<depth>=12.5\""), "#<depth>=12.5");
         assert!(takes_value("--dialect") && !takes_value("--strict"));
-    }
-
-    #[test]
-    fn answers_are_kept_as_settings() {
-        let answers =
-            ["--machine=mill.toml", "--work-offset=G54=1,2,3", "--strict", "--work-offset=G55=4,5,6"];
-        let answers: Answers = answers.map(str::to_owned).to_vec();
-        assert_eq!(
-            kept(&answers),
-            "machine = \"mill.toml\"\nwork-offset = [\"G54=1,2,3\", \"G55=4,5,6\"]\nstrict = true\n"
-        );
     }
 }

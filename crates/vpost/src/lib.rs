@@ -69,7 +69,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 ///
 /// * `answers` – what they answered so far
 fn once(words: &[OsString], mut answers: asked::Answers) -> ExitCode {
-    let arguments = asked::with(words, &answers);
+    let arguments: Vec<OsString> = words.iter().cloned().chain(answers.iter().map(OsString::from)).collect();
     let held = match config::find(&arguments) {
         Ok(held) => held,
         Err(failure) => return unusable(&failure, &arguments),

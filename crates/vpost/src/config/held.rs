@@ -14,7 +14,7 @@ use crate::summary::SettingsFile;
 const TWO_FILES: Code = Code(7);
 
 /// What the file is called.
-const NAME: &str = "vpost.toml";
+pub(crate) const NAME: &str = "vpost.toml";
 
 /// An option, as the file says it.
 #[derive(Debug, Clone, PartialEq, Eq)]

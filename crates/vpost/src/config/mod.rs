@@ -6,6 +6,7 @@
 mod held;
 mod read;
 mod show;
+mod write;
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -17,10 +18,11 @@ use crate::command_line::{OF_ALL, command, reads};
 use crate::file;
 use crate::message::{Failure, Report, Source};
 pub use held::Held;
-pub(crate) use held::called;
+pub(crate) use held::{NAME, called};
 use held::{above, folder_of};
 pub use show::Config;
 pub(crate) use show::run;
+pub(crate) use write::written;
 
 /// `--config none`
 const NONE: &str = "none";

@@ -17,7 +17,7 @@ pub(super) const UNFIT: Code = Code(6);
 
 /// What is said anew in each call: what overrides a refusal, which one file would be written by every call, and from
 /// where settings come.
-const OF_ONE_CALL: [&str; 4] = ["config", "force", "help", "output"];
+pub(super) const OF_ONE_CALL: [&str; 4] = ["config", "force", "help", "output"];
 
 /// What a file says, or everything wrong with it.
 ///
@@ -188,7 +188,7 @@ fn parsed(option: &Arg, word: &str) -> Result<(), Diagnostic> {
 }
 
 /// A file or folder; a dialect is one where it is no name.
-fn is_path(option: &Arg, word: &str) -> bool {
+pub(super) fn is_path(option: &Arg, word: &str) -> bool {
     let path = option.get_value_hint() == ValueHint::AnyPath && word != "-";
     path || (option.get_id() == "dialect" && word.ends_with(".toml"))
 }
