@@ -6,12 +6,13 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use tempfile::TempDir;
+
 use crate::browser_pages::{axe, faults};
 use crate::common::{SAMPLES, files, root};
 use crate::devtools::{Browser, View, decoded};
-use crate::folders::copy;
 
-/// Where the axes stand is unknown to programs that move some of them first.
+/// A machine as it was measured, with six tables.
 const STAN: &str = "machine-profiles/stan_s500.toml";
 
 /// The page, and a browser for it.
@@ -65,8 +66,19 @@ fn run_in(browser: &mut Browser, job: &str, given: &[PathBuf], options: &[(&str,
     browser.wait("by('cancel').hidden && by('status').textContent");
 }
 
+/// Chooses a program `part.nc` and a machine, and corrects it; the folder that the page reads it from.
+fn correct_in(browser: &mut Browser, profile: &str, text: &str, options: &[(&str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let program = folder.path().join("part.nc");
+    std::fs::write(&program, text).expect("writable");
+    let mut given = with_tables(&root(), profile);
+    given.push(program);
+    run_in(browser, "correct", &given, options);
+    folder
+}
+
 /// A line of the shell in a folder in which the same files lie.
-fn commanded(given: &[PathBuf], line: &str) -> (tempfile::TempDir, Option<i32>) {
+fn commanded(given: &[PathBuf], line: &str) -> (TempDir, Option<i32>) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     for path in given {
         std::fs::copy(path, folder.path().join(path.file_name().expect("a name"))).expect("copied");
@@ -267,8 +279,6 @@ fn the_page_has_no_fault_of_accessibility() {
     let (Some(mut browser), Some(axe)) = (opened(), axe()) else { return };
     let pictures = root().join("target/pictures");
     std::fs::create_dir_all(&pictures).expect("writable");
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    copy(&root().join("machine-profiles"), folder.path());
     for language in ["en", "ru"] {
         browser.evaluate(&format!("speak({language:?})"));
         browser.wait(&format!("document.documentElement.lang === {language:?}"));
@@ -311,19 +321,14 @@ fn what_cannot_be_done_is_said_in_the_page() {
     let found = browser.evaluate("by('status').className + ' ' + by('found').textContent");
     let found = found.as_str().expect("a text");
     assert!(found.starts_with("error") && found.contains("stan_s500/interferometer_x.csv"), "{found}");
-    let folder = tempfile::tempdir().expect("a temporary folder");
     // A file that changes behind the page's back is not corrected from two halves.
-    let program = folder.path().join("part.ngc");
-    std::fs::write(&program, "G21 G90 G17 G54\nG1 X1 F100\n").expect("writable");
-    let mut given = with_tables(&root(), STAN);
-    given.push(program.clone());
-    run_in(&mut browser, "correct", &given, &[("dialect", "linuxcnc")]);
-    std::fs::write(&program, "G21 G90 G17 G54\nG1 X2 F100\nG1 X3\n").expect("writable");
+    let folder = correct_in(&mut browser, STAN, "G21 G90 G17 G54\nG1 X1 F100\n", &[("dialect", "linuxcnc")]);
+    std::fs::write(folder.path().join("part.nc"), "G21 G90 G17 G54\nG1 X2 F100\nG1 X3\n").expect("writable");
     browser.evaluate("(by('status').textContent = '', by('run').click(), 0)");
     browser.wait("by('cancel').hidden && by('status').textContent");
     assert_eq!(
         browser.evaluate("by('status').textContent"),
-        "part.ngc cannot be read: it may have been changed or moved. Drop it again."
+        "part.nc cannot be read: it may have been changed or moved. Drop it again."
     );
     let archive = folder.path().join("parts.zip");
     std::fs::write(&archive, "no archive").expect("writable");
@@ -342,13 +347,8 @@ fn what_cannot_be_done_is_said_in_the_page() {
 #[test]
 fn a_question_is_answered_by_a_click() {
     let Some(mut browser) = opened() else { return };
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let program = folder.path().join("part.nc");
-    std::fs::write(&program, "G21 G90 G17 G54\nG0 X10. Y10. Z50\nG1 Z1. F300\nG1 X100. Y80.\nM30\n")
-        .expect("writable");
-    let mut given = with_tables(&root(), "machine-profiles/generic_vmc.toml");
-    given.push(program);
-    run_in(&mut browser, "correct", &given, &[]);
+    let text = "G21 G90 G17 G54\nG0 X10. Y10. Z50\nG1 Z1. F300\nG1 X100. Y80.\nM30\n";
+    let _given = correct_in(&mut browser, "machine-profiles/generic_vmc.toml", text, &[]);
     let said = browser.evaluate("by('status').className + ' ' + by('status').textContent");
     assert!(said.as_str().is_some_and(|said| said.starts_with("error")), "{said}");
     browser.evaluate(
@@ -422,12 +422,8 @@ fn a_page_takes_and_loses_nothing_by_its_name_alone() {
 #[test]
 fn a_number_of_an_example_is_left_to_be_said() {
     let Some(mut browser) = opened() else { return };
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let program = folder.path().join("part.ngc");
-    std::fs::write(&program, "G21 G90 G17 G54\nG43 H7\nG0 X10 Y10 Z50\nG1 Z30 F300\nM2\n").expect("writable");
-    let mut given = with_tables(&root(), STAN);
-    given.push(program);
-    run_in(&mut browser, "correct", &given, &[("dialect", "linuxcnc")]);
+    let text = "G21 G90 G17 G54\nG43 H7\nG0 X10 Y10 Z50\nG1 Z30 F300\nM2\n";
+    let _given = correct_in(&mut browser, STAN, text, &[("dialect", "linuxcnc")]);
     let buttons = "[...document.querySelectorAll('.question button')]";
     browser.evaluate(&format!("({buttons}.find(one => one.textContent.startsWith('--tool H7')).click(), 0)"));
     assert_eq!(browser.evaluate("document.activeElement.id"), "field-tool");

@@ -4,6 +4,7 @@
 
 use std::fmt::Write as _;
 use std::io::Write as _;
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 use crate::common::{messages, root, run};
@@ -35,6 +36,22 @@ fn on_a_terminal(arguments: &[&str]) -> String {
     let seen = String::from_utf8_lossy(&ran.stdout).into_owned();
     assert!(ran.status.success(), "{seen}");
     seen
+}
+
+/// A call on a pseudo-terminal in a folder, with what somebody types there: its status, and what the terminal was sent.
+fn answered(folder: &Path, call: &str, answers: &str) -> (Option<i32>, String) {
+    let line = format!("'{}' {call}", env!("CARGO_BIN_EXE_vpost"));
+    let mut script = Command::new("script")
+        .args(["-q", "-e", "-c", &line, "/dev/null"])
+        .current_dir(folder)
+        .env("LC_ALL", "C")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("script is there");
+    script.stdin.take().expect("piped").write_all(answers.as_bytes()).expect("answered");
+    let ran = script.wait_with_output().expect("ended");
+    (ran.status.code(), String::from_utf8_lossy(&ran.stdout).into_owned())
 }
 
 #[test]
@@ -89,18 +106,8 @@ fn a_profile_is_asked_for() {
     }
     let folder = tempfile::tempdir().expect("a temporary folder");
     let answers = "Mill 5\nfanuk\nfanuc\n2\n0..500\n400..0\n-400..0\n-300..0\n\n";
-    let command = format!("{} profile new --lang en", env!("CARGO_BIN_EXE_vpost"));
-    let mut child = Command::new("script")
-        .args(["-q", "-e", "-c", &command, "/dev/null"])
-        .current_dir(folder.path())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .expect("script is there");
-    child.stdin.take().expect("piped").write_all(answers.as_bytes()).expect("answered");
-    let ran = child.wait_with_output().expect("ended");
-    let seen = String::from_utf8_lossy(&ran.stdout);
-    assert!(ran.status.success(), "{seen}");
+    let (status, seen) = answered(folder.path(), "profile new --lang en", answers);
+    assert_eq!(status, Some(0), "{seen}");
     for said in [
         "1. What is the machine called?",
         "one of these: ",
@@ -125,20 +132,7 @@ fn what_is_missing_is_asked_and_kept() {
     copy(&root().join("machine-profiles"), &folder.path().join("machine-profiles"));
     let program = "G21 G90 G17 G54\nG0 X10. Y10. Z50\nG1 Z1. F300\nG1 X100. Y80.\nM30\n";
     std::fs::write(folder.path().join("part.nc"), program).expect("writable");
-    let asked = |call: &str, answers: &str| {
-        let line = format!("'{}' {call}", env!("CARGO_BIN_EXE_vpost"));
-        let mut script = Command::new("script")
-            .args(["-q", "-e", "-c", &line, "/dev/null"])
-            .current_dir(folder.path())
-            .env("LC_ALL", "C")
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .expect("script is there");
-        script.stdin.take().expect("a pipe").write_all(answers.as_bytes()).expect("read");
-        let ran = script.wait_with_output().expect("it ends");
-        (ran.status.code(), String::from_utf8_lossy(&ran.stdout).into_owned())
-    };
+    let asked = |call: &str, answers: &str| answered(folder.path(), call, answers);
     // Nobody answers: as in a pipe.
     let (status, seen) = asked("part.nc -o out.nc", "\n");
     assert_eq!(status, Some(2), "{seen}");
