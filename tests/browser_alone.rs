@@ -414,6 +414,11 @@ fn a_page_takes_and_loses_nothing_by_its_name_alone() {
     let found = found.as_str().expect("a text");
     assert!(found.contains("cannot read the table stan_s500/interferometer_x.csv"), "{found}");
     assert!(!found.contains("was taken from"), "{found}");
+    // The only profile there is no answer where settings name another.
+    browser.evaluate("(files.set('A/vpost.toml', new Blob(['machine = \"other.toml\"'])), typed.clear(), 0)");
+    again(&mut browser, "dialect", "linuxcnc");
+    let found = browser.evaluate("by('found').textContent");
+    assert!(found.as_str().is_some_and(|found| found.contains("cannot read A/other.toml")), "{found}");
     browser.was_quiet();
     browser.end();
 }

@@ -504,10 +504,8 @@ function chosen(argument, found) {
   if (given === undefined && kind && argument.many && !argument.long) return { value: fit.join("\n") };
   if (given || !kind || argument.many) return { value: given ?? "" };
   if (argument.long && (argument.long !== "machine" || job.isAlone)) return { value: "" };
-  // Settings that lie about may name the profile.
-  if (argument.long && fit.length !== 1 && [...files.keys()].some((path) => path.split("/").at(-1) === SETTINGS)) {
-    return { value: "" };
-  }
+  // Settings that were dropped may name the profile: what the page chose would go before them without a word.
+  if (argument.long && [...files.keys()].some((path) => path.split("/").at(-1) === SETTINGS)) return { value: "" };
   const isCorrected = (path) => /_corrected(_\d+)?(\.[^.]*)?$/.test(path);
   const able = fit.filter((path) => isCorrected(path) === /^OUT/.test(argument.value));
   if (able.length === 1) return { value: able[0] };
