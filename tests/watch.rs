@@ -261,3 +261,41 @@ fn a_watcher_that_knows_no_machine_says_so_in_the_folder() {
     let (status, said) = ended(watcher);
     assert_eq!((status, said.matches("error[VP0301]").count()), (Some(143), 1), "{said}");
 }
+
+#[test]
+fn an_output_folder_that_went_is_made_again() {
+    let shop = Shop::new();
+    shop.save("part.nc", &program(1, 20));
+    let watcher = shop.watching("0.1");
+    let is_there = || shop.output("part.nc").exists();
+    until("it is corrected", is_there);
+    // What is written into it meanwhile stands in the way for a moment.
+    let taken = || std::fs::remove_dir_all(shop.output("")).is_ok();
+    for _ in 0..3 {
+        until("it is taken away", taken);
+        until("it is corrected again", is_there);
+    }
+    // Made again by hand before anybody looks.
+    until("it is taken away", taken);
+    let _ = std::fs::create_dir(shop.output(""));
+    until("it is corrected again", is_there);
+    let (status, said) = ended(watcher);
+    assert_eq!((status, said.contains("error")), (Some(143), false), "{said}");
+    assert!(said.contains("went: it is made again"), "{said}");
+    assert!(temporaries(&shop.output("")).is_empty());
+}
+
+#[test]
+fn who_looks_into_the_folder_reads_that_the_machine_was_never_known() {
+    let mut shop = Shop::new();
+    shop.machine = shop.folder.path().join("mill.toml");
+    std::fs::write(&shop.machine, "nonsense").expect("writable");
+    shop.save("part.nc", &program(1, 20));
+    assert_ne!(shop.once().0, Some(0));
+    let page = std::fs::read_to_string(shop.output("vpost.refused.txt")).expect("a page");
+    assert!(page.contains("No program is corrected") && page.contains("error[VP0301]"), "{page}");
+    shop.machine = root().join(PROFILE);
+    assert_eq!(shop.once().0, Some(0));
+    let left: Vec<PathBuf> = tree(&shop.output("")).into_keys().collect();
+    assert_eq!(left, [PathBuf::from("part.nc")]);
+}

@@ -117,6 +117,11 @@ impl OutputFolder {
         self.lock.is_some()
     }
 
+    /// False once somebody took the folder away, or what vpost keeps in it.
+    pub(crate) fn is_there(&self) -> bool {
+        self.temporaries.path().is_dir() && self.journal().is_dir()
+    }
+
     /// The folder of the journal.
     pub(crate) fn journal(&self) -> PathBuf {
         self.root.join(OWN).join("journal")

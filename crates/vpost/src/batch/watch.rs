@@ -6,7 +6,7 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::Args;
@@ -81,28 +81,26 @@ pub(crate) fn run(arguments: &Watch, shared: &Shared, messages: &Messages) -> Re
         pattern: arguments.pattern.clone(),
         exclude: arguments.exclude.clone(),
     };
-    let (job, read) = loaded(shared, messages)?;
-    let folder = OutputFolder::open(&arguments.output, Company::Alone)?;
-    passed_over(&inputs::search(&programs, &arguments.output)?, messages);
-    let records = journal::read(&folder.journal(), None)?;
-    let mut journal = Journal::begin(&folder, journal::WHOLE)?;
-    let mut watched = Watched {
+    let order = Order {
         programs,
         settle: Duration::from_secs_f64(arguments.settle),
         until: if arguments.once { Until::Done } else { Until::Told },
         shared,
         messages,
         interrupt: Interrupt::listen(),
-        folder: &folder,
-        job,
-        read,
-        changed: None,
-        seen: BTreeMap::new(),
-        records,
-        said: RefCell::default(),
     };
-    let ended = watched.watch(&mut journal);
-    journal.end(&watched.records, &[])?;
+    passed_over(&inputs::search(&order.programs, &arguments.output)?, messages);
+    let ended = loop {
+        let folder = OutputFolder::open(&arguments.output, Company::Alone)?;
+        match order.watch(&folder) {
+            Ok(Ended::Done) => break Ok(()),
+            Ok(Ended::FolderWent) => drop(folder),
+            Err(failure) => break Err(failure),
+        }
+        if let Err(failure) = order.wait_for(&arguments.output) {
+            break Err(failure);
+        }
+    };
     ended.map_err(|failure| interrupted(failure, messages))
 }
 
@@ -126,13 +124,60 @@ enum Until {
     Done,
 }
 
-struct Watched<'a> {
+/// Why the watch of one output folder ended.
+enum Ended {
+    /// Nothing is left to do.
+    Done,
+    /// Somebody took the folder away, or what vpost keeps in it.
+    FolderWent,
+}
+
+/// What was asked for.
+struct Order<'a> {
     programs: Programs,
     settle: Duration,
     until: Until,
     shared: &'a Shared,
     messages: &'a Messages,
     interrupt: Interrupt,
+}
+
+impl Order<'_> {
+    /// Watches until there is nothing more to do here.
+    fn watch(&self, folder: &OutputFolder) -> Result<Ended, Failure> {
+        let pages = Pages { folder, messages: self.messages };
+        let (job, read) =
+            loaded(self.shared, self.messages).inspect_err(|failure| pages.nothing_is(failure))?;
+        pages.mend(WHOLE);
+        let records = journal::read(&folder.journal(), None)?;
+        let mut journal = Journal::begin(folder, journal::WHOLE)?;
+        let (changed, seen, said) = (None, BTreeMap::new(), RefCell::default());
+        let mut watched = Watched { order: self, pages, folder, job, read, changed, seen, records, said };
+        let ended = watched.watch(&mut journal);
+        if !matches!(ended, Ok(Ended::FolderWent)) {
+            journal.end(&watched.records, &[])?;
+        }
+        ended
+    }
+
+    /// Waits until the output folder can be made again: a share that was cut off comes back.
+    fn wait_for(&self, output: &Path) -> Result<(), Failure> {
+        self.messages.note(&both!(
+            "{0} went: it is made again, and all is corrected anew",
+            "папка {0} исчезла: она создаётся снова, и всё исправляется заново",
+            output.display()
+        ));
+        while std::fs::create_dir_all(output).is_err() {
+            self.interrupt.check()?;
+            std::thread::sleep(LOOK);
+        }
+        Ok(())
+    }
+}
+
+struct Watched<'a> {
+    order: &'a Order<'a>,
+    pages: Pages<'a>,
     folder: &'a OutputFolder,
     job: Job,
     read: Read,
@@ -160,20 +205,24 @@ fn stamped(paths: impl IntoIterator<Item = PathBuf>) -> Read {
 }
 
 impl<'a> Watched<'a> {
-    fn watch(&mut self, journal: &mut Journal<'a>) -> Result<(), Failure> {
+    fn watch(&mut self, journal: &mut Journal<'a>) -> Result<Ended, Failure> {
+        let Order { until, settle, interrupt, .. } = self.order;
         loop {
-            self.interrupt.check()?;
+            interrupt.check()?;
+            if *until == Until::Told && !self.folder.is_there() {
+                return Ok(Ended::FolderWent);
+            }
             match self.round(journal) {
-                Ok(0) if self.until == Until::Done => break,
+                Ok(0) if *until == Until::Done => break,
                 Ok(_) => {}
                 Err(failure @ (Failure::Interrupted(_) | Failure::Later(_))) => return Err(failure),
-                Err(failure) if self.until == Until::Done => return Err(failure),
+                Err(failure) if *until == Until::Done => return Err(failure),
                 Err(failure) => self.say_once(&failure),
             }
-            std::thread::sleep(LOOK.min(self.settle / 4));
+            std::thread::sleep(LOOK.min(*settle / 4));
         }
         let done = |seen: &Seen| seen.status.is_none_or(Status::is_done);
-        if self.seen.values().all(done) { Ok(()) } else { Err(Failure::Said(REFUSED)) }
+        if self.seen.values().all(done) { Ok(Ended::Done) } else { Err(Failure::Said(REFUSED)) }
     }
 
     /// One look at the folder; how many programs are not whole yet.
@@ -181,21 +230,21 @@ impl<'a> Watched<'a> {
         if !self.is_job_settled()? {
             return Ok(1);
         }
-        let found = inputs::search(&self.programs, &self.folder.place(""))?;
-        self.shared.held.is_of_all(found.items.iter().map(|item| item.input.as_path()))?;
+        let found = inputs::search(&self.order.programs, &self.folder.place(""))?;
+        self.order.shared.held.is_of_all(found.items.iter().map(|item| item.input.as_path()))?;
         self.forget(&found.items);
         let (ready, mut left) = self.ready(found.items);
         if ready.is_empty() {
             return Ok(left);
         }
-        let Self { job, folder, interrupt, records, .. } = &*self;
+        let Self { order: Order { interrupt, .. }, job, folder, records, .. } = &*self;
         let threads = work::threads(None);
         let batch = Batch { job, folder, earlier: records, force: false, threads, interrupt };
         let results = batch.run(&ready, journal, &Progress::hidden(), &mut |outcome| self.tell(outcome))?;
         for (record, item) in results.records.into_iter().zip(&ready) {
             let Some(seen) = self.seen.get_mut(&record.output) else { continue };
             let changed = seen.stamp != Stamp::at(&item.input);
-            if record.status == Status::Failed && (changed || self.until == Until::Told) {
+            if record.status == Status::Failed && (changed || self.order.until == Until::Told) {
                 // Perhaps not so in a while.
                 seen.since = Instant::now();
                 left += 1;
@@ -216,7 +265,7 @@ impl<'a> Watched<'a> {
         }
         match &self.changed {
             Some((last, since)) if *last == now => {
-                if since.elapsed() < self.settle {
+                if since.elapsed() < self.order.settle {
                     return Ok(false);
                 }
             }
@@ -225,7 +274,8 @@ impl<'a> Watched<'a> {
                 return Ok(false);
             }
         }
-        let settings = |(path, _): &&(PathBuf, Option<Stamp>)| self.shared.held.file.as_ref() == Some(path);
+        let settings =
+            |(path, _): &&(PathBuf, Option<Stamp>)| self.order.shared.held.file.as_ref() == Some(path);
         if now.iter().find(settings) != self.read.iter().find(settings) {
             let diagnostic = notice!(CHANGED;
                 "the settings file changed", "файл настроек изменился";
@@ -234,11 +284,11 @@ impl<'a> Watched<'a> {
             );
             return Err(Failure::Later(Report { source: None, diagnostics: vec![diagnostic] }));
         }
-        match loaded(self.shared, self.messages) {
+        match loaded(self.order.shared, self.order.messages) {
             Ok((job, read)) => {
                 (self.job, self.read, self.changed) = (job, read, None);
                 self.seen.values_mut().for_each(|seen| seen.status = None);
-                self.mend(WHOLE);
+                self.pages.mend(WHOLE);
                 self.note(&both!(
                     "the profile changed: all is corrected anew",
                     "профиль изменился: всё исправляется заново"
@@ -246,11 +296,7 @@ impl<'a> Watched<'a> {
                 Ok(true)
             }
             Err(failure) => {
-                let lines = [both!(
-                    "No program is corrected any more; those in this folder were before.\n",
-                    "Программы больше не исправляются; те, что в этой папке, исправлены раньше.\n"
-                )];
-                self.leave(WHOLE, &lines, &[self.wording().text(&failure)]);
+                self.pages.nothing_is(&failure);
                 Err(failure)
             }
         }
@@ -264,7 +310,7 @@ impl<'a> Watched<'a> {
         for output in gone {
             self.seen.remove(&output);
             if !self.folder.place(&output).exists() {
-                self.mend(&output);
+                self.pages.mend(&output);
                 continue;
             }
             self.note(&both!(
@@ -291,7 +337,7 @@ impl<'a> Watched<'a> {
             if seen.status.is_some() || stamp.is_some_and(|stamp| stamp.bytes == 0) {
                 continue;
             }
-            if seen.since.elapsed() < self.settle {
+            if seen.since.elapsed() < self.order.settle {
                 left += 1;
             } else {
                 ready.push(item);
@@ -303,14 +349,14 @@ impl<'a> Watched<'a> {
     /// Says what became of a program: on standard error, and beside its place where it was not corrected.
     fn tell(&self, outcome: &Outcome) {
         let output = &outcome.record.output;
-        let told = || outcome.told.iter().for_each(|report| self.messages.report(report));
+        let told = || outcome.told.iter().for_each(|report| self.order.messages.report(report));
         let rendered = || -> Vec<String> {
             let rendered = |report| self.wording().rendered(report).collect::<Vec<_>>();
             outcome.told.iter().flat_map(rendered).collect()
         };
         match outcome.record.status {
             Status::Corrected | Status::Unchanged => {
-                self.mend(output);
+                self.pages.mend(output);
                 self.said.borrow_mut().clear();
                 if !outcome.resumed {
                     told();
@@ -329,25 +375,28 @@ impl<'a> Watched<'a> {
                         "Файл {output} в этой папке — исправление ПРЕЖНЕЙ программы.\n"
                     ));
                 }
-                self.leave(output, &lines, &rendered());
+                self.pages
+                    .leave(output, &lines, &rendered())
+                    .unwrap_or_else(|failure| self.say_once(&failure));
                 told();
             }
         }
     }
 
     fn wording(&self) -> Wording {
-        Wording::plain().speaking(self.messages.language())
+        self.pages.wording()
     }
 
     /// What only who looks on wants to know.
     fn note(&self, text: &Text) {
-        if self.shared.messages.verbose > 0 || std::io::stderr().is_terminal() {
-            self.messages.note(text);
+        let Order { shared, messages, .. } = self.order;
+        if shared.messages.verbose > 0 || std::io::stderr().is_terminal() {
+            messages.note(text);
         }
     }
 
     fn say_once(&self, failure: &Failure) {
-        self.once(self.wording().text(failure), || self.messages.failure(failure));
+        self.once(self.wording().text(failure), || self.order.messages.failure(failure));
     }
 
     /// Says what failed, once until something succeeds.
@@ -356,27 +405,44 @@ impl<'a> Watched<'a> {
             say();
         }
     }
+}
 
-    /// The page that lies beside an output which is not what it should be.
-    fn page(&self, output: &str) -> PathBuf {
+/// Pages beside outputs that are not what they should be: who looks into OUT sees no standard error.
+struct Pages<'a> {
+    folder: &'a OutputFolder,
+    messages: &'a Messages,
+}
+
+impl Pages<'_> {
+    fn wording(&self) -> Wording {
+        Wording::plain().speaking(self.messages.language())
+    }
+
+    fn place(&self, output: &str) -> PathBuf {
         self.folder.place(&format!("{output}.refused.txt"))
     }
 
-    /// Leaves word: who looks into OUT sees no standard error.
-    fn leave(&self, output: &str, lines: &[Text], said: &[String]) {
+    /// Leaves word that no program is corrected. Where it cannot be left, the failure itself is said.
+    fn nothing_is(&self, failure: &Failure) {
+        let lines = [both!(
+            "No program is corrected any more; those in this folder were before.\n",
+            "Программы больше не исправляются; те, что в этой папке, исправлены раньше.\n"
+        )];
+        let _ = self.leave(WHOLE, &lines, &[self.wording().text(failure)]);
+    }
+
+    /// Leaves word of an output.
+    fn leave(&self, output: &str, lines: &[Text], said: &[String]) -> Result<(), Failure> {
         let language = self.messages.language();
         let lines: String = lines.iter().map(|line| line.in_language(language)).collect();
-        let page = self.page(output);
-        let made = std::fs::create_dir_all(file::folder_of(&page)).map_err(file::fails(&page, Deed::Write));
-        let text = format!("{lines}\n{}\n", said.join("\n"));
-        if let Err(failure) = made.and_then(|()| file::write(&page, text.as_bytes())) {
-            self.say_once(&failure);
-        }
+        let page = self.place(output);
+        std::fs::create_dir_all(file::folder_of(&page)).map_err(file::fails(&page, Deed::Write))?;
+        file::write(&page, format!("{lines}\n{}\n", said.join("\n")).as_bytes())
     }
 
     /// Takes the word back.
     fn mend(&self, output: &str) {
         // Mostly there is none.
-        let _ = std::fs::remove_file(self.page(output));
+        let _ = std::fs::remove_file(self.place(output));
     }
 }

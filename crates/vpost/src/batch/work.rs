@@ -307,8 +307,8 @@ fn foreign(place: &Path) -> Failure {
     refused(notice!(FOREIGN;
         "{} is there already and was not written by vpost",
         "{} уже лежит там, и писал его не vpost", place.display();
-        "give another folder with `-O`, move that file away, or write over it with `--force`",
-        "дайте другую папку ключом `-O`, уберите этот файл или запишите поверх: `--force`"
+        "move that file away, or give another output folder; `vpost batch --force` writes over it",
+        "уберите этот файл или дайте другую выходную папку; `vpost batch --force` запишет поверх"
     ))
 }
 
