@@ -94,6 +94,18 @@ fn a_quiet_file_is_not_quiet_about_itself() {
 }
 
 #[test]
+fn a_flag_that_is_off_and_a_folder_of_that_name_decide_nothing() {
+    let shop = Shop::new("strict = true\ntolerance = 2.5\n[correct]\nstrict = false\n");
+    let line = format!("jobs/op10/part.nc {TYPED}").replace("--tolerance 2.5", "");
+    std::fs::create_dir(shop.path("jobs/vpost.toml")).expect("a new folder");
+    let said = messages(&shop.run(&line));
+    assert!(said.contains("settings from vpost.toml: tolerance\n"), "{said}");
+    std::fs::write(shop.path("jobs/op10/vpost.toml"), "strict = false\n").expect("writable");
+    let said = messages(&shop.run(&line));
+    assert!(!said.contains("settings from"), "{said}");
+}
+
+#[test]
 fn a_batch_has_one_file() {
     let shop = Shop::new(SETTINGS);
     let ran = shop.run("batch jobs");

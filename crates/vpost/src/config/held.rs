@@ -142,8 +142,9 @@ pub(super) fn above(folder: &Path) -> Option<PathBuf> {
         Err(error) if error.kind() == std::io::ErrorKind::Unsupported => folder.to_owned(),
         found => found.ok()?,
     };
-    let file =
-        folder.ancestors().map(|folder| folder.join(NAME)).find(|file| file.symlink_metadata().is_ok())?;
+    // A link to nothing is a file that cannot be read; a folder of that name is none.
+    let is_file = |file: &PathBuf| file.symlink_metadata().is_ok() && !file.is_dir();
+    let file = folder.ancestors().map(|folder| folder.join(NAME)).find(is_file)?;
     // As it would be named from here, where it is below.
     let here = std::env::current_dir().and_then(|here| here.canonicalize()).ok();
     let short = here.and_then(|here| file.strip_prefix(here).ok().map(Path::to_owned));

@@ -63,6 +63,8 @@ pub(crate) fn find(arguments: &[OsString]) -> Result<Held, Failure> {
         kept.sort_by_key(|kept| std::cmp::Reverse(kept.command.len()));
         let mut said = BTreeSet::new();
         kept.retain(|kept| said.insert(kept.id.clone()));
+        // A flag that is off decides nothing but that.
+        kept.retain(|kept| kept.values != ["false"]);
     }
     held.kept = kept;
     Ok(held)
