@@ -320,6 +320,18 @@ fn what_is_too_large_is_said() {
     assert_eq!(server.codes(), ["VP0009"]);
 }
 
+/// An end within a message is said before the server goes.
+#[test]
+fn a_message_that_is_cut_off_is_said() {
+    for cut in ["Content-Length: 50\r\n\r\n{\"jsonrpc\"", "Content-Length: 50\r\n"] {
+        let mut server = Server::with(&stan());
+        server.bytes(cut.as_bytes());
+        server.to = None;
+        let said = server.next();
+        assert_eq!(said["error"]["code"], json!(-32700), "{said}");
+    }
+}
+
 /// A profile that is mended and saved holds at once.
 #[test]
 fn a_profile_is_read_again() {

@@ -33,7 +33,7 @@ use serde_json::Value;
 
 pub use document::Document;
 pub use machine::Find;
-use machine::Machines;
+use machine::{Machines, Told};
 use messages::Marked;
 use place::Place;
 
@@ -226,14 +226,10 @@ impl Editor {
         if settings.as_object().is_none_or(serde_json::Map::is_empty) {
             return Vec::new();
         }
-        match machine::told(settings, self.folder.as_deref()) {
-            Ok((told, language)) => {
-                self.machines.tell(told);
-                self.language = self.asked.or(language).unwrap_or(self.language);
-                Vec::new()
-            }
-            Err(failure) => self.said(&failure),
-        }
+        let Told { options, language, wrong } = machine::told(settings, self.folder.as_deref());
+        self.machines.tell(options);
+        self.language = self.asked.or(language).unwrap_or(self.language);
+        wrong.iter().flat_map(|failure| self.said(failure)).collect()
     }
 
     /// Files may be others now: all that is open is checked again.

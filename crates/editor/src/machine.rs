@@ -90,36 +90,43 @@ impl Machines {
     }
 }
 
-/// What an editor's settings say: options as a manifest spells them, and `language`; paths from its folder on.
-///
-/// # Errors
-/// A key or a value that is none.
-pub(crate) fn told(
-    settings: &Value,
-    folder: Option<&Path>,
-) -> Result<(JobOptions, Option<Language>), Failure> {
-    let mut settings = settings.clone();
-    let taken = settings.as_object_mut().map(|keys| {
-        keys.retain(|_, value| !value.is_null());
-        keys.remove("language")
-    });
-    let language = taken.flatten();
-    let wrong = |why: Text| {
-        Failure::usage(notice!(OPTION;
+/// What an editor's settings say.
+#[derive(Default)]
+pub(crate) struct Told {
+    pub(crate) options: JobOptions,
+    pub(crate) language: Option<Language>,
+    /// Keys and values that are none; the others hold without them.
+    pub(crate) wrong: Vec<Failure>,
+}
+
+/// Options as a manifest spells them, and `language`; paths from the editor's folder on.
+pub(crate) fn told(settings: &Value, folder: Option<&Path>) -> Told {
+    let mut told = Told::default();
+    let mut wrong = |why: Text| {
+        told.wrong.push(Failure::usage(notice!(OPTION;
             both!("a setting of the editor cannot be understood: {why}", "настройка редактора непонятна: {why:#}");
             "its keys are those of docs/how-to/editor.md", "её ключи перечислены в docs/how-to/editor.ru.md"
-        ))
+        )));
     };
-    let language = match language.as_ref().map(|name| name.as_str().and_then(Language::from_name)) {
-        Some(None) => {
-            return Err(wrong(both!("`language` is `en` or `ru`", "`language` — это `en` или `ru`")));
+    let read = |one: &Value| serde_json::from_value::<JobOptions>(one.clone());
+    let mut good = serde_json::Map::new();
+    for (key, value) in settings.as_object().into_iter().flatten().filter(|(_, value)| !value.is_null()) {
+        if key == "language" {
+            told.language = value.as_str().and_then(Language::from_name);
+            if told.language.is_none() {
+                wrong(both!("`language` is `en` or `ru`", "`language` — это `en` или `ru`"));
+            }
+            continue;
         }
-        language => language.flatten(),
-    };
-    let mut options: JobOptions = match settings {
-        Value::Null => JobOptions::default(),
-        settings => serde_json::from_value(settings).map_err(|error| wrong(of_toml(&error.to_string())))?,
-    };
+        match read(&serde_json::json!({ key: value })) {
+            Ok(_) => drop(good.insert(key.clone(), value.clone())),
+            Err(error) => {
+                let why = of_toml(&error.to_string());
+                wrong(both!("`{key}`: {why}", "`{key}`: {why:#}"));
+            }
+        }
+    }
+    let mut options = read(&Value::Object(good)).expect("each of them is one");
     if let Some(folder) = folder {
         let from = |path: &mut PathBuf| *path = folder.join(&*path);
         let single = [&mut options.machine, &mut options.tool_table, &mut options.linuxcnc_ini];
@@ -127,5 +134,5 @@ pub(crate) fn told(
         let table = options.dialect.as_mut().filter(|name| name.ends_with(".toml"));
         table.into_iter().for_each(|name| *name = folder.join(&*name).to_string_lossy().into_owned());
     }
-    Ok((options, language))
+    Told { options, ..told }
 }

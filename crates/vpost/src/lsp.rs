@@ -140,7 +140,7 @@ fn frame(input: &mut impl BufRead) -> io::Result<Came> {
     loop {
         let mut line = Vec::new();
         if input.by_ref().take(LONGEST).read_until(b'\n', &mut line)? == 0 {
-            return Ok(Came::End);
+            return Ok(if length.is_some() { cut_off() } else { Came::End });
         }
         let line = line.trim_ascii();
         if line.is_empty() {
@@ -161,9 +161,13 @@ fn frame(input: &mut impl BufRead) -> io::Result<Came> {
     }
     let mut text = Vec::new();
     if rest.read_to_end(&mut text)? < length as usize {
-        return Ok(Came::End);
+        return Ok(cut_off());
     }
     Ok(serde_json::from_slice(&text).map_or_else(|why| Came::Malformed(why.to_string()), Came::Message))
+}
+
+fn cut_off() -> Came {
+    Came::Malformed("the message ends before its length".to_owned())
 }
 
 fn write(messages: impl IntoIterator<Item = Message>) -> Result<(), Failure> {
