@@ -228,3 +228,48 @@ fn chords_of_arcs_are_the_controls_part() {
         assert!(!ran.status.success() && messages(&ran).contains(expected), "{wrong}: {}", messages(&ran));
     }
 }
+
+/// Axes that lag cut corners and make arcs small, by what their loops make of F.
+#[test]
+fn axes_that_lag_are_the_controls_part() {
+    let shop = Shop::new();
+    let exact = "dialect = \"linuxcnc\", blending = { mode = \"exact-stop\" }";
+    let program =
+        |feed: &str| format!("G21 G90 G54\nG0 X30. Y0. Z0.\nG3 X-30. Y0. I-30. J0. {feed}\nG1 X-40.\nM30\n");
+    let um = |loops: &str, feed: &str| {
+        let (um, said) = shop.said(&format!("{{ {exact}, {loops} }}"), &program(feed));
+        (um.as_f64(), said)
+    };
+    let near = |(um, said): (Option<f64>, String), expected: f64| {
+        assert!(um.is_some_and(|um| (um - expected).abs() < 2e-3), "{um:?}, not {expected}: {said}");
+        said
+    };
+    // 10 mm/s / (50 e) at a corner, 10²/(2 30 50²) on the arc; within 1 um at the corner with F8.15.
+    let said = near(um("following = { gain_1_s = 50 }", "F600."), 73.576);
+    assert!(said.contains("up to 73.6 um") && said.contains("F8 mm/min and slower"), "{said}");
+    assert_eq!(said.matches("VP0529").count(), 1, "{said}");
+    // Half the way of 20 mm/s² and 1/50²; where the control waits; the arc alone, with all fed forward but of Y.
+    near(um("following = { gain_1_s = 50 }, acceleration_mm_s2 = 20", "F600."), 4.0);
+    near(um("following = { gain_1_s = 50, in_position_mm = 0.002 }", "F600."), 2.0);
+    let ahead = "following = { gain_1_s = [50, 50, 30], feed_forward = 1, in_position_mm = 0.00001 }";
+    near(um(ahead, "F600."), 0.0);
+    let said = near(um("following = { gain_1_s = 50, in_position_mm = 0.00001 }", "F1500."), 4.166);
+    assert!(said.contains("F734 mm/min and slower"), "{said}");
+    // F per turn says no speed; F in the middle of lines counts.
+    let (unknown, said) = um("following = { gain_1_s = 50 }", "G95 F0.1 S1000 M3");
+    assert!(unknown.is_none() && said.contains("is not known"), "{said}");
+    let lines: String = (1..40).map(|k| format!("X{k}.5{}\n", if k == 20 { " F600." } else { "" })).collect();
+    let lines = format!("G21 G90 G54\nG0 X0. Y0. Z0.\nG1 F60.\n{lines}X50. F60.\nM30\n");
+    let (um, said) = shop.said(&format!("{{ {exact}, following = {{ gain_1_s = 50 }} }}"), &lines);
+    near((um.as_f64(), said), 73.576);
+    for (wrong, expected) in [
+        ("{ gain_1_s = 0 }", "gain_1_s above 0, up to 1000"),
+        ("{ gain_1_s = [50, 5000, 50] }", "gain_1_s above 0, up to 1000"),
+        ("{ gain_1_s = 50, feed_forward = 1.5 }", "feed_forward from 0 to 1"),
+        ("{ gain_1_s = 50, in_position_mm = 0 }", "in_position_mm above 0"),
+    ] {
+        let profile = shop.profile(&format!("{{ {exact}, following = {wrong} }}"));
+        let ran = run(&["profile", "check", &profile]);
+        assert!(!ran.status.success() && messages(&ran).contains(expected), "{wrong}: {}", messages(&ran));
+    }
+}

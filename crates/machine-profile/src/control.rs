@@ -3,10 +3,10 @@
 use diagnostic::both;
 
 use crate::error::VALUE;
-use crate::format::{self, Arcs, Blending, BlendingMode};
+use crate::format::{self, Arcs, Blending, BlendingMode, FollowingRules};
 use crate::loader::Loader;
-use crate::number::{Finite, Spanned};
-use toolpath::{ArcChords, Interpolator};
+use crate::number::{Each, Finite, Spanned};
+use toolpath::{ArcChords, Following, Interpolator};
 
 /// Controls that round corners by more cut another part, mm.
 const MOST_BLENDING_MM: f64 = 10.0;
@@ -14,6 +14,8 @@ const MOST_BLENDING_MM: f64 = 10.0;
 const MOST_CHORD_MM: f64 = 10.0;
 /// Ten times the acceleration of gravity: faster are units mistaken.
 const MOST_ACCELERATION_MM_S2: f64 = 1e5;
+/// Sampled a thousand times a second, a loop of a higher gain swings.
+const MOST_GAIN_1_S: f64 = 1000.0;
 
 /// What a profile says of the control.
 #[derive(Debug, Default)]
@@ -35,6 +37,7 @@ impl Loader<'_> {
                     blending_mm: rules.blending.and_then(|blending| self.blending_mm(written, blending)),
                     arcs: rules.arcs.and_then(|arcs| self.arcs(written, arcs)),
                     acceleration_mm_s2: self.acceleration_mm_s2(written, rules.acceleration_mm_s2),
+                    following: rules.following.and_then(|rules| self.following(written, rules)),
                 },
             },
         }
@@ -102,6 +105,36 @@ impl Loader<'_> {
             "ожидалось acceleration_mm_s2 больше 0 и не больше {MOST_ACCELERATION_MM_S2}"
         );
         let help = both!("give it in mm/s²: 0.3 g are 2943", "задайте в мм/с²: 0,3 g — это 2943");
+        self.refuse(at, VALUE, message, expected, help);
+        None
+    }
+    /// How the axes follow.
+    fn following(&mut self, at: &Spanned<format::Control>, rules: FollowingRules) -> Option<Following> {
+        let following = Following {
+            gain_1_s: rules.gain_1_s.axes(),
+            feed_forward: rules.feed_forward.map_or([0.0; 3], Each::axes),
+            in_position_mm: rules.in_position_mm.map(|Finite(mm)| mm),
+        };
+        let expected = if !following.gain_1_s.iter().all(|gain| *gain > 0.0 && *gain <= MOST_GAIN_1_S) {
+            both!(
+                "expected gain_1_s above 0, up to {MOST_GAIN_1_S}: a loop of another gain runs away or swings",
+                "ожидалось gain_1_s больше 0 и не больше {MOST_GAIN_1_S}: с другим усилением контур теряет устойчивость"
+            )
+        } else if !following.feed_forward.iter().all(|share| (0.0..=1.0).contains(share)) {
+            both!("expected feed_forward from 0 to 1", "ожидалось feed_forward от 0 до 1")
+        } else if following.in_position_mm.is_some_and(|mm| mm <= 0.0 || mm > MOST_BLENDING_MM) {
+            both!(
+                "expected in_position_mm above 0, up to {MOST_BLENDING_MM}",
+                "ожидалось in_position_mm больше 0 и не больше {MOST_BLENDING_MM}"
+            )
+        } else {
+            return Some(following);
+        };
+        let message = both!("`following` of the control is not understood", "`following` стойки непонятно");
+        let help = both!(
+            "write the loops' gain, like {{ gain_1_s = 50, feed_forward = 0.9 }}; a lag of 1 mm at 1 m/min is 16.67 1/s",
+            "напишите усиление контуров, например {{ gain_1_s = 50, feed_forward = 0.9 }}; отставание 1 мм при 1 м/мин — это 16,67 1/с"
+        );
         self.refuse(at, VALUE, message, expected, help);
         None
     }

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::number::{Finite, Length, Spanned, Triple};
+use crate::number::{Each, Finite, Length, Spanned, Triple};
 use crate::zeros::WorkOffset;
 
 /// A machine profile of vpost.
@@ -87,7 +87,7 @@ pub(crate) struct Document {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(
     untagged,
-    expecting = "expected a dialect like \"fanuc\", or { dialect = \"fanuc\", blending = { mode = \"tolerance\", tolerance_mm = 0.005 } } with the mode \"exact-stop\", \"tolerance\" or \"unlimited\"; arcs = { chord_mm = 1.0 } or { tolerance_mm = 0.002 } and acceleration_mm_s2 = 2000 may stand beside it"
+    expecting = "expected a dialect like \"fanuc\", or { dialect = \"fanuc\", blending = { mode = \"tolerance\", tolerance_mm = 0.005 } } with the mode \"exact-stop\", \"tolerance\" or \"unlimited\"; arcs = { chord_mm = 1.0 } or { tolerance_mm = 0.002 }, acceleration_mm_s2 = 2000 and following = { gain_1_s = 50 } may stand beside it"
 )]
 pub(crate) enum Control {
     Dialect(String),
@@ -105,6 +105,20 @@ pub(crate) struct ControlRules {
     pub(crate) arcs: Option<Arcs>,
     /// Along the path, mm/s²: what stops at corners cost.
     pub(crate) acceleration_mm_s2: Option<Finite>,
+    /// How far the axes lag behind their commands.
+    pub(crate) following: Option<FollowingRules>,
+}
+
+/// The position loops of the linear axes.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FollowingRules {
+    /// 1/s, of all or of X, Y, Z: 1 m/min per mm of lag is 16.67.
+    pub(crate) gain_1_s: Each,
+    /// Share of the speed that is fed forward, 0 (default) to 1.
+    pub(crate) feed_forward: Option<Each>,
+    /// At an exact stop the control waits until they lag by no more, mm.
+    pub(crate) in_position_mm: Option<Finite>,
 }
 
 /// One of both.

@@ -33,6 +33,24 @@ pub(crate) enum Length {
     Vector(Triple),
 }
 
+/// A number of all axes, or one of each.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "expected a number, or three of X, Y and Z")]
+pub(crate) enum Each {
+    All(Finite),
+    Own(Triple),
+}
+
+impl Each {
+    /// Of X, Y, Z.
+    pub(crate) fn axes(self) -> [f64; 3] {
+        match self {
+            Self::All(Finite(number)) => [number; 3],
+            Self::Own(numbers) => numbers.map(|Finite(number)| number),
+        }
+    }
+}
+
 /// A value with the bytes of the profile that say it; to the schema the value alone.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(transparent)]

@@ -9,6 +9,7 @@ use nc_program::{LastFeed, Modal, PathControl};
 use toolpath::{ArcChords, Feed, Motion, Shape};
 
 use crate::job::{CONTROL_LEAVES, Job, Warning};
+use crate::lag::{Lag, Turns, speed_mm_s};
 use crate::path_mode::{self, PathMode};
 
 /// Where something is cut with the control farthest off the path.
@@ -16,6 +17,7 @@ use crate::path_mode::{self, PathMode};
 pub struct ControlPart {
     corner: Option<Corner>,
     arc: Option<Chords>,
+    lag: Lag,
     /// Where stops were asked for.
     stops: Option<Stops>,
 }
@@ -66,14 +68,30 @@ impl ControlPart {
         }
     }
 
+    /// Axes that lag make a feed.
+    #[inline]
+    pub(crate) fn lag(
+        &mut self,
+        job: &Job<'_>,
+        modal: &Modal,
+        feed: (LastFeed, Turns),
+        place: impl FnOnce() -> (Range<u64>, u64),
+    ) {
+        if let Some(following) = &job.interpolator.following {
+            let waits_mm = following.in_position_mm.filter(|_| leaves_mm(job, modal) == 0.0);
+            self.lag.corner(job, waits_mm, feed, place);
+        }
+    }
+
     /// An arc is left to the control, whose radii as it is written are apart by so much, mm.
     pub(crate) fn arc(
         &mut self,
         job: &Job<'_>,
-        feed: &Feed,
-        apart_mm: f64,
+        modal: &Modal,
+        (feed, apart_mm): (&Feed, f64),
         (span, line): (&Range<u64>, u64),
     ) {
+        self.lag.arc(job, modal, feed, (span, line));
         let off_mm = chords(job).map_or(0.0, |chords| chords.leaves_mm(feed) + apart_mm);
         if off_mm > self.arc.as_ref().map_or(0.0, |known| known.off_mm) {
             self.arc = Some(Chords { off_mm, span: span.clone(), line });
@@ -92,13 +110,8 @@ impl ControlPart {
         if job.path_mode != PathMode::Exact {
             return;
         }
-        let known = match (modal.last_feed, job.interpolator.acceleration_mm_s2) {
-            (LastFeed::PerMinute(feed, units), Some(acceleration)) => {
-                Some((feed.to_f64() * units.mm() / 60.0, acceleration))
-            }
-            _ => None,
-        };
-        let more_s = known.map(|(mm_s, acceleration)| {
+        let mm_s = Some(speed_mm_s(modal.last_feed)).filter(|mm_s| mm_s.is_finite());
+        let more_s = mm_s.zip(job.interpolator.acceleration_mm_s2).map(|(mm_s, acceleration)| {
             let each_mm = length_mm() / blocks as f64;
             // From rest to rest, less what it takes at full speed.
             let more_s = if each_mm < mm_s * mm_s / acceleration {
@@ -120,6 +133,7 @@ impl ControlPart {
         if later.arc.as_ref().map(|at| at.off_mm) > self.arc.as_ref().map(|at| at.off_mm) {
             self.arc.clone_from(&later.arc);
         }
+        self.lag.add(&later.lag);
         later.stops.into_iter().for_each(|more| self.add_stops(more));
     }
 
@@ -129,12 +143,12 @@ impl ControlPart {
         self.stops = Some(Stops { count: count + more.count, ns });
     }
 
-    /// By how much the control leaves the path at most, mm: at corners and on arcs together; infinite where nobody says, `None`
+    /// By how much the control leaves the path at most, mm: at corners, on arcs and by lag together; infinite where nobody says, `None`
     /// where nothing is cut.
     #[must_use]
     pub fn off_mm(&self) -> Option<f64> {
         let corner_mm = self.corner.as_ref()?.by.off_mm;
-        Some(corner_mm + self.arc.as_ref().map_or(0.0, |arc| arc.off_mm))
+        Some(corner_mm + self.arc.as_ref().map_or(0.0, |arc| arc.off_mm) + self.lag.off_mm())
     }
 
     /// Ends of blocks at which the control was made to stop, and what that takes at most, s; `None` there: nobody knows.
@@ -146,7 +160,7 @@ impl ControlPart {
     /// The lines of its places.
     pub(crate) fn lines(&mut self) -> impl Iterator<Item = &mut u64> {
         let corner = self.corner.iter_mut().flat_map(|cut| cut.by.line.iter_mut().chain([&mut cut.line]));
-        corner.chain(self.arc.iter_mut().map(|arc| &mut arc.line))
+        corner.chain(self.arc.iter_mut().map(|arc| &mut arc.line)).chain(self.lag.lines())
     }
 
     /// What it adds to the path, in words, and what its stops cost; none where it adds nothing.
@@ -183,7 +197,7 @@ impl ControlPart {
                 "сколько займут остановы в концах кадров ({count}), неизвестно: нужно `acceleration_mm_s2` в `control`"
             ),
         });
-        corner.into_iter().chain(arc).chain(stops)
+        corner.into_iter().chain(arc).chain(self.lag.said()).chain(stops)
     }
 
     /// What the tolerance does not cover.
@@ -192,7 +206,7 @@ impl ControlPart {
         let corner = self.corner.as_ref().filter(|cut| cut.by.off_mm > tolerance_mm);
         let arc = self.arc.as_ref().filter(|arc| arc.off_mm > tolerance_mm);
         let warnings = [corner.map(|corner| corner.warning(job)), arc.map(|arc| arc.warning(job))];
-        warnings.into_iter().flatten()
+        warnings.into_iter().flatten().chain(self.lag.warnings(job))
     }
 }
 

@@ -48,6 +48,7 @@ mod figures;
 mod guards;
 mod job;
 mod keep_to_path;
+mod lag;
 mod large;
 mod lengthless;
 mod lowered;

@@ -16,6 +16,7 @@ use crate::datum::{LastDatum, going_on};
 use crate::feed;
 use crate::figures::raise;
 use crate::job::Job;
+use crate::lag::Turns;
 use crate::nose::{nose_mm, reserved_mm};
 use crate::notices::{SPIRAL_MM, hole_skipped, refusal};
 use crate::state::State;
@@ -193,7 +194,8 @@ impl Pass<'_> {
             && self.codes.is_arc(code)
         {
             let place = (&block.file_range(), block.line);
-            self.tally.figures.control.arc(self.job, feed, apart_mm, place);
+            let modal = self.state.interpreter.modal();
+            self.tally.figures.control.arc(self.job, modal, (feed, apart_mm), place);
         }
     }
 
@@ -389,6 +391,7 @@ impl Pass<'_> {
             let Motion::Feed(feed) = motion else { continue };
             let (control, modal) = (&mut self.tally.figures.control, self.state.interpreter.modal());
             control.cut(self.job, modal, || (span.clone(), line));
+            control.lag(self.job, modal, (modal.last_feed, Turns::of(feed)), || (span.clone(), line));
             control.stop(self.job, modal, blocks_out, || Way::of(feed).length_mm());
         }
         let Tally { figures, notices, .. } = &mut self.tally;

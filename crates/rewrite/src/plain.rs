@@ -6,11 +6,12 @@
 use correction::{Run, ShortLines, ShortRun};
 use diagnostic::Diagnostic;
 use machine_model::LANES;
-use nc_program::PlainEnd;
+use nc_program::{LastFeed, PlainEnd};
 use nc_syntax::{Block, Letters, PlainLine, Reader};
 use toolpath::Motion;
 
 use crate::control::distance_mm;
+use crate::lag::Turns;
 use crate::pass::{Pass, info};
 use crate::words::letters;
 
@@ -80,9 +81,10 @@ impl Pass<'_> {
             }
             if let Some(run) = &run {
                 let feed = found[..done].iter().rev().find_map(|end| end.feed);
+                let before = self.state.interpreter.modal().last_feed;
                 self.state.interpreter.go_to(&found[done - 1], feed);
                 start_mm = self.stops(start_mm, &ends_mm[..done]);
-                self.write_run(&lines, &found, run, info.decimals)?;
+                self.write_run(&lines, &found, run, (info.decimals, before))?;
             }
             if done < count {
                 let end_mm = found[done].end_mm;
@@ -107,14 +109,14 @@ impl Pass<'_> {
         start_mm
     }
 
-    /// Writes lines that were corrected together.
+    /// Writes lines that were corrected together; `before`: the F in force in front of them.
     #[inline]
     fn write_run(
         &mut self,
         lines: &[PlainLine<'_>; LANES],
         ends: &[PlainEnd; LANES],
         run: &ShortRun,
-        decimals: [u8; 3],
+        (decimals, before): ([u8; 3], LastFeed),
     ) -> Result<(), Vec<Diagnostic>> {
         let place = || {
             let PlainLine { offset, line, .. } = lines[0];
@@ -124,7 +126,15 @@ impl Pass<'_> {
             let (span, line) = place();
             self.tally.cut_from(datum, self.job.options.tolerance_mm, (&span, line));
         }
-        self.tally.figures.control.cut(self.job, self.state.interpreter.modal(), place);
+        let (control, modal) = (&mut self.tally.figures.control, self.state.interpreter.modal());
+        control.cut(self.job, modal, place);
+        let said = |end: &PlainEnd| match (end.feed?, modal.last_feed) {
+            (feed, LastFeed::PerMinute(_, units)) => Some(LastFeed::PerMinute(feed, units)),
+            (_, unknown) => Some(unknown),
+        };
+        for feed in ends[..run.count].iter().filter_map(said).chain([before]) {
+            control.lag(self.job, modal, (feed, Turns::Not), place);
+        }
         for ((line, end), counts) in lines.iter().zip(ends).zip(run.counts).take(run.count) {
             if counts == [None; 3] {
                 self.state.emitter.pass_line(line, &mut self.out);

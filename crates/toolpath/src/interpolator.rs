@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::{Feed, Shape};
+use crate::{Feed, Following, Shape};
 
 /// What parameters of a control say of how it keeps to the path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -13,6 +13,8 @@ pub struct Interpolator {
     pub arcs: Option<ArcChords>,
     /// Along the path, mm/s²; `None`: not known.
     pub acceleration_mm_s2: Option<f64>,
+    /// How the axes follow; `None`: taken as if at once.
+    pub following: Option<Following>,
 }
 
 /// How a control cuts arcs into straight lines whose ends lie on the arc, all alike.

@@ -7,6 +7,7 @@
 
 mod chords;
 mod feed_rate;
+mod following;
 mod frame;
 mod hole;
 mod interpolator;
@@ -19,6 +20,7 @@ mod turning;
 
 pub use chords::Chord;
 pub use feed_rate::FeedRate;
+pub use following::Following;
 pub use frame::{Frame, Similarity};
 pub use hole::{
     Cycle, CycleKind, Hole, HoleMove, MOST_PECKS, PeckRetreats, Retreat, Stroke, peck_depths, strokes,

@@ -9,7 +9,7 @@ pub use sense::plus_turns;
 use diagnostic::{Language, Text, both};
 use machine_model::EngineId;
 
-use toolpath::ArcChords;
+use toolpath::{ArcChords, Following};
 
 use crate::format::Document;
 use crate::profile::{Outside, Profile};
@@ -49,32 +49,7 @@ impl Profile {
 
     fn write(&self, out: &mut Lines) {
         out.line(both!("machine      {}", "станок       {}", self.name));
-        if let Some(control) = &self.control {
-            out.line(both!("control      {control}", "ЧПУ          {control}"));
-        }
-        match self.interpolator.blending_mm {
-            None => {}
-            Some(0.0) => out.line(both!("corners      exact stop", "углы         точный останов")),
-            Some(mm) => out.line(both!(
-                "corners      the control keeps within {mm} mm of the path",
-                "углы         стойка держит траекторию в пределах {mm} мм"
-            )),
-        }
-        match self.interpolator.arcs {
-            None => {}
-            Some(ArcChords::Length(mm)) => {
-                out.line(both!("arcs         chords of {mm} mm", "дуги         хорды по {mm} мм"));
-            }
-            Some(ArcChords::Tolerance(mm)) => {
-                out.line(both!(
-                    "arcs         chords {mm} mm beside them",
-                    "дуги         хорды в {mm} мм от них"
-                ));
-            }
-        }
-        if let Some(acceleration) = self.interpolator.acceleration_mm_s2 {
-            out.line(both!("acceleration {acceleration} mm/s²", "ускорение    {acceleration} мм/с²"));
-        }
+        self.write_control(out);
         self.write_chain(out);
         self.write_calibration(out);
         self.write_linear_axes(out);
@@ -120,6 +95,43 @@ impl Profile {
             let text: Vec<String> =
                 effect.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
             out.line(both!("effect       {} {}", "эффект       {} {}", effect.id, text.join(", ")));
+        }
+    }
+
+    fn write_control(&self, out: &mut Lines) {
+        if let Some(control) = &self.control {
+            out.line(both!("control      {control}", "ЧПУ          {control}"));
+        }
+        match self.interpolator.blending_mm {
+            None => {}
+            Some(0.0) => out.line(both!("corners      exact stop", "углы         точный останов")),
+            Some(mm) => out.line(both!(
+                "corners      the control keeps within {mm} mm of the path",
+                "углы         стойка держит траекторию в пределах {mm} мм"
+            )),
+        }
+        match self.interpolator.arcs {
+            None => {}
+            Some(ArcChords::Length(mm)) => {
+                out.line(both!("arcs         chords of {mm} mm", "дуги         хорды по {mm} мм"));
+            }
+            Some(ArcChords::Tolerance(mm)) => {
+                out.line(both!(
+                    "arcs         chords {mm} mm beside them",
+                    "дуги         хорды в {mm} мм от них"
+                ));
+            }
+        }
+        if let Some(acceleration) = self.interpolator.acceleration_mm_s2 {
+            out.line(both!("acceleration {acceleration} mm/s²", "ускорение    {acceleration} мм/с²"));
+        }
+        if let Some(Following { gain_1_s: [x, y, z], feed_forward: [fx, fy, fz], .. }) =
+            self.interpolator.following
+        {
+            out.line(both!(
+                "following    gains {x}, {y}, {z} 1/s, feed forward {fx}, {fy}, {fz}",
+                "слежение     усиление {x}, {y}, {z} 1/с, упреждение {fx}, {fy}, {fz}"
+            ));
         }
     }
 }

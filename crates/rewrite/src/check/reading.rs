@@ -19,6 +19,7 @@ use crate::control::{ControlPart, radii_apart_mm};
 use crate::datum::{Datum, LastDatum, going_on};
 use crate::feed::minutes;
 use crate::job::Job;
+use crate::lag::Turns;
 use crate::notices::other_tool;
 use crate::path_mode::PathMode;
 
@@ -272,9 +273,12 @@ impl<'a, 'n> Program<'a, 'n> {
             let datum = self.datum.placement(self.job.datums, self.job.machine(), context);
             let cuts = matches!(motion, Motion::Feed(_) | Motion::Hole(_));
             if let Motion::Feed(feed) = &motion {
-                self.control.cut(self.job, self.interpreter.modal(), || (block.file_range(), line));
+                let modal = self.interpreter.modal();
+                let place = || (block.file_range(), line);
+                self.control.cut(self.job, modal, place);
+                self.control.lag(self.job, modal, (modal.last_feed, Turns::of(feed)), place);
                 let apart_mm = radii_apart_mm(motion).unwrap_or_default();
-                self.control.arc(self.job, feed, apart_mm, (&block.file_range(), line));
+                self.control.arc(self.job, modal, (feed, apart_mm), (&block.file_range(), line));
             }
             if let Some(datum) = cuts.then(|| self.datum.newly_used()).flatten()
                 && !self.datums.iter().any(|known| known.is(datum))
