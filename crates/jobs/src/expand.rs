@@ -108,8 +108,8 @@ pub fn correct(
         return Err(Failure::refused(name, text, vec![diagnostic]));
     }
     let done = match correct_plain(text, name, settings, manner, &mut progress) {
-        Ok(None) => correct_expanded(text, name, settings, progress),
-        Ok(Some(done)) => Ok(done),
+        Ok(Plain::Done(done)) => Ok(*done),
+        Ok(Plain::Not(refused)) => correct_expanded(text, name, settings, refused, progress),
         Err(failure) => Err(failure),
     };
     done.map_err(|failure| with_control(failure, text, name, settings))
@@ -132,10 +132,12 @@ fn with_control(failure: Failure, text: &[u8], name: &str, settings: &Settings) 
     Failure::Refused(reports)
 }
 
+/// `refused`: what the short way said, which holds of a text that is its own plain program.
 fn correct_expanded(
     text: &[u8],
     name: &str,
     settings: &Settings,
+    refused: Option<Vec<Diagnostic>>,
     mut progress: impl FnMut(f64) -> Result<(), Failure>,
 ) -> Result<Done, Failure> {
     // Of the text as it was written: a loop counts once, and what is computed says nothing of how lengths are written.
@@ -157,9 +159,12 @@ fn correct_expanded(
     let job = Job { force: true, ..settings.job(&provenance)? };
     let total = expanded.text().len().max(1) as f64;
     let source_line = |line| expanded.source_line(line).1;
-    let result = rewrite::correct(expanded.text(), &job, source_line, |done| {
-        progress(done as f64 / total).map_err(PipelineEnd::Failed)
-    });
+    let result = match refused.filter(|_| !expanded.changed()) {
+        Some(refused) => Err(PipelineEnd::Refused(refused)),
+        None => rewrite::correct(expanded.text(), &job, source_line, |done| {
+            progress(done as f64 / total).map_err(PipelineEnd::Failed)
+        }),
+    };
     let mut corrected = match result {
         Ok(corrected) => corrected,
         Err(PipelineEnd::Refused(diagnostics)) => {
@@ -192,15 +197,21 @@ fn correct_expanded(
     Ok(Done { corrected, warnings, lookups: lookups.into_inner() })
 }
 
-/// The short way of a program that has no flow, as most have none: one pass instead of two. `None` where it has flow,
-/// and where it is refused: the long way says why.
+/// What comes of the short way.
+enum Plain {
+    Done(Box<Done>),
+    /// The program has flow; or is refused, and the long way says of all of it why.
+    Not(Option<Vec<Diagnostic>>),
+}
+
+/// The short way of a program that has no flow, as most have none: one pass instead of two.
 fn correct_plain(
     text: &[u8],
     name: &str,
     settings: &Settings,
     manner: Manner,
     mut progress: impl FnMut(f64) -> Result<(), Failure>,
-) -> Result<Option<Done>, Failure> {
+) -> Result<Plain, Failure> {
     let provenance = settings.provenance();
     let job = Job { force: manner.force, ..settings.job(&provenance)? };
     let total = text.len().max(1) as f64;
@@ -208,12 +219,13 @@ fn correct_plain(
         rewrite::correct_plain(text, &job, |done| progress(done as f64 / total).map_err(PipelineEnd::Failed));
     let mut corrected = match result {
         Ok(Some(corrected)) => corrected,
-        Ok(None) | Err(PipelineEnd::Refused(_)) => return Ok(None),
+        Ok(None) => return Ok(Plain::Not(None)),
+        Err(PipelineEnd::Refused(diagnostics)) => return Ok(Plain::Not(Some(diagnostics))),
         Err(PipelineEnd::Failed(failure)) => return Err(failure),
     };
     let questions = settings.questions();
     if corrected.evidence.refusal(&questions).is_err() {
-        return Ok(None);
+        return Ok(Plain::Not(None));
     }
     let doubts = corrected.evidence.doubts(&questions).into_iter().map(|(diagnostic, _)| diagnostic);
     let told = [corrected.figures.warnings.clone(), doubts.collect()];
@@ -224,7 +236,7 @@ fn correct_plain(
         .filter(|diagnostics: &Vec<Diagnostic>| !diagnostics.is_empty())
         .map(report)
         .collect();
-    Ok(Some(Done { corrected, warnings, lookups: Vec::new() }))
+    Ok(Plain::Done(Box::new(Done { corrected, warnings, lookups: Vec::new() })))
 }
 
 /// Why a pipeline ended early.
@@ -268,10 +280,15 @@ mod tests {
             let warned_of = "G21 G90 G17 G54\nG43 H1\nG0 X10. Y10. Z30.\nG1 Z15. F600\nG41 D1 X20.\nY30.\nG40 X40.\nM30\n";
             programs.push(("warned of".to_owned(), warned_of.into()));
             for (name, text) in programs {
-                let whole = correct_expanded(&text, &name, &settings, |_| Ok(()));
-                let Some(done) = correct_plain(&text, &name, &settings, manner, |_| Ok(())).unwrap() else {
-                    long += 1;
-                    continue;
+                let long_way = |refused| correct_expanded(&text, &name, &settings, refused, |_| Ok(()));
+                let whole = long_way(None);
+                let done = match correct_plain(&text, &name, &settings, manner, |_| Ok(())).unwrap() {
+                    Plain::Done(done) => done,
+                    Plain::Not(refused) => {
+                        assert_eq!(format!("{:?}", long_way(refused)), format!("{whole:?}"), "{name}");
+                        long += 1;
+                        continue;
+                    }
                 };
                 let whole = whole.unwrap_or_else(|_| panic!("{name} is refused one way only"));
                 assert!(done.corrected == whole.corrected, "{name}");
