@@ -80,6 +80,8 @@ struct House {
     functions_above_80_lines: Split,
     bool_parameters: Split,
     lines_above_120_columns: usize,
+    lines_of_scripts: usize,
+    lines_of_judges: usize,
     circles: usize,
     files_in_circles: usize,
     test_binaries: usize,
@@ -108,6 +110,8 @@ impl House {
             ("bool_parameters", Some(self.bool_parameters.code)),
             ("circles", Some(self.circles)),
             ("lines_above_120_columns", Some(self.lines_above_120_columns)),
+            ("lines_of_scripts", Some(self.lines_of_scripts)),
+            ("lines_of_judges", Some(self.lines_of_judges)),
             ("test_programs", Some(self.test_binaries)),
             ("target_mb", target_mb.and_then(|mb| usize::try_from(mb).ok())),
         ]
@@ -145,6 +149,8 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
         functions_above_80_lines: Split::of(&long_functions, |function| function.is_test),
         bool_parameters: Split::of(&flags, |function| function.is_test),
         lines_above_120_columns: sources.iter().map(|source| source.wide).sum(),
+        lines_of_scripts: lines(&root, &["crates/*.js", "editors/*.js", "crates/*.css"], "//")?,
+        lines_of_judges: lines(&root, &["tests/*.py", "tests/*.mjs"], "#")?,
         files_in_circles: circles.iter().map(|circle| circle.files.len()).sum(),
         circles: circles.len(),
         test_binaries,
@@ -200,6 +206,8 @@ fn page(house: &House) -> String {
         split("functions above 80 lines", &house.functions_above_80_lines),
         split("`bool` parameters", &house.bool_parameters),
         alone("lines above 120 columns", house.lines_above_120_columns.to_string()),
+        alone("lines of scripts and styles of pages", house.lines_of_scripts.to_string()),
+        vec!["lines of judges".to_owned(), String::new(), house.lines_of_judges.to_string()],
         alone("circles of files", format!("{} ({} files)", house.circles, house.files_in_circles)),
         vec![
             "test binaries".to_owned(),
@@ -225,23 +233,40 @@ fn list(heading: &str, entries: impl Iterator<Item = String>) -> String {
 
 /// Rust files that git knows or would take, measured.
 fn sources(root: &Path, of_tests: &BTreeSet<PathBuf>) -> anyhow::Result<Vec<Source>> {
+    let files = texts(root, &["*.rs"])?;
+    files
+        .iter()
+        .map(|(path, text)| {
+            let outside = ["tests", "benches", "examples"];
+            let is_test = of_tests.contains(path)
+                || path.components().any(|part| outside.iter().any(|name| part.as_os_str() == *name));
+            Source::measure(path, text, is_test)
+        })
+        .collect()
+}
+
+/// The files that git knows or would take, by patterns, from the root.
+fn texts(root: &Path, patterns: &[&str]) -> anyhow::Result<Vec<(PathBuf, String)>> {
     let names = text_of(
         Command::new("git")
-            .args(["ls-files", "--cached", "--others", "--exclude-standard", "-z", "*.rs"])
+            .args(["ls-files", "--cached", "--others", "--exclude-standard", "-z"])
+            .args(patterns)
             .current_dir(root),
     )?;
     let there = names.split('\0').filter(|name| !name.is_empty() && root.join(name).exists());
     there
         .map(|name| {
-            let path = Path::new(name);
-            let outside = ["tests", "benches", "examples"];
-            let is_test = of_tests.contains(path)
-                || path.components().any(|part| outside.iter().any(|name| part.as_os_str() == *name));
             let text =
-                std::fs::read_to_string(root.join(path)).with_context(|| format!("{name}: unreadable"))?;
-            Source::measure(path, &text, is_test)
+                std::fs::read_to_string(root.join(name)).with_context(|| format!("{name}: unreadable"))?;
+            Ok((PathBuf::from(name), text))
         })
         .collect()
+}
+
+/// Lines of files in another language that say something; `comment` begins one that says nothing to a machine.
+fn lines(root: &Path, patterns: &[&str], comment: &str) -> anyhow::Result<usize> {
+    let says = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with(comment);
+    Ok(texts(root, patterns)?.iter().map(|(_, text)| text.lines().filter(says).count()).sum())
 }
 
 /// A file of tests that no test program names would never run, and nothing would say so.
