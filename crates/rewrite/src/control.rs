@@ -83,16 +83,16 @@ impl ControlPart {
         }
     }
 
-    /// An arc is left to the control, whose radii as it is written are apart by so much, mm.
+    /// An arc is left to the control, whose radii as it is written are apart.
     pub(crate) fn arc(
         &mut self,
         job: &Job<'_>,
         modal: &Modal,
-        (feed, apart_mm): (&Feed, f64),
+        (feed, apart): (&Feed, Apart),
         (span, line): (&Range<u64>, u64),
     ) {
         self.lag.arc(job, modal, feed, (span, line));
-        let off_mm = chords(job).map_or(0.0, |chords| chords.leaves_mm(feed) + apart_mm);
+        let off_mm = chords(job).map_or(0.0, |chords| apart.with_chords_mm(chords.leaves_mm(feed)));
         if off_mm > self.arc.as_ref().map_or(0.0, |known| known.off_mm) {
             self.arc = Some(Chords { off_mm, span: span.clone(), line });
         }
@@ -271,28 +271,59 @@ impl Chords {
     }
 }
 
-/// By how much the radii of an arc differ between its start and its end, mm.
-pub(crate) fn radii_apart_mm(motion: &Motion) -> Option<f64> {
+/// By how much the radius of an arc is larger at its end than at its start, and by how much it is smaller, mm, at most
+/// over its pieces.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Apart {
+    wider_mm: f64,
+    narrower_mm: f64,
+}
+
+impl Apart {
+    fn of(more_mm: f64) -> Self {
+        Self { wider_mm: more_mm.max(0.0), narrower_mm: (-more_mm).max(0.0) }
+    }
+
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self {
+            wider_mm: self.wider_mm.max(other.wider_mm),
+            narrower_mm: self.narrower_mm.max(other.narrower_mm),
+        }
+    }
+
+    pub(crate) fn mm(self) -> f64 {
+        self.wider_mm.max(self.narrower_mm)
+    }
+
+    /// How far chords that lie so far beside the arc of its first radius leave it, mm: they lie within, and so farther from
+    /// an arc that widens, nearer to one that narrows.
+    fn with_chords_mm(self, beside_mm: f64) -> f64 {
+        (beside_mm + self.wider_mm).max(self.narrower_mm)
+    }
+}
+
+/// By how much the radii of an arc differ between its start and its end.
+pub(crate) fn radii_apart(motion: &Motion) -> Option<Apart> {
     let Motion::Feed(Feed { start, end, shape: Shape::Arc(arc), .. }) = motion else { return None };
     let [u, v, _] = arc.plane.axes();
     let radius_mm =
         |place: &[f64; 3]| units::math::hypot(place[u] - arc.centre_mm[0], place[v] - arc.centre_mm[1]);
-    Some((radius_mm(&start.linear_mm) - radius_mm(&end.linear_mm)).abs())
+    Some(Apart::of(radius_mm(&end.linear_mm) - radius_mm(&start.linear_mm)))
 }
 
-/// By how much the radii of an arc at its start and its end differ as it is written, mm: a control that cuts chords keeps the
-/// first of them, and makes it up with the last chord. 0 where no piece is an arc with a centre.
+/// By how much the radii of an arc at its start and its end differ as it is written: a control that cuts chords keeps the
+/// first of them, and makes it up with the last chord. Not at all where no piece is an arc with a centre.
 ///
 /// * `start_mm` – where the axes stand, axis commands
-pub(crate) fn radii_apart_by_words_mm(
+pub(crate) fn radii_apart_by_words(
     pieces: &[Piece],
     start_mm: [Option<f64>; 3],
     info: &correction::Block,
     motion: &Motion,
-) -> f64 {
-    let Motion::Feed(feed @ Feed { shape: Shape::Arc(arc), .. }) = motion else { return 0.0 };
+) -> Apart {
+    let Motion::Feed(feed @ Feed { shape: Shape::Arc(arc), .. }) = motion else { return Apart::default() };
     if pieces.is_empty() || info.arc_centres_absolute {
-        return radii_apart_mm(motion).unwrap_or_default();
+        return radii_apart(motion).unwrap_or_default();
     }
     let [first, second, _] = arc.plane.axes();
     let mut at = info.frame.to_program(start_mm.map(Option::unwrap_or_default));
@@ -302,7 +333,7 @@ pub(crate) fn radii_apart_by_words_mm(
         Goal::AsStated => stated_mm,
         Goal::Stays => stays_mm,
     };
-    let mut apart_mm = 0.0_f64;
+    let mut apart = Apart::default();
     for piece in pieces {
         let end = [0, 1, 2].map(|axis| match piece.axes[axis] {
             Goal::Steps(_) if info.incremental[axis] => at[axis] + to(piece.axes[axis], axis, 0.0, 0.0),
@@ -313,11 +344,11 @@ pub(crate) fn radii_apart_by_words_mm(
                 .map(|(k, axis)| to(centre[k], axis, arc.centre_mm[k] - feed.start.linear_mm[axis], 0.0));
             let back = [at[first] + offset[0] - end[first], at[second] + offset[1] - end[second]];
             let radii = [offset, back].map(|[a, b]| units::math::hypot(a, b));
-            apart_mm = apart_mm.max((radii[0] - radii[1]).abs());
+            apart = apart.max(Apart::of(radii[1] - radii[0]));
         }
         at = end;
     }
-    apart_mm
+    apart
 }
 
 /// Of two places, mm.

@@ -10,7 +10,7 @@ use path_comparison::Way;
 use smallvec::SmallVec;
 use toolpath::{Hole, Motion};
 
-use crate::control::{radii_apart_by_words_mm, radii_apart_mm};
+use crate::control::{Apart, radii_apart, radii_apart_by_words};
 use crate::cutter;
 use crate::datum::{LastDatum, going_on};
 use crate::feed;
@@ -132,7 +132,7 @@ impl Pass<'_> {
         let mut corrections: SmallVec<[Correction; 1]> = SmallVec::new();
         let (mut untouched, mut by_time) = (true, None);
         let start_mm = self.state.corrector.standing_mm();
-        let mut apart_mm = 0.0_f64;
+        let mut apart = Apart::default();
         for motion in motions {
             let last = &mut self.state.datum;
             let motion = &going_on(&self.job.models, motion, context, info.datum, last);
@@ -148,7 +148,7 @@ impl Pass<'_> {
                 .map_err(|error| refusal(&error, motion, block, context))?;
             corrected.correction.after_mm += info.reserved_mm;
             untouched &= corrected.pieces.is_empty();
-            apart_mm = apart_mm.max(radii_apart_by_words_mm(&corrected.pieces, start_mm, &info, motion));
+            apart = apart.max(radii_apart_by_words(&corrected.pieces, start_mm, &info, motion));
             let modal = self.state.interpreter.modal();
             by_time = feed::require_same(self.job.dialect, modal, &corrected, motion, block, context)?;
             corrections.push(corrected.correction);
@@ -184,18 +184,18 @@ impl Pass<'_> {
         }
         beside.iter().for_each(|[_, behind]| self.insert(behind, block));
         self.note(block, context, motions, &corrections, pieces.len().max(1), self.out.len() > length);
-        self.arc_cut(block, motions, apart_mm);
+        self.arc_cut(block, motions, apart);
         Ok(())
     }
 
     /// An arc that is one in the output too is the control's to follow.
-    fn arc_cut(&mut self, block: &Block<'_>, motions: &[Motion], apart_mm: f64) {
+    fn arc_cut(&mut self, block: &Block<'_>, motions: &[Motion], apart: Apart) {
         if let ([Motion::Feed(feed)], Some(code)) = (motions, self.state.emitter.motion())
             && self.codes.is_arc(code)
         {
             let place = (&block.file_range(), block.line);
             let modal = self.state.interpreter.modal();
-            self.tally.figures.control.arc(self.job, modal, (feed, apart_mm), place);
+            self.tally.figures.control.arc(self.job, modal, (feed, apart), place);
         }
     }
 
@@ -423,7 +423,9 @@ impl Pass<'_> {
             if unsure_mm > 0.0 {
                 notices.unknown_side.see(&span, line, correction.after_mm + unsure_mm);
             }
-            if let Some(apart_mm) = radii_apart_mm(motion).filter(|apart_mm| *apart_mm > SPIRAL_MM) {
+            if let Some(apart_mm) =
+                radii_apart(motion).map(Apart::mm).filter(|apart_mm| *apart_mm > SPIRAL_MM)
+            {
                 notices.spirals.see(&span, line, apart_mm);
             }
             let modal = self.state.interpreter.modal();

@@ -15,7 +15,7 @@ use smallvec::SmallVec;
 use toolpath::{CycleKind, Division, Feed, FeedRate, Motion, Position, Shape};
 
 use super::unsaid::Unsaid;
-use crate::control::{ControlPart, radii_apart_mm};
+use crate::control::{ControlPart, radii_apart};
 use crate::datum::{Datum, LastDatum, going_on};
 use crate::feed::minutes;
 use crate::job::Job;
@@ -277,8 +277,8 @@ impl<'a, 'n> Program<'a, 'n> {
                 let place = || (block.file_range(), line);
                 self.control.cut(self.job, modal, place);
                 self.control.lag(self.job, modal, (modal.last_feed, Turns::of(feed)), place);
-                let apart_mm = radii_apart_mm(motion).unwrap_or_default();
-                self.control.arc(self.job, modal, (feed, apart_mm), (&block.file_range(), line));
+                let apart = radii_apart(motion).unwrap_or_default();
+                self.control.arc(self.job, modal, (feed, apart), (&block.file_range(), line));
             }
             if let Some(datum) = cuts.then(|| self.datum.newly_used()).flatten()
                 && !self.datums.iter().any(|known| known.is(datum))
