@@ -35,6 +35,7 @@ START_MM = (100.0, 100.0, 10.0)
 WITHIN, FLOOR_UM = 0.10, 0.1
 PLACES = 20_000
 END_MM = 2e-3
+ATTEMPTS = 3
 COMMANDS = [
     "identify offset=%u count=%c", "get_config", "finalize_config crc=%u", "allocate_oids count=%c", "get_uptime",
     "get_clock", "emergency_stop", "clear_shutdown", "config_reset", "reset", "debug_nop",
@@ -178,8 +179,11 @@ def profile(folder, resolution, square_urad):
 def leaves_um(klippy, text, resolution, folder):
     """How far the steps leave the path of the words, um."""
     way = canon.Run(canon.calls(text, rig.Control({"G54": (0.0, 0.0, 0.0)})), chord_deg=0.05).way()
-    places = steps(klippy, text, resolution, folder)
-    if np.abs(places[-1] - way[-1]).max() > END_MM:
+    for _ in range(ATTEMPTS):
+        places = steps(klippy, text, resolution, folder)
+        if np.abs(places[-1] - way[-1]).max() <= END_MM:
+            break
+    else:  # A machine that is busy with other things ends the printer before its last steps are written.
         raise RuntimeError(f"the steps end at {places[-1]}, the words at {way[-1]}")
     here = np.linalg.norm(way - START_MM, axis=1).argmin()
     return float(judge.distances(places, np.vstack([START_MM, way[max(here, 1) :]])).max()) * 1e3
