@@ -5,12 +5,9 @@ import random
 
 import numpy as np
 
+from common.words import number
+
 CHAINS = ("[w X Y b Z t]", "[w Y b X Z t]", "[w b X Y Z t]", "[w Y X b Z t]")
-
-
-def number(v, digits=3):
-    text = ("%.*f" % (digits, v)).rstrip("0")
-    return "0." if text in ("-0.", "0.") else text
 
 
 def mill(rng, state):

@@ -10,6 +10,8 @@ import random
 
 import numpy as np
 
+from common.words import number
+
 # Names of systems B and C; those of A are the keys.
 NAMES = {
     "A": {},
@@ -17,12 +19,6 @@ NAMES = {
     "C": {"G98": "G94", "G99": "G95", "G50": "G92", "G21": "G71", "G70": "G72", "G71": "G73", "G72": "G74", "G74": "G76", "G75": "G77", "G76": "G78"},
 }
 KINDS = ("turn-1", "turn-2", "turn-2", "face-1", "face-2", "bore-1", "bore-2", "groove", "peck", "thread", "hole", "tap", "side")
-
-
-def number(v):
-    text = "%.3f" % v
-    text = text.rstrip("0")
-    return "0." if text in ("-0.", "0.") else text
 
 
 def lathe(rng, state):

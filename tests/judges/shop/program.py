@@ -3,15 +3,12 @@
 import math
 import random
 
+from common.words import number
+
 import machine as machines
 import touch
 
 DIALECTS = ("linuxcnc", "fanuc", "haas", "linuxcnc", "fanuc")
-
-
-def number(v):
-    text = ("%.3f" % v).rstrip("0")
-    return "0." if text == "-0." else text
 
 
 def words(**places):

@@ -5,6 +5,8 @@ import random
 
 import numpy as np
 
+from common.words import number
+
 import machine
 import planes
 import reader
@@ -18,13 +20,6 @@ CHAINS = {
 }
 LOCATIONS = {"A": ("EY0A", "EZ0A", "EB0A", "EC0A"), "B": ("EX0B", "EZ0B", "EA0B", "EC0B"), "C": ("EX0C", "EY0C", "EA0C", "EB0C")}
 TRAVEL = (-1000, 1000)
-
-
-def number(v, decimals=3):
-    text = "%.*f" % (decimals, v)
-    whole, _, part = text.partition(".")
-    text = whole + "." + part.rstrip("0")
-    return "0." if text in ("-0.", "0.") else text
 
 
 def table(rng, axis, nodes, size):
