@@ -200,7 +200,7 @@ class Judge:
     def like_rs274(self, seed, text, motions):
         """Whether LinuxCNC's own interpreter reads the program as this one does."""
         counts = self.count["linuxcnc"]
-        theirs, said = rs274.read(self.folder, text)
+        theirs, said = rs274.read(text)
         if theirs is None:
             counts["not taken by rs274"] += 1
             if self.o.invalid:
