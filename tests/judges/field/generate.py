@@ -5,6 +5,8 @@ import zlib
 
 import numpy as np
 
+from common import folders
+
 import fields
 import reader
 
@@ -85,7 +87,7 @@ class Case:
 
     def write(self, folder, noise=None):
         os.makedirs(folder, exist_ok=True)
-        save(f"{folder}/vectors.csv", *self.rows())
+        folders.table(f"{folder}/vectors.csv", *self.rows())
         with open(f"{folder}/machine.toml", "w", encoding="ascii") as file:
             file.write(self.profile(noise))
 
@@ -150,8 +152,3 @@ class Case:
                 feed, at = True, end
             blocks -= 1
         return "\n".join(lines + ["M5", "M2"]) + "\n"
-
-
-def save(path, head, rows):
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("\n".join([",".join(head)] + [",".join(row) for row in rows]) + "\n")

@@ -9,6 +9,8 @@ import zlib
 
 import numpy as np
 
+from common import folders
+
 from machine import LOCATIONS, SCALE, Machine, place, unit
 
 CHAINS = {
@@ -212,14 +214,9 @@ class Case:
 
     def write(self, folder):
         os.makedirs(folder, exist_ok=True)
-        save(f"{folder}/rows.csv", *self.rows())
-        save(f"{folder}/held.csv", *self.held())
+        folders.table(f"{folder}/rows.csv", *self.rows())
+        folders.table(f"{folder}/held.csv", *self.held())
         write_profile(self.base, f"{folder}/base.toml")
-
-
-def save(path, head, rows):
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("\n".join([",".join(head)] + [",".join(row) for row in rows]) + "\n")
 
 
 def write_profile(machine, path, located=None, tables=None):
@@ -230,7 +227,7 @@ def write_profile(machine, path, located=None, tables=None):
     def table(name, nodes, rows):
         file = f"{stem}_{name.lower()}.csv"
         head = ["position_deg" if name in "ABC" else "position_mm"] + [f"E{c}{name}_{'um' if c in 'XYZ' else 'urad'}" for c in "XYZABC"]
-        save(os.path.join(folder, file), head, [[f"{q:.6f}", *(f"{v:.6f}" for v in row)] for q, row in zip(nodes, rows)])
+        folders.table(os.path.join(folder, file), head, [[f"{q:.6f}", *(f"{v:.6f}" for v in row)] for q, row in zip(nodes, rows)])
         return f'errors = "{file}"'
 
     for name, one in spec["axes"].items():
