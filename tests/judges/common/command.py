@@ -21,6 +21,14 @@ def run(vpost: str | os.PathLike | Sequence[str], *words: object, folder: str | 
     return Ended(done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace"))
 
 
+def ask(vpost: str | os.PathLike | Sequence[str], *words: object, folder: str | os.PathLike | None = None, seconds: float = 180) -> Ended:
+    """The same; where there is no end, status -1 and words about that."""
+    try:
+        return run(vpost, *words, folder=folder, seconds=seconds)
+    except subprocess.TimeoutExpired:
+        return Ended(-1, "", f"no end within {seconds:g} s")
+
+
 def code(errors: str, otherwise: str = "none") -> str:
     """The number of the first error."""
     found = re.search(r"error\[(VP\d+)\]", errors)

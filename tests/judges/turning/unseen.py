@@ -17,7 +17,7 @@ import re
 import sys
 import tempfile
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
 import generate  # noqa: E402
 import judge  # noqa: E402
@@ -67,14 +67,14 @@ def one(vpost, path, spec, folder, mill):
             return ("WRONG" if name == "passed-as-mill" else name), message
         return "refused " + verdict["refused"], ""
     generate.write(spec, folder)
-    done = judge.run(judge.command(vpost, spec, folder))
-    if done.returncode == 2:
-        return "profile", " ".join(done.stderr.split())[:120]
-    if done.returncode == 1:
-        code = (judge.lathe_codes(done.stderr) or ["?"])[0]
-        return f"refused {code}" + ("" if re.search(r"in\.nc:\d+", done.stderr) else " no line"), done.stderr.split("\n")[0][:160]
-    if done.returncode:
-        return "crash", f"exit {done.returncode}"
+    done = judge.correct(vpost, spec, folder)
+    if done.status == 2:
+        return "profile", " ".join(done.errors.split())[:120]
+    if done.status == 1:
+        code = (judge.lathe_codes(done.errors) or ["?"])[0]
+        return f"refused {code}" + ("" if re.search(r"in\.nc:\d+", done.errors) else " no line"), done.errors.split("\n")[0][:160]
+    if done.status:
+        return "crash", f"exit {done.status}"
     with open(os.path.join(folder, "out.nc"), "rb") as file:
         out = file.read()
     if spec.get("perfect"):
