@@ -9,9 +9,11 @@ The fault is one of the library's names; `columns` are its first-order displacem
 """
 
 import os
-import subprocess
 
 import numpy as np
+
+from common import folders
+from common.command import run
 
 LOCATIONS = {"A": ("EY0A", "EZ0A", "EB0A", "EC0A"), "B": ("EX0B", "EZ0B", "EA0B", "EC0B"), "C": ("EX0C", "EY0C", "EA0C", "EB0C")}
 CHAINS = ["[w C A b X Y Z t]", "[w C A Y b X Z t]", "[w C B Y b X Z t]", "[w C b X Y Z B t]", "[w A b X Y Z B t]", "[w C Y b X Z A t]", "[w b X Y Z C B t]", "[w X b Y Z C A t]"]
@@ -165,18 +167,16 @@ class Machine:
 
     def against_predict(self, vpost, folder, name, value, rows):
         """Largest difference, um, of this machine from `vpost predict` of a profile with the same error."""
-        profile, points = os.path.join(folder, "m.toml"), os.path.join(folder, "p.csv")
-        with open(profile, "w", encoding="ascii") as out:
-            out.write(self.profile([(name, value)]))
+        profile, points = folders.put(folder, "m.toml", self.profile([(name, value)])), os.path.join(folder, "p.csv")
         used = [a for a in "ABC" if a in self.rotary]
         with open(points, "w", encoding="ascii") as out:
             out.write("x_mm,y_mm,z_mm," + ",".join(f"{a.lower()}_deg" for a in used) + ",tool_x_mm,tool_y_mm,tool_z_mm\n")
             for q, rot, tool in zip(rows["q"], rows["rot"], rows["tool"]):
                 out.write(",".join(f"{v:.4f}" for v in (*q, *(rot[self.rotary.index(a)] for a in used), *tool)) + "\n")
-        done = subprocess.run([vpost, "predict", points, "-m", profile, "-q"], capture_output=True, text=True)
-        if done.returncode:
-            raise SystemExit(done.stderr)
-        lines = done.stdout.split("\n")
+        status, said, errors = run(vpost, "predict", points, "-m", profile, "-q")
+        if status:
+            raise SystemExit(errors)
+        lines = said.split("\n")
         at = [lines[0].split(",").index(n) for n in ("dx_um", "dy_um", "dz_um")]
         found = np.array([[float(line.split(",")[k]) for k in at] for line in lines[1:] if line])
         return float(np.abs(found - self.error(name, [value], rows)).max())
