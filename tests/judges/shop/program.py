@@ -1,6 +1,5 @@
 """Random jobs of a shop, by seed and number: machine, zeros as they were found, program, and how all that is said."""
 
-import math
 import random
 
 from common.words import number

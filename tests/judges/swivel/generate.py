@@ -7,7 +7,7 @@ import random
 import numpy as np
 
 import cycle
-from machine import AXES, Machine
+from machine import Machine
 
 CHAINS = {
     "tt": ("[w C A Y b X Z t]", "[w C B X b Y Z t]", "[w C A X Y b Z t]"),

@@ -4,7 +4,6 @@ A row by its name: numbers that docs/diagnostics.md allows ("VP" any, the reason
 `{at}` are words that stand upright on the plane `{plane}`.
 """
 
-import json
 import random
 
 from common import command
