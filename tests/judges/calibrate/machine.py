@@ -13,9 +13,10 @@ The same class stands for the truth, for the base profile that the judge writes,
 """
 
 import copy
-import os
 
 import numpy
+
+from common.profile import Profile
 
 AXES = "XYZ"
 EXPANSION = 11.5e-6
@@ -183,41 +184,24 @@ def location(rotary):
 
 def write_profile(machine, folder, name, interpolation=None, tables=True):
     """The profile of a machine whose functions are Tables; returns its path."""
-    os.makedirs(os.path.join(folder, name), exist_ok=True)
-    lines = ["format = 1", f'name = "{name}"', 'control = "linuxcnc"', f'chain = "{machine.chain()}"']
-    if interpolation:
-        lines.append(f'interpolation = "{interpolation}"')
-    lines.append('calibrated = { date = "2026-01-01", temperature_c = 20.0, instrument = "generator" }')
+    p = Profile(name, "linuxcnc", machine.chain())
+    p[""].update(interpolation=interpolation, calibrated={"date": "2026-01-01", "temperature_c": 20.0, "instrument": "generator"})
     for axis, letter in enumerate(AXES):
-        low, high = machine.travel[axis]
-        lines += [f"[axis.{letter}]", f"travel_mm = [{low:.6f}, {high:.6f}]", "resolution_mm = 0.0001"]
+        p.axis(letter).update(travel_mm=[round(float(v), 6) for v in machine.travel[axis]], resolution_mm=0.0001)
         if machine.functions[axis] and tables:
             (table,) = machine.functions[axis]
-            path = f"{name}/{letter.lower()}.csv"
-            with open(os.path.join(folder, path), "w", encoding="utf-8") as file:
-                names = [f"E{d}{letter}_um" for d in "XYZ"] + [f"E{d}{letter}_urad" for d in "ABC"]
-                file.write("position_mm," + ",".join(names) + "\n")
-                for at, row in zip(table.nodes, table.values):
-                    numbers = [f"{v * 1e3:.7f}" for v in row[:3]] + [f"{v * 1e6:.4f}" for v in row[3:]]
-                    file.write(f"{at:.6f}," + ",".join(numbers) + "\n")
-            lines.append(f'errors = "{path}"')
+            rows = [[round(float(v * 1e3), 7) for v in row[:3]] + [round(float(v * 1e6), 4) for v in row[3:]] for row in table.values]
+            p.errors(letter, [round(float(at), 6) for at in table.nodes], rows)
         if machine.measured[axis]:
-            entries = [f"{k} = {list(map(float, v)) if k == 'tool' else float(v)}" for k, v in machine.measured[axis].items()]
-            lines.append("measured_at_mm = { " + ", ".join(entries) + " }")
+            p.axis(letter)["measured_at_mm"] = machine.measured[axis]
         if machine.play[axis]:
-            lines.append(f"backlash_um = {machine.play[axis] * 1e3:.6f}")
-    c, b, a = machine.square * 1e6
-    lines += ["[squareness]", f"EC0Y_urad = {c:.5f}", f"EB0Z_urad = {b:.5f}", f"EA0Z_urad = {a:.5f}"]
+            p.axis(letter)["backlash_um"] = round(float(machine.play[axis] * 1e3), 6)
+    p["squareness"].update(zip(("EC0Y_urad", "EB0Z_urad", "EA0Z_urad"), (round(float(v) * 1e6, 5) for v in machine.square)))
     for rotary in machine.table + machine.head:
-        lines += [f"[rotary.{rotary.name}]", f"centre_mm = {[float(v) for v in rotary.centre]}", 'tilt = "body"']
-        lines += [f"{key} = {value:.6f}" for key, value in location(rotary).items()]
-    lines += ["[tool]", f"default_mm = {[float(v) for v in machine.tool]}", "[work_offsets_mm]", "G54 = [0, 0, 0]"]
-    for axis, letter in enumerate(AXES):
-        if machine.scale[axis]:
-            lines += ["[[effect]]", f'id = "scale.{letter}"', f"scale_um_per_m = {machine.scale[axis] * 1e6:.6f}"]
+        p.axis(rotary.name).update(centre_mm=rotary.centre, tilt="body", **{key: round(size, 6) for key, size in location(rotary).items()})
+    p["tool"]["default_mm"], p["work_offsets_mm"]["G54"] = machine.tool, [0, 0, 0]
+    scales = [(letter, machine.scale[axis]) for axis, letter in enumerate(AXES) if machine.scale[axis]]
+    p.effects += [{"id": f"scale.{letter}", "scale_um_per_m": round(float(scale * 1e6), 6)} for letter, scale in scales]
     if machine.warm:
-        lines += ["[[effect]]", 'id = "thermal.X"', f"expansion_um_per_m_k = {EXPANSION * 1e6}"]
-    path = os.path.join(folder, name + ".toml")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("\n".join(lines) + "\n")
-    return path
+        p.effects.append({"id": "thermal.X", "expansion_um_per_m_k": EXPANSION * 1e6})
+    return str(p.write(folder, name + ".toml"))
