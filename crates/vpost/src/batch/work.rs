@@ -99,7 +99,7 @@ impl<'f> Batch<'_, 'f> {
                         }
                     {
                         // What is done does not wait for a large one.
-                        if bytes + 2 * item.bytes > TOLD_TOGETHER_BYTES
+                        if item.bytes > TOLD_TOGETHER_BYTES.saturating_sub(bytes) / 2
                             || done.len() >= in_hand
                             || since.elapsed() > KEPT_BACK
                         {
@@ -114,7 +114,8 @@ impl<'f> Batch<'_, 'f> {
                         match self.guarded(item, threads) {
                             Ok(outcome) => {
                                 // A few lines with loops may have become megabytes.
-                                bytes += item.bytes + outcome.record.bytes_out.unwrap_or(0);
+                                bytes += item.bytes.min(TOLD_TOGETHER_BYTES);
+                                bytes += outcome.record.bytes_out.unwrap_or(0);
                                 done.push((index, outcome));
                             }
                             // Interrupted, which ends all.
