@@ -163,11 +163,12 @@ impl State<'_, '_> {
     }
 
     /// Curves along one axis seen in one component: together they may have no more coefficients than half the places.
+    /// An angle has readings of its own there, through levers that differ ([`Library::angle`] names no other).
     fn crowded(&self, with: &[Part]) -> Option<Why> {
         let crowd = |axis: usize, component: usize| {
             let columns = with.iter().flat_map(|part| {
                 let candidate = &self.library.candidates[part.candidate];
-                let own = curve_axis(candidate.kind) == Some(axis);
+                let own = curve_axis(candidate.kind) == Some(axis) && !self.bends(*part);
                 candidate.variants[part.variant].columns.iter().filter(move |_| own)
             });
             let seen = |c: &&usize| self.library.terms[**c].touches(component, self.source.geometry);
