@@ -201,15 +201,8 @@ impl<'a> Assembly<'a> {
         Gap::new(row_lengths(&self.model.scalars, gap_um), self.noise_variance().sqrt())
     }
 
-    /// What the verdict depends on, unseen rows not yet asked; `corner_um`: how uncertain the causes are in the corners of the
-    /// volume.
-    pub(crate) fn evidence(
-        &self,
-        gap: &Gap,
-        leftover: &Leftover,
-        causes: &[Cause],
-        corner_um: f64,
-    ) -> Evidence {
+    /// What the verdict depends on, unseen rows not yet asked.
+    pub(crate) fn evidence(&self, gap: &Gap, leftover: &Leftover, causes: &[Cause]) -> Evidence {
         let model = self.model;
         let after_um = causes.last().map_or(gap.rms_um, |c| c.rms_after_um);
         Evidence {
@@ -222,7 +215,6 @@ impl<'a> Assembly<'a> {
             phi: leftover.phi,
             lack_of_fit_p: leftover.lack_of_fit_p,
             noise_ratio: self.noise_ratio(),
-            carries: corner_um <= gap.rms_um,
             slow: self.noise.is_some_and(|n| n.is_slow()) || model.caution.lag(1) > SLOW_PHI,
             exceeds: self.exceeds_noise(),
             guessed: self.noise_is_guessed(),
