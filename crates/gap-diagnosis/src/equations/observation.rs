@@ -220,8 +220,12 @@ impl Measurements {
     pub(crate) fn is_one_run(&self) -> bool {
         let moving: Vec<usize> = (0..3).filter(|axis| self.places_mm(*axis).len() > 1).collect();
         let comes_back = moving.len() == 1 && self.comes_back(|row| row.command.direction);
-        let crossed = |a: &usize| moving.iter().any(|b| a != b && self.is_filled([*a, *b]));
-        self.runs.len() < 2 && !comes_back && !moving.iter().all(crossed)
+        self.runs.len() < 2 && !comes_back && !moving.iter().all(|axis| self.is_crossed(*axis))
+    }
+
+    /// True where the places of an axis are met all along another one.
+    pub(crate) fn is_crossed(&self, axis: usize) -> bool {
+        (0..3).any(|other| other != axis && self.is_filled([axis, other]))
     }
 
     /// True where the places of two axes fill the rectangle that they span, as a mesh does: what comes back at every
