@@ -71,6 +71,19 @@ fn lines_beside_each_other_in_one_run_are_no_area() {
     assert_eq!(answer.verdict, Verdict::Underpowered, "{}", answer.sentence);
 }
 
+/// A form that no axis makes, in one run that nothing of comes back: its neighbours differ by what it shows, and that is
+/// no all-clear.
+#[test]
+fn one_run_without_a_name_is_no_all_clear() {
+    let waves = |row: &Row| {
+        let at = row.command.linear_mm / 29.0;
+        25.0 * units::math::sin(at.x + 1.7 * at.y) * units::math::cos(1.3 * at.x - at.y)
+    };
+    let answer = diagnose(&mesh(5, 1, waves), None, &Options::default());
+    assert!(!answer.corrects());
+    assert_ne!(answer.verdict, Verdict::NoGap, "{}", answer.sentence);
+}
+
 /// A curve of X with two numbers and its roll with three at nine places: through nine levers each has readings enough.
 #[test]
 fn a_curve_and_an_angle_of_one_carriage_are_told_by_levers() {
