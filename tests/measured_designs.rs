@@ -338,7 +338,9 @@ fn what_a_curve_leaves_is_no_damage() {
 fn a_signal_that_comes_back_is_no_noise() {
     for name in ["11_plate_signal_taken_for_noise", "11b_plate_signal_taken_for_noise"] {
         let answer = Answer::of_found(name, None);
-        assert_eq!(answer.effects(), ["angular.EAX"], "{}", answer.said);
+        // A roll and a straightness of one carriage, each with levers of its own.
+        assert_eq!(answer.effects(), ["angular.EAX", "straightness.EZX"], "{}", answer.said);
+        assert_eq!(answer.verdict(), "NAMED");
         assert!(answer.writes() && !answer.said.contains("hang together"), "{}", answer.said);
     }
 }

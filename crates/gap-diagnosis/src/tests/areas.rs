@@ -57,8 +57,8 @@ fn what_the_frame_takes_forbids_no_correction() {
 fn what_creeps_through_a_run_may_be_the_instruments() {
     let creep = |row: &Row| 30.0 * (1.0 - units::math::exp(-row.order[1] / 0.2));
     let answer = diagnose(&mesh(7, 1, creep), None, &Options::default());
-    let told = answer.causes.iter().flat_map(|c| c.cannot_be_told_from.iter().chain([&c.effect]));
-    assert!(told.cloned().any(|name| name == "instrument-drift"), "{} {:?}", answer.sentence, names(&answer));
+    let mut told = answer.causes.iter().flat_map(|c| c.cannot_be_told_from.iter().chain([&c.effect]));
+    assert!(told.any(|name| name == "instrument-drift"), "{} {:?}", answer.sentence, names(&answer));
     assert!(!answer.corrects());
 }
 
