@@ -338,7 +338,9 @@ fn what_a_curve_leaves_is_no_damage() {
 fn a_signal_that_comes_back_is_no_noise() {
     for name in ["11_plate_signal_taken_for_noise", "11b_plate_signal_taken_for_noise"] {
         let answer = Answer::of_found(name, None);
-        assert_eq!(answer.effects(), ["angular.EAX"], "{}", answer.said);
+        // A roll and a straightness of one carriage, each with levers of its own.
+        assert_eq!(answer.effects(), ["angular.EAX", "straightness.EZX"], "{}", answer.said);
+        assert_eq!(answer.verdict(), "NAMED");
         assert!(answer.writes() && !answer.said.contains("hang together"), "{}", answer.said);
     }
 }
@@ -360,4 +362,28 @@ fn a_knock_is_found_by_the_order_of_the_rows() {
         assert!((found - 4.0).abs() < 0.3 && answer.writes(), "{found}");
         assert!(!answer.profile.contains("step.X"), "{}", answer.profile);
     }
+}
+
+/// A granite square at one corner of the table, 420 mm of the 600 of X: its curve may go on in any way beyond, a
+/// squareness does not.
+#[test]
+fn a_curve_is_written_as_far_as_it_was_read() {
+    let answer = Answer::of("tests/measurements/square.csv", "tests/measurements/square.toml", &[]);
+    assert_eq!(answer.effects(), ["squareness.XZ", "straightness.EZX"], "{}", answer.said);
+    let written: toml::Table = answer.profile.parse().expect("TOML");
+    let end_mm = |axis: &str| {
+        let end = &written["axis"][axis]["travel_mm"][1];
+        end.as_float().or(end.as_integer().map(|mm| mm as f64)).expect("a number")
+    };
+    assert!(answer.writes() && (420.0..=462.0).contains(&end_mm("X")), "{}", answer.profile);
+    assert!((end_mm("Z") - 200.0).abs() < 1e-9, "{}", answer.profile);
+}
+
+/// A ball bar low over the table of a machine whose Y is 212 µm/m too long and pitches a little: what few rows tell an
+/// angle from it do so only above them.
+#[test]
+fn what_agrees_only_where_nobody_measured_is_not_written() {
+    let answer = Answer::of("tests/measurements/bar.csv", "tests/measurements/bar.toml", &[]);
+    assert_eq!(answer.verdict(), "AMBIGUOUS", "{}", answer.said);
+    assert!(answer.said.contains("scale.Y") && !answer.writes(), "{}", answer.said);
 }

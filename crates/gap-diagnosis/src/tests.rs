@@ -21,11 +21,12 @@ use crate::search::space::{RHO_GRID, Space};
 use crate::search::trial::LEVEL;
 use crate::{Options, Verdict, diagnose};
 
+mod areas;
 mod doubts;
 
 /// How the plan of these tests is measured.
 #[derive(Clone, Copy)]
-struct Plan {
+pub(crate) struct Plan {
     feeds: &'static [f64],
     tools_mm: &'static [f64],
     sigma_um: f64,
@@ -33,11 +34,11 @@ struct Plan {
     seed: u64,
 }
 
-const GOOD: Plan =
+pub(crate) const GOOD: Plan =
     Plan { feeds: &[500.0, 3000.0], tools_mm: &[-80.0, -200.0], sigma_um: 1.0, run_sigma_um: 0.4, seed: 1 };
 
 /// Four lines along every axis of a cube of 400 mm, both ways, every line twice, each line a run.
-fn measured(plan: Plan, field_um: impl Fn(&Row) -> Vector) -> Measurements {
+pub(crate) fn measured(plan: Plan, field_um: impl Fn(&Row) -> Vector) -> Measurements {
     let mut random = ChaCha8Rng::seed_from_u64(plan.seed);
     // The sum of twelve uniform numbers is normal enough up to three sigma.
     let mut normal = || (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>();

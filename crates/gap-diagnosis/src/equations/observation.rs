@@ -214,12 +214,37 @@ impl Measurements {
         Self { rows: rows.collect(), ..self.clone() }
     }
 
-    /// True of one run alone, but for a line along an axis that comes back to its places from the same side: whatever
-    /// else one run shows may be its own shift and drift, or the shifts of what lies beside each other in it.
+    /// True of one run alone, but for a line along an axis that comes back to its places from the same side, and for an
+    /// area: whatever else one run shows may be its own shift and drift, or the shifts of what lies beside each other
+    /// in it.
     pub(crate) fn is_one_run(&self) -> bool {
-        let moves = |axis: &usize| self.places_mm(*axis).len() > 1;
-        let is_line = (0..3).filter(moves).count() == 1;
-        self.runs.len() < 2 && !(is_line && self.comes_back(|row| row.command.direction))
+        let moving: Vec<usize> = (0..3).filter(|axis| self.places_mm(*axis).len() > 1).collect();
+        let comes_back = moving.len() == 1 && self.comes_back(|row| row.command.direction);
+        self.runs.len() < 2 && !comes_back && !moving.iter().all(|axis| self.is_crossed(*axis))
+    }
+
+    /// True where the places of an axis are met all along another one.
+    pub(crate) fn is_crossed(&self, axis: usize) -> bool {
+        (0..3).any(|other| other != axis && self.is_filled([axis, other]))
+    }
+
+    /// True where the places of two axes fill the rectangle that they span, as a mesh does: what comes back at every
+    /// place of the other axis is no drift, and lines that were shifted one by one are no curve.
+    fn is_filled(&self, axes: [usize; 2]) -> bool {
+        /// Steps along a side, and how many of the places between them may be empty: lines beside each other and edges
+        /// leave more.
+        const STEPS: f64 = 4.0;
+        const EMPTY: usize = 4;
+        let ranges = axes.map(|axis| self.range_mm(axis));
+        let node = |row: &Row| {
+            let share =
+                |k: usize| (row.command.linear_mm[axes[k]] - ranges[k].0) / (ranges[k].1 - ranges[k].0);
+            [0, 1].map(|k| (STEPS * share(k)).round() as usize)
+        };
+        let mut nodes: Vec<[usize; 2]> = self.rows.iter().map(node).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes.len() + EMPTY >= (STEPS as usize + 1).pow(2)
     }
 
     /// True where the order of the rows was noted ([`Measurements::follow`]).

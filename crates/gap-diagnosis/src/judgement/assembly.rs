@@ -201,15 +201,8 @@ impl<'a> Assembly<'a> {
         Gap::new(row_lengths(&self.model.scalars, gap_um), self.noise_variance().sqrt())
     }
 
-    /// What the verdict depends on, unseen rows not yet asked; `corner_um`: how uncertain the causes are in the corners of the
-    /// volume.
-    pub(crate) fn evidence(
-        &self,
-        gap: &Gap,
-        leftover: &Leftover,
-        causes: &[Cause],
-        corner_um: f64,
-    ) -> Evidence {
+    /// What the verdict depends on, unseen rows not yet asked.
+    pub(crate) fn evidence(&self, gap: &Gap, leftover: &Leftover, causes: &[Cause]) -> Evidence {
         let model = self.model;
         let after_um = causes.last().map_or(gap.rms_um, |c| c.rms_after_um);
         Evidence {
@@ -222,10 +215,9 @@ impl<'a> Assembly<'a> {
             phi: leftover.phi,
             lack_of_fit_p: leftover.lack_of_fit_p,
             noise_ratio: self.noise_ratio(),
-            carries: corner_um <= gap.rms_um,
             slow: self.noise.is_some_and(|n| n.is_slow()) || model.caution.lag(1) > SLOW_PHI,
             exceeds: self.exceeds_noise(),
-            guessed: self.noise_is_guessed(),
+            guessed: self.noise_is_guessed() || self.is_all_clear_of_one_run(),
             trifling: gap.rms_um - after_um < WORTH_NAMING * gap.rms_um,
             cancels: cancel(causes, gap.rms_um),
             risks: causes.iter().any(Cause::is_turned_play),
@@ -239,6 +231,12 @@ impl<'a> Assembly<'a> {
         let repeated = self.noise.is_some_and(|noise| noise.source == NoiseSource::Repeats)
             || bound(rows, &model.scalars, &model.solution.residuals_um).is_some();
         !repeated && self.noise_ratio().is_none() && neighbours_are_far(rows)
+    }
+
+    /// True of one run in which nothing was found and nothing came back: neighbours of a mesh differ by what it shows.
+    fn is_all_clear_of_one_run(&self) -> bool {
+        let by_neighbours = self.noise.is_none_or(|noise| noise.source == NoiseSource::Neighbours);
+        self.ordered.is_empty() && self.data.runs.len() < 2 && by_neighbours
     }
 
     /// True where the rows scatter by far more than the noise that was found, or than the same commands do in other runs, which

@@ -1,13 +1,11 @@
 //! How far the gap shrinks.
 
-use machine_model::{Vector, Volume};
-
 use crate::effects::is_straight;
 use crate::equations::align::FREE_OFFSETS;
 use crate::equations::columns::Source;
 use crate::equations::gram::Gram;
 use crate::equations::noise::tail_factor;
-use crate::equations::observation::{Believed, Measurements, Row, Scalar};
+use crate::equations::observation::{Believed, Measurements, Scalar};
 use crate::equations::term::Term;
 use crate::judgement::answer::Shrinkage;
 use crate::judgement::assembly::Assembly;
@@ -16,41 +14,6 @@ use crate::library::candidates::Part;
 use crate::search::crossval::{Folding, Folds};
 
 impl Assembly<'_> {
-    /// Largest expanded uncertainty (95 %) of what the causes displace in the corners of a box, µm: what a
-    /// correction by them would be worth there.
-    pub(crate) fn uncertainty_in_corners_um(&self, volume: Option<Volume>) -> f64 {
-        let Some(typical) = self.data.rows.get(self.data.rows.len() / 2) else { return 0.0 };
-        let measured = [0, 1, 2].map(|a| self.data.range_mm(a));
-        let ends = match volume {
-            Some(Volume(ranges)) => ranges.map(|r| (r.low, r.high)),
-            None => measured,
-        };
-        let positions: Vec<usize> = self.ordered.iter().flat_map(|r| self.positions(r.place)).collect();
-        let solution = &self.model.solution;
-        let covariance = |i: usize, j: usize| solution.unit_covariance[(positions[i], positions[j])];
-        let mut largest: f64 = 0.0;
-        for corner in 0..8 {
-            let mut row: Row = *typical;
-            for (axis, (low, high)) in ends.into_iter().enumerate() {
-                row.command.linear_mm[axis] = if corner >> axis & 1 == 0 { low } else { high };
-                // A direction that was never measured has no uncertainty to speak of.
-                row.command.direction[axis] = typical.command.direction[axis];
-            }
-            let unit: Vec<Vector> = positions
-                .iter()
-                .map(|p| solution.terms[*p].displacement_um(&row, &self.data.geometry))
-                .collect();
-            let mut square = 0.0;
-            for (i, a) in unit.iter().enumerate() {
-                for (j, b) in unit.iter().enumerate() {
-                    square += covariance(i, j) * a.dot(b);
-                }
-            }
-            largest = largest.max(square * self.variance());
-        }
-        1.96 * largest.max(0.0).sqrt()
-    }
-
     /// What the first causes do to some commands, alignment taken out.
     pub(crate) fn strength(&self, data: &Measurements, scalars: &[Scalar], count: usize) -> Strength {
         let own: Vec<(Term, f64)> = self.taken_off(count);

@@ -12,13 +12,15 @@ use machine_model::effects::EffectKind;
 use machine_model::{Range, Vector, Volume};
 use nalgebra::{DMatrix, DVector};
 
+use crate::effects::curve_axis;
 use crate::equations::align::{rms, row_lengths};
 use crate::equations::noise::tail_factor;
-use crate::equations::observation::Row;
+use crate::equations::observation::{Row, Scalar};
 use crate::equations::term::Term;
 use crate::judgement::assembly::Assembly;
 use crate::judgement::shrinkage::LEAST_WEIGHT;
 use crate::library::candidates::{Library, Part};
+use crate::search::explanation::Reason;
 use crate::search::moves::{by_effect, without};
 use crate::search::space::{Asked, Fit};
 use crate::search::trial::unsupported;
@@ -31,7 +33,8 @@ const SAMPLES: usize = 4;
 const SURE: f64 = 1.645;
 /// Nodes are uneven by the golden ratio's multiples, which have no period.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-/// Share of every axis that must pass for a part of the volume to be worth writing.
+/// Share of every axis, and of the rows, that must pass for a part of the volume to be worth writing: what agrees only
+/// where nobody measured agrees by chance.
 const WORTH: f64 = 0.5;
 
 /// Where the correction may be used.
@@ -54,6 +57,8 @@ struct Explained {
     stand: Option<Stand>,
     /// Its columns of the machine, and what is known of them.
     terms: Vec<Term>,
+    /// How each of them turns the measuring frame, µrad.
+    turns: Vec<Vector>,
     values: Vec<f64>,
     covariance: DMatrix<f64>,
 }
@@ -66,8 +71,7 @@ impl Assembly<'_> {
         let grid = Grid::new(self, volume);
         let slack_um = rms(&row_lengths(&self.model.scalars, &self.gap_after(self.ordered.len())));
         let factor = self.wider() * self.variance();
-        let of_terms: Vec<Vec<Vec<Vector>>> =
-            all.iter().map(|e| grid.displacements_um(&e.terms, self)).collect();
+        let of_terms: Vec<Vec<Vec<Vector>>> = all.iter().map(|e| grid.displacements_um(e, self)).collect();
         let moved = |k: usize, probe: usize| -> Vector {
             let values = all[k].values.iter().zip(&of_terms[k]);
             values.map(|(value, own)| own[probe] * *value).sum()
@@ -76,8 +80,16 @@ impl Assembly<'_> {
         for probe in 0..grid.nodes.len() * grid.samples.len() {
             let correction = moved(0, probe);
             let size = correction.norm();
-            let harmed = &mut harmed[probe % grid.nodes.len()];
+            let node = probe % grid.nodes.len();
+            let harmed = &mut harmed[node];
             if size <= slack_um || harmed.is_some() {
+                continue;
+            }
+            let curves =
+                (0..all[0].terms.len()).filter(|i| self.is_guessed(&all[0].terms[*i], &grid.nodes[node]));
+            let guessed: Vector = curves.map(|i| of_terms[0][i][probe] * all[0].values[i]).sum();
+            if guessed.norm() > slack_um {
+                *harmed = Some(None);
                 continue;
             }
             let along = correction / size;
@@ -91,7 +103,20 @@ impl Assembly<'_> {
                 (least < 0.5 * (size - slack_um)).then_some(all[k].stand)
             });
         }
-        grid.passes(&harmed)
+        grid.passes(&harmed, &self.data.rows)
+    }
+
+    /// True of a curve beyond the ends of the way on which its axis was read: unlike a line, or a screw's turns, it may
+    /// go on there in any way.
+    fn is_guessed(&self, term: &Term, place_mm: &Vector) -> bool {
+        /// Share of that way: the curves of the library have a summit every sixth of it.
+        const BEYOND: f64 = 0.1;
+        let axis = term.kind().filter(|kind| !matches!(kind, EffectKind::Pitch(_))).and_then(curve_axis);
+        axis.is_some_and(|axis| {
+            let (low, high) = self.model.library.sampling[axis].range_mm;
+            let slack_mm = BEYOND * (high - low);
+            place_mm[axis] < low - slack_mm || place_mm[axis] > high + slack_mm
+        })
     }
 
     /// By how much tails and readings that hang together widen what is known of the causes.
@@ -136,7 +161,20 @@ impl Assembly<'_> {
                 }
             }
         }
+        found.extend(self.with_what_is_little());
         found
+    }
+
+    /// The causes beside one that passed the tests and has too little share of what the rows show to be named: it may have
+    /// more elsewhere.
+    fn with_what_is_little(&self) -> Option<Explained> {
+        let model = self.model;
+        let little = model.refused.as_ref().filter(|refused| matches!(refused.reason, Reason::Little(_)))?;
+        let scanned = model.space.scan(&model.library, &model.parts, Asked::Nameable);
+        let same = scanned.into_iter().filter(|(part, _)| model.library.kind(*part) == little.kind).collect();
+        let (part, _) = *by_effect(same, f64::INFINITY).first()?;
+        let with: Vec<Part> = model.parts.iter().copied().chain([part]).collect();
+        Some(self.explained(&with, Some((self.ordered.first()?.place, part))))
     }
 
     /// False for faults of the instrument, and for causes that such a fault could have shown as well: nothing is
@@ -155,9 +193,15 @@ impl Assembly<'_> {
             _ => false,
         };
         let own: Vec<usize> = (0..sub.terms.len()).filter(is_corrected).collect();
+        // Shift and turn of the frame come first.
+        let turn = |i: &usize| {
+            let frame = sub.towards(&[0, 1, 2, 3, 4, 5], *i).coefficients(self.alignment);
+            Vector::new(frame[3], frame[4], frame[5])
+        };
         Explained {
             stand,
             terms: own.iter().map(|i| sub.terms[*i]).collect(),
+            turns: own.iter().map(turn).collect(),
             values: own.iter().map(|i| values[*i]).collect(),
             covariance: DMatrix::from_fn(own.len(), own.len(), |i, j| covariance[(own[i], own[j])]),
         }
@@ -192,12 +236,20 @@ impl Grid {
         Self { axes, nodes, samples }
     }
 
-    /// What one of each term displaces, sample by sample at every node, from its mean over the rows: every part of a
-    /// program is touched off somewhere, and a shift of all is nobody's fault.
-    fn displacements_um(&self, terms: &[Term], assembly: &Assembly<'_>) -> Vec<Vec<Vector>> {
+    /// What one of each term of an explanation displaces, sample by sample at every node, less the frame that fits it best
+    /// on the rows: every part of a program is touched off and laid down somewhere, and a shift and a turn of all are
+    /// nobody's fault.
+    fn displacements_um(&self, explained: &Explained, assembly: &Assembly<'_>) -> Vec<Vec<Vector>> {
         let data = assembly.data;
-        let of_term = |term: &Term| {
-            let at = |row: &Row| term.displacement_um(row, &data.geometry);
+        let read = Vector::from([0, 1, 2].map(|component| {
+            let shows = |s: &Scalar| s.along[component] != 0.0;
+            f64::from(u8::from(assembly.model.scalars.iter().any(shows)))
+        }));
+        let of_term = |(term, turn): (&Term, &Vector)| {
+            let at = |row: &Row| {
+                let tip_m = 1e-3 * data.geometry.nominal_tip_mm(&row.command);
+                term.displacement_um(row, &data.geometry) - turn.cross(&tip_m).component_mul(&read)
+            };
             let middle = data.rows.iter().map(at).sum::<Vector>() / data.rows.len().max(1) as f64;
             let probes =
                 self.samples.iter().flat_map(|sample| self.nodes.iter().map(move |node| (sample, node)));
@@ -208,50 +260,33 @@ impl Grid {
             });
             moved.collect()
         };
-        terms.iter().map(of_term).collect()
+        explained.terms.iter().zip(&explained.turns).map(of_term).collect()
     }
 
-    /// The largest box without harm that is found by cutting off, again and again, the side with most of it.
-    fn passes(&self, harmed: &[Option<Option<Stand>>]) -> Use {
+    /// The largest box without harm that is worth writing.
+    fn passes(&self, harmed: &[Option<Option<Stand>>], rows: &[Row]) -> Use {
         let Some(forbids) = harmed.iter().flatten().next().copied() else { return Use::Everywhere };
-        let count = [0, 1, 2].map(|a| self.axes[a].len());
-        let mut kept = count.map(|count| (0, count - 1));
-        let at = |place: [usize; 3]| harmed[(place[0] * count[1] + place[1]) * count[2] + place[2]];
-        loop {
-            let share = |ranges: [(usize, usize); 3]| {
-                let [x, y, z] = ranges.map(|(from, to)| from..=to);
-                let all = x.flat_map(|x| {
-                    y.clone().flat_map({
-                        let z = z.clone();
-                        move |y| z.clone().map(move |z| [x, y, z])
-                    })
-                });
-                let (bad, nodes) =
-                    all.fold((0.0, 0.0), |(bad, n), p| (bad + f64::from(u8::from(at(p).is_some())), n + 1.0));
-                bad / nodes
-            };
-            if share(kept) == 0.0 {
-                break;
-            }
-            let sides = (0..6).filter(|side| kept[side / 2].0 < kept[side / 2].1);
-            let slab = |side: usize| {
-                let (from, to) = kept[side / 2];
-                let mut slab = kept;
-                slab[side / 2] = if side.is_multiple_of(2) { (from, from) } else { (to, to) };
-                share(slab)
-            };
-            let Some(worst) = sides.max_by(|a, b| slab(*a).total_cmp(&slab(*b))) else {
-                return Use::Nowhere(forbids);
-            };
-            if worst.is_multiple_of(2) { kept[worst / 2].0 += 1 } else { kept[worst / 2].1 -= 1 }
-        }
-        let thin =
-            (0..3).any(|a| count[a] > 1 && ((kept[a].1 - kept[a].0) as f64) < WORTH * (count[a] - 1) as f64);
-        if thin {
-            return Use::Nowhere(forbids);
-        }
-        let range = |a: usize| Range { low: self.axes[a][kept[a].0], high: self.axes[a][kept[a].1] };
-        Use::Within(Volume([0, 1, 2].map(range)), forbids)
+        let thick = |a: usize| {
+            let last = self.axes[a].len() - 1;
+            let ranges = (0..=last).flat_map(move |from| (from..=last).map(move |to| [from, to]));
+            ranges.filter(move |[from, to]| (to - from) as f64 >= WORTH * last as f64)
+        };
+        let range =
+            |a: usize, [from, to]: [usize; 2]| Range { low: self.axes[a][from], high: self.axes[a][to] };
+        let boxes = thick(0).flat_map(|x| thick(1).flat_map(move |y| thick(2).map(move |z| [x, y, z])));
+        let holds = |volume: &[Range; 3], place: &Vector| {
+            (0..3).all(|a| self.axes[a].len() == 1 || volume[a].contains(place[a]))
+        };
+        let bad: Vec<&Vector> =
+            self.nodes.iter().zip(harmed).filter(|(_, harm)| harm.is_some()).map(|(node, _)| node).collect();
+        let passing =
+            boxes.map(|sides| (sides, [0, 1, 2].map(|a| range(a, sides[a])))).filter(|(_, volume)| {
+                let seen = || rows.iter().filter(|row| holds(volume, &row.command.linear_mm)).count();
+                !bad.iter().any(|node| holds(volume, node)) && seen() as f64 >= WORTH * rows.len() as f64
+            });
+        let nodes = |sides: &[[usize; 2]; 3]| sides.iter().map(|[from, to]| to - from + 1).product::<usize>();
+        let largest = passing.max_by_key(|(sides, _)| nodes(sides));
+        largest.map_or(Use::Nowhere(forbids), |(_, volume)| Use::Within(Volume(volume), forbids))
     }
 }
 
@@ -293,5 +328,32 @@ impl Use {
                 "По причинам ничего не исправляется, где-то коррекция могла бы навредить: {why:#}."
             )),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nine nodes an axis, harm at the second of X and the fifth of Y, whatever Z is.
+    #[test]
+    fn the_largest_part_without_harm_is_written_where_rows_are() {
+        let axes = [(); 3].map(|()| (0..9).map(f64::from).collect::<Vec<f64>>());
+        let place = |k: usize| Vector::new((k / 81) as f64, (k / 9 % 9) as f64, (k % 9) as f64);
+        let nodes: Vec<Vector> = (0..729).map(place).collect();
+        let harmed: Vec<_> =
+            nodes.iter().map(|node| (node.x == 1.0 && node.y == 4.0).then_some(None)).collect();
+        let grid = Grid { axes, nodes, samples: Vec::new() };
+        let rows = |x_mm: f64| {
+            let mut row = crate::tests::measured(crate::tests::GOOD, |_| Vector::zeros()).rows[0];
+            row.command.linear_mm = Vector::new(x_mm, 4.0, 4.0);
+            [row]
+        };
+        let whole = Range { low: 0.0, high: 8.0 };
+        let part = Volume([Range { low: 2.0, ..whole }, whole, whole]);
+        assert_eq!(grid.passes(&harmed, &rows(6.0)), Use::Within(part, None));
+        // Where they were read on the other side, that part is one that nobody measured.
+        assert_eq!(grid.passes(&harmed, &rows(1.0)), Use::Nowhere(None));
+        assert_eq!(grid.passes(&vec![None; 729], &rows(1.0)), Use::Everywhere);
     }
 }

@@ -32,8 +32,6 @@ pub(crate) struct Evidence {
     pub lack_of_fit_p: f64,
     /// Residual noise over stated noise, where stated.
     pub noise_ratio: Option<f64>,
-    /// What the causes displace is known better than the gap is large, everywhere it would be used.
-    pub carries: bool,
     /// Repeats of one command differ by more than neighbouring readings do.
     pub slow: bool,
     /// The rows scatter by more than the noise that was found, or that what comes back leaves room for.
@@ -136,9 +134,9 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 ///    where nothing says how much of the scatter is noise, NOISE MODEL
 ///    SUSPECT where the scatter is not what the file states by more than [`NOISE_FACTOR`], or exceeds the noise that was found
 ///    by as much (few readings may prove no structure, and are no all-clear either), else NO GAP.
-/// 3. Something named and structure left: UNDERPOWERED where the causes are not known better than the gap is large in the
-///    corners of the volume, UNKNOWN where more than [`PHI_UNKNOWN`] is left, else PARTIAL. A share alone is not enough: a small
-///    gap leaves a large share of noise; a test alone is not enough: with many rows a nanometre is significant.
+/// 3. Something named and structure left: UNKNOWN where more than [`PHI_UNKNOWN`] is left, else PARTIAL. A share alone
+///    is not enough: a small gap leaves a large share of noise; a test alone is not enough: with many rows a nanometre
+///    is significant.
 /// 4. AMBIGUOUS where any cause has rivals; this stands before the next rule, since a drift of the instrument that a warm-up of
 ///    the machine explains as well is not known to be the instrument's.
 /// 5. PARTIAL where nothing may be written of the causes: NAMED asks to act on them.
@@ -192,10 +190,6 @@ fn on_the_rows(e: &Evidence) -> Verdict {
         return Verdict::Unknown;
     }
     if structured {
-        // What is left is no noise, so the intervals are too narrow, and even those exceed the gap.
-        if !e.carries {
-            return Verdict::Underpowered;
-        }
         return if e.phi > PHI_UNKNOWN || e.trifling { Verdict::Unknown } else { Verdict::Partial };
     }
     if e.ambiguous {
@@ -221,7 +215,6 @@ mod tests {
         phi: 0.01,
         lack_of_fit_p: 0.4,
         noise_ratio: None,
-        carries: true,
         slow: false,
         exceeds: false,
         guessed: false,
@@ -246,7 +239,6 @@ mod tests {
             (Evidence { noise_ratio: Some(1.5), ..none }, Verdict::NoGap),
             (left, Verdict::Partial),
             (Evidence { phi: 0.6, ..left }, Verdict::Unknown),
-            (Evidence { carries: false, ..left }, Verdict::Underpowered),
             // A share left that noise explains, and a lack of fit that is no share, are neither.
             (Evidence { lack_of_fit_p: 0.4, ..left }, Verdict::Named),
             (Evidence { phi: 0.01, ..left }, Verdict::Named),

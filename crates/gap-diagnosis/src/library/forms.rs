@@ -116,10 +116,11 @@ impl Library {
     }
 
     /// A drift in the order of the rows: even through all runs; even, or with a time constant, anew in each, as where
-    /// each begins cold. On places that are passed once the order is the place.
+    /// each begins cold. On places that are passed once the order is the place, but where one run goes over an area.
     fn orders(&mut self, data: &Measurements, read: [bool; 3]) -> Vec<Variant> {
+        let again = |anew: bool| data.comes_back(|row| if anew { row.run } else { 0 });
         let passed_again =
-            |anew: &bool| data.is_followed() && data.comes_back(|row| if *anew { row.run } else { 0 });
+            |anew: &bool| data.is_followed() && (again(*anew) || *anew && data.runs.len() == 1);
         let mut forms = Vec::new();
         for anew in [false, true].into_iter().filter(passed_again) {
             let grown = if anew { &TAU_SHARES[..] } else { &[] };

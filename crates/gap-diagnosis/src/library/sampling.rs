@@ -24,6 +24,8 @@ pub(crate) struct Sampling {
     pub effective: f64,
     /// A bump narrower than this falls between the places measured, mm: two and a half typical steps.
     pub narrowest_mm: f64,
+    /// An angle is read through many levers at every place ([`Measurements::is_crossed`]).
+    pub crossed: bool,
     /// A third of the steps or more differ from the spacing.
     uneven: bool,
 }
@@ -41,7 +43,8 @@ impl Sampling {
         let odd = |step: &&f64| (*step / spacing_mm - 1.0).abs() > UNEVEN;
         let uneven = 3 * steps.iter().filter(odd).count() >= places.len();
         let narrowest_mm = 2.5 * median(&mut steps).unwrap_or(0.0);
-        Self { range_mm, places: places.len(), spacing_mm, effective, narrowest_mm, uneven }
+        let crossed = data.is_crossed(axis);
+        Self { range_mm, places: places.len(), spacing_mm, effective, narrowest_mm, crossed, uneven }
     }
 
     /// True where an error within a turn of a usual screw, 5 mm and more, passes for a slow curve, or for nothing.

@@ -32,7 +32,8 @@ impl State<'_, '_> {
         !self.bends(part) || self.unlikely(&with(), fit) <= self.unlikely(&self.parts, &self.fit)
     }
 
-    fn bends(&self, part: Part) -> bool {
+    /// True of an angle of a carriage.
+    pub(super) fn bends(&self, part: Part) -> bool {
         matches!(self.library.kind(part), EffectKind::Angular { .. })
     }
 

@@ -29,12 +29,20 @@ pub(crate) const LEAST_SHARE: f64 = 0.02;
 /// Least share of a joint of rails, and of damage at one: where curves are bent otherwise than in textbooks a step fits a
 /// little, and a dent at the step.
 const LEAST_STEP: f64 = 0.15;
+/// The same of a curve beside an angle with which it has more coefficients than half the places: so much is left of a roll
+/// that is bent otherwise than in textbooks, and a straightness fits it a little.
+const LEAST_BESIDE: f64 = 0.05;
 
 /// Where the noise is not what the tests take for granted, an effect that takes less than this share off the RMS …
 const WORTH: f64 = 0.1;
 /// … must be known to so many standard deviations: five times its 95 % interval, so that noise three times as large in what
 /// counts, as a walk too slow for the lags or a display's step makes it, names nothing.
 const BEYOND_DOUBT: f64 = 10.0;
+
+const CROWDED: Why = [
+    "the curves along that axis would have more coefficients than half the places measured",
+    "у кривых вдоль этой оси было бы коэффициентов больше половины измеренных точек",
+];
 
 /// More than this share of what shows an effect lies between the runs: how much these differ by chance decides.
 const MOSTLY: f64 = 0.5;
@@ -73,7 +81,10 @@ impl State<'_, '_> {
         if p > LEVEL {
             return refuse(Reason::Unproven);
         }
-        let misfit = unsupported(&self.library, part, self.source.rows).or_else(|| self.crowded(&with));
+        // An angle has readings of its own where every place is read through many levers.
+        let shares = |axis: usize, part: Part| !(self.library.sampling[axis].crossed && self.bends(part));
+        let misfit = unsupported(&self.library, part, self.source.rows)
+            .or_else(|| self.crowded(&with, shares).then_some(CROWDED));
         if let Some(words) = misfit.or_else(|| self.out_of_bounds(&with, fit.level)) {
             return refuse(Reason::Form(words));
         }
@@ -86,7 +97,8 @@ impl State<'_, '_> {
         }
         let reducible = (self.space.total(fit.level) - fit.residual).max(1e-12);
         let by_shape = matches!(kind, EffectKind::Joint(_)) || self.on_a_flank(rest, part);
-        if by_shape && gain / reducible < LEAST_STEP {
+        let beside = gain / reducible < LEAST_BESIDE && self.crowded(&with, |_, _| true);
+        if beside || by_shape && gain / reducible < LEAST_STEP {
             return refuse(Reason::Little([
                 "so little is what the shape of another curve leaves",
                 "столько остаётся и от формы другой кривой",
@@ -162,22 +174,17 @@ impl State<'_, '_> {
         })
     }
 
-    /// Curves along one axis seen in one component: together they may have no more coefficients than half the places.
-    fn crowded(&self, with: &[Part]) -> Option<Why> {
+    /// Curves along one axis seen in one component: together those that count may have no more coefficients than half
+    /// the places.
+    fn crowded(&self, with: &[Part], counts: impl Fn(usize, Part) -> bool) -> bool {
         let crowd = |axis: usize, component: usize| {
-            let columns = with.iter().flat_map(|part| {
-                let candidate = &self.library.candidates[part.candidate];
-                let own = curve_axis(candidate.kind) == Some(axis);
-                candidate.variants[part.variant].columns.iter().filter(move |_| own)
-            });
+            let own =
+                |part: &&Part| curve_axis(self.library.kind(**part)) == Some(axis) && counts(axis, **part);
+            let columns = with.iter().filter(own).flat_map(|part| &self.library.form(*part).columns);
             let seen = |c: &&usize| self.library.terms[**c].touches(component, self.source.geometry);
             2.0 * columns.filter(seen).count() as f64 > self.library.sampling[axis].effective + 0.5
         };
-        let crowded = (0..3).any(|axis| (0..3).any(|component| crowd(axis, component)));
-        crowded.then_some([
-            "the curves along that axis would have more coefficients than half the places measured",
-            "у кривых вдоль этой оси было бы коэффициентов больше половины измеренных точек",
-        ])
+        (0..3).any(|axis| (0..3).any(|component| crowd(axis, component)))
     }
 
     /// Why a part, with the numbers it has beside the others, must not be used.

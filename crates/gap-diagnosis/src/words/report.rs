@@ -22,7 +22,6 @@ struct OnRows {
     gap: Gap,
     leftover: Leftover,
     causes: Vec<Cause>,
-    corner_um: f64,
     used: Use,
     evidence: Evidence,
 }
@@ -37,7 +36,7 @@ impl Assembly<'_> {
         kept_back: impl FnOnce() -> Option<Unseen>,
     ) -> Diagnosis {
         let before = self.gap_after(0);
-        let OnRows { gap, leftover, causes, corner_um, used, mut evidence } = self.on_rows(holdout, options);
+        let OnRows { gap, leftover, causes, used, mut evidence } = self.on_rows(holdout, options);
         // Below the step of the control no correction is possible and no cause is worth a name.
         let fine = gap.rms_um * 12.0_f64.sqrt() < options.resolution_um;
         let held = holdout.map(|h| self.holdout(h));
@@ -60,13 +59,9 @@ impl Assembly<'_> {
         notes.extend(evidence.unseen.filter(|_| told.is_none()).map(|u| u.kept_back_note()));
         notes.extend(holdout.iter().flat_map(|h| self.forecast_notes(h, &causes)));
         notes.extend(formulas.iter().map(|f| both!("{} ({}).", "{:#} ({}).", f.words, f.text)));
-        let unsure = verdict == Verdict::Underpowered && !causes.is_empty();
-        if unsure {
-            notes.extend(causes.iter().map(seen_but_unsure));
-        }
         let runs = &holdout.unwrap_or(self.data).runs;
         let headline = Headline { verdict, gap, leftover: &leftover, causes: &causes, evidence: &evidence };
-        let sentence = if fine { headline.sentence() } else { headline.doubted(corner_um, runs) };
+        let sentence = if fine { headline.sentence() } else { headline.doubted(runs) };
         if verdict == Verdict::Underpowered {
             causes.clear();
         }
@@ -102,7 +97,7 @@ impl Assembly<'_> {
             within,
             setup: Some(self.setup()),
             leftover,
-            holdout: held.filter(|_| !unsure),
+            holdout: held,
             outlier_lines: self.model.outliers.iter().map(|r| data.rows[*r].line).collect(),
             detectable: self.detectable(),
             formulas,
@@ -116,11 +111,10 @@ impl Assembly<'_> {
         let gap = self.size(&self.gap_after(0));
         let leftover = self.leftover();
         let causes = self.causes(holdout, gap.rms_um);
-        let corner_um = self.uncertainty_in_corners_um(options.volume);
         let used = self.may_be_used(options.volume);
-        let mut evidence = self.evidence(&gap, &leftover, &causes, corner_um);
+        let mut evidence = self.evidence(&gap, &leftover, &causes);
         evidence.risks |= matches!(used, Use::Nowhere(_));
-        OnRows { gap, leftover, causes, corner_um, used, evidence }
+        OnRows { gap, leftover, causes, used, evidence }
     }
 
     /// The verdict of the rows that were fitted alone.
@@ -175,13 +169,9 @@ impl Headline<'_> {
     }
 
     /// The sentence with what unseen rows say against it; `runs`: theirs.
-    fn doubted(&self, corner_um: f64, runs: &[String]) -> Text {
+    fn doubted(&self, runs: &[String]) -> Text {
         let rms_um = self.gap.rms_um;
         match self.verdict {
-            Verdict::Underpowered if !self.causes.is_empty() => both!(
-                "These rows cannot carry a correction: what they show is uncertain by {corner_um:.1} um in the far corner, and the gap itself is {rms_um:.1} um RMS.",
-                "Исправлять по этим строкам нельзя: неопределённость того, что они показывают, в дальнем углу {corner_um:.1} мкм, а само расхождение — {rms_um:.1} мкм (СКЗ)."
-            ),
             Verdict::Underpowered if self.evidence.guessed => both!(
                 "Rows and model differ by {rms_um:.1} µm RMS, and nothing says how much of it is noise: no command was read twice, and neighbouring rows lie far apart. Read twelve of the commands once more in the same run, or state u_um.",
                 "Строки и модель расходятся на {rms_um:.1} мкм (СКЗ), и ничто не говорит, сколько из этого шума: ни одна точка не измерена дважды, а соседние строки далеко друг от друга. Измерьте двенадцать точек ещё раз в той же серии или укажите u_um."
@@ -199,16 +189,4 @@ impl Headline<'_> {
             }
         }
     }
-}
-
-/// What a file that cannot carry a correction hints at.
-fn seen_but_unsure(cause: &Cause) -> Text {
-    let first = cause.parameters.first().map_or_else(String::new, |p| {
-        format!(" ({} = {:.1} ± {:.1})", p.name, p.value, p.u95.unwrap_or_default())
-    });
-    both!(
-        "Hinted at, too uncertain to be used: {}{first}.",
-        "Намечается, но слишком неопределённо для использования: {}{first}.",
-        cause.effect
-    )
 }
