@@ -104,7 +104,10 @@ mod tests {
             0.4,
         );
         let turn = speed_mm_s / radius_mm;
-        let round = |seconds: f64| [radius_mm * (turn * seconds).cos(), radius_mm * (turn * seconds).sin()];
+        let round = |seconds: f64| {
+            let (sin, cos) = math::sin_cos(turn * seconds);
+            [radius_mm * cos, radius_mm * sin]
+        };
         let off = |[x, y]: [f64; 2]| ((x * x + y * y).sqrt() - radius_mm).abs();
         // The first turn is no steady one, and cut less.
         [corner, run(&round, &off, 3.0 * std::f64::consts::TAU / turn)]
