@@ -279,6 +279,7 @@ def trapezoid(text):
         if fed and was_rapid and waits:
             places.append(np.repeat(move.corners[:1], 600, axis=0))
             feeds.append(np.zeros(600, dtype=bool))
+            waits = False
         was_rapid = not fed
         at = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(move.corners, axis=0), axis=1))]
         if at[-1] == 0:
