@@ -52,15 +52,23 @@ def marked(text, line):
     return b"".join([*lines[: line - 1], f"({MARK})\n".encode(), *lines[line - 1 :]])
 
 
+def numbered(text):
+    """The program with a mark before each line, which says its number (1-based)."""
+    lines = text.splitlines(keepends=True)
+    marks = [b""] + [f"({MARK} {number})\n".encode() for number in range(2, len(lines) + 1)]
+    return b"".join(part for pair in zip(marks, lines) for part in pair)
+
+
 def numbers(words):
     return [float(word) for word in re.findall(r"-?\d+\.?\d*(?:e-?\d+)?|-?nan|-?inf", words)]
 
 
 class Move:
-    """A motion in machine mm (axis commands): corners of its path, the rapid or feed that it is."""
+    """A motion in machine mm (axis commands): corners of its path, the rapid or feed that it is; its line in a program
+    that is `numbered`."""
 
-    def __init__(self, name, corners, program_z, state):
-        self.name, self.corners, self.program_z, self.state = name, corners, program_z, state
+    def __init__(self, name, corners, program_z, state, line):
+        self.name, self.corners, self.program_z, self.state, self.line = name, corners, program_z, state, line
 
     def changes(self, axis):
         return abs(self.corners[:, axis] - self.corners[0, axis]).max() > STILL_MM
@@ -72,7 +80,7 @@ class Run:
     def __init__(self, calls, chord_deg=1.0):
         self.chord = math.radians(chord_deg)
         self.state, self.unit, self.moves = dict(AT_START), 1.0, []
-        self.at = np.zeros(3)
+        self.at, self.line = np.zeros(3), 1
         self.shifts = {name: np.zeros(3) for name in SHIFTS}
         for name, words in calls:
             self.take(name, words)
@@ -85,6 +93,8 @@ class Run:
         if name in MOTIONS:
             self.move(name, numbers(words))
             return
+        if name == "COMMENT" and (mark := re.search(rf"{MARK} (\d+)", words)):
+            self.line = int(mark[1])
         if name in PASSING:
             return
         if name == "USE_LENGTH_UNITS":
@@ -115,7 +125,7 @@ class Run:
         else:
             corners = np.array([self.at, np.array(values[:3]) * self.unit + shift])
         self.at = corners[-1]
-        self.moves.append(Move(name, corners, corners[:, 2] - shift[2], dict(self.state)))
+        self.moves.append(Move(name, corners, corners[:, 2] - shift[2], dict(self.state), self.line))
 
     def arc(self, values, turns, shift):
         """Corners of an arc: ends, centre in the plane in force, whole turns and sense, end along the third axis."""

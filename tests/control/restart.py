@@ -10,7 +10,8 @@ must stand at the same place and hang on the same side of their play, all canoni
 same; and what comes before must reach that place from above: no way across below the highest Z that the program
 commanded with that tool and offset before, no way down elsewhere, the last of it under feed and with the spindle on.
 With `--rig` both run through the motion controller, on a machine that has play: all of the tip's way from N on must be
-where that of the whole program is.
+where that of the whole program is, but for what the path mode allows at corners (ways.py). sides.py asks that this
+finds a wrong side of play.
 
 A line may be refused: by exit status 1, with nothing on standard output and its number in the message; a line before
 it that the message names must then be possible. A refusal for which this judge sees no reason is counted; more than
@@ -32,24 +33,20 @@ import canon
 import judge
 import posts
 import rig
+import ways
 from machine import Machine, played
+from ways import Wrong
 
 SAME_MM = 6e-4  # half the last digit of a word, and of what the interpreter prints
 SAME_INCH = 1.1e-4
 FIRM = 0.7  # of half a play: the interpreter prints inches to 2.5 um
 HIGHER_MM = 7.5
 TIMID = 0.05
-RIG_MM = 1.5e-3
 RIG_MODES = ["G61", "G61.1", "G64 P0.01"]
-NEAR_START_MM = 1.0  # a control that rounds corners cannot round the one where it starts
 RIG_KINDS = [
     "plate", "slots", "helix", "other_planes", "raster", "spline", "holes", "pecks", "tools", "zeros", "increments",
     "inches", "inverse_time", "shifted", "numbered", "switches", "radii", "ramps",
 ]
-
-
-class Wrong(Exception):
-    """What is not as it should be."""
 
 
 def controls():
@@ -386,34 +383,14 @@ def by_interpreter(given, tally):
                 done += 1
 
 
-def tail_tips(recorded, machine, begins):
-    """Way of the tip from a line on, machine mm, without standing rows, and whether each row feeds."""
-    tips = machine.tip_mm(recorded[:, :3])
-    lines = recorded[:, 3].astype(int)
-    at = np.flatnonzero(lines >= begins)
-    if not len(at):
-        return tips[:0]
-    tips = tips[at[0] :]
-    moved = np.r_[True, np.abs(np.diff(tips, axis=0)).max(1) > 1e-9]
-    return tips[moved]
-
-
-def compare_ways(whole, own, blend_mm):
-    """Both ways of the tip from a line on, each against the other; Wrong where they part."""
-    if len(whole) < 2 or len(own) < 2:
-        if abs(len(whole) - len(own)) > 2:
-            raise Wrong(f"{len(own)} places from the line on, the whole has {len(whole)}")
-        return 0.0
-    worst = 0.0
-    for points, path in ((own, whole), (whole, own)):
-        off = judge.distances(points, path)
-        begin = np.linalg.norm(points - path[0], axis=1)
-        may = np.where(begin <= NEAR_START_MM, RIG_MM + blend_mm, RIG_MM)
-        if (off > may).any():
-            k = int((off - may).argmax())
-            raise Wrong(f"the tip is {off[k] * 1e3:.2f} um off the other way, {begin[k]:.2f} mm from where it begins")
-        worst = max(worst, float(off[begin > NEAR_START_MM].max(initial=0.0)))
-    return worst
+def same_ways(program, line, whole, own, text, begins):
+    """Holds the recording of a restarted program against that of the whole; how far they part away from corners, mm."""
+    made = [(whole, program.text, line), (own, text, begins)]
+    both = [
+        ways.Way(recorded, program.machine, ways.Commanded(run, controls(), at, line), at, line)
+        for recorded, run, at in made
+    ]
+    return ways.compare(*both, b"G20" in program.text)
 
 
 def by_rig(given, tally):
@@ -439,11 +416,8 @@ def by_rig(given, tally):
             recorded = rig.run(texts, controls())
             for line, (one, begins) in made.items():
                 try:
-                    ways = [
-                        tail_tips(recorded["a_whole"], program.machine, line),
-                        tail_tips(recorded[f"b_{line:05}"], program.machine, begins),
-                    ]
-                    worst = max(worst, compare_ways(*ways, 0.02 if "P" in mode else 0.0))
+                    runs = recorded["a_whole"], recorded[f"b_{line:05}"]
+                    worst = max(worst, same_ways(program, line, *runs, one.text, begins))
                     tally.kinds[kind]["same"] += 1
                 except Wrong as why:
                     tally.fault(program, line, f"{mode}: {why}", one)

@@ -28,12 +28,13 @@ pub(crate) struct Options {
 pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
     let [machines, lines, seed] =
         [options.machines, options.lines, options.seed].map(|count| count.to_string());
-    let judges: [(&str, &[&str]); 5] = [
+    let judges: [(&str, &[&str]); 6] = [
         ("restart", &["--interpreter", "--lines", &lines]),
         ("judge", &["--machines", &machines]),
         ("modes", &["--machines", &machines]),
         ("five_axis", &["--programs", &machines]),
         ("loop", &["--machines", &machines]),
+        ("lag", &["--programs", &machines]),
     ];
     let mut failed = Vec::new();
     for (judge, counts) in judges {
