@@ -190,8 +190,14 @@ async function takeAll(given) {
 
 /** Files of what was dropped, folders walked through. */
 async function dropped(transfer) {
-  const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
-  if (!entries.length) return takeAll(transfer.files);
+  // Taken at once: behind the event nothing is left of it. A page from the disk may read files, but none of an entry.
+  const given = [...transfer.items]
+    .filter((item) => item.kind === "file")
+    .map((item) => ({
+      folder: [item.webkitGetAsEntry?.()].find((entry) => entry?.isDirectory),
+      file: item.getAsFile(),
+    }));
+  if (!given.length) return takeAll(transfer.files);
   tell("");
   const walk = async (entry, above) => {
     if (entry.isFile) {
@@ -206,7 +212,10 @@ async function dropped(transfer) {
     }
   };
   // A folder that is dropped alone is where its profile looks for tables from.
-  for (const entry of entries) await walk(entry, "").catch(() => tell(words().unread(entry.name)));
+  for (const { folder, file } of given) {
+    if (folder) await walk(folder, "").catch(() => tell(words().noFolder(folder.name)));
+    else if (file) await take(file.name, file);
+  }
   show();
 }
 
@@ -246,7 +255,8 @@ function list() {
       part("td", {}, path),
       part("td", {}, said[kindOf(path)]),
       part("td", { class: "n" }, size(files.get(path).size)),
-      part("td", {}, remove(path)),
+      // What a run made stays at hand, whatever the next one says.
+      part("td", {}, ...(made.has(path) ? [save(path, files.get(path))] : []), remove(path)),
     );
   const table = (some) =>
     part(

@@ -57,6 +57,8 @@ const WORDS = {
     zip: (name) => `${name}: this archive is damaged, locked or of another kind. Unpack it, and drop what is in it.`,
     replaced: (path) => `${path} was there already: the one dropped last stands for it now.`,
     unread: (name) => `${name} cannot be read: it may have been changed or moved. Drop it again.`,
+    noFolder: (name) =>
+      `${name}: this browser gives no folder to a page from the disk. Take “Choose a folder…”, or a zip.`,
     chain: "Kind of machine",
     travel: "Travel of each axis, mm",
     chains: {
@@ -148,6 +150,8 @@ const WORDS = {
     zip: (name) => `${name}: архив повреждён, под паролем или другого вида. Распакуйте его и перетащите содержимое.`,
     replaced: (path) => `${path} уже был в списке: теперь вместо него добавленный последним.`,
     unread: (name) => `${name} не читается: файл изменён или перенесён. Перетащите его ещё раз.`,
+    noFolder: (name) =>
+      `${name}: папку странице с диска этот браузер не отдаёт. Возьмите «Выбрать папку…» или архив zip.`,
     chain: "Вид станка",
     travel: "Ход каждой оси, мм",
     chains: {
