@@ -107,7 +107,15 @@ impl Lag {
 
     /// In words; none where nothing lags.
     pub(crate) fn said(&self) -> impl Iterator<Item = Text> {
-        let corner = self.corner.as_ref().map(|at| (at, both!("at corners", "на углах")));
+        let corner = self.corner.as_ref().map(|at| {
+            (
+                at,
+                both!(
+                    "at corners, what rapids leave behind apart",
+                    "на углах, не считая следа холостых ходов"
+                ),
+            )
+        });
         let arc = self.arc.as_ref().map(|at| (at, both!("on arcs", "на дугах")));
         corner.into_iter().chain(arc).map(|(Lagging { off_mm, line, .. }, place)| {
             if off_mm.is_finite() {
