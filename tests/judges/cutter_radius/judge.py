@@ -94,7 +94,7 @@ def way(case, text, rule, said):
 def one(case):
     job = contour.Case(case.options.seed, case.number, case.options.dialect)
     case.write("in.nc", job.text)
-    where = contour.machines.profile(job.spec, job.dialect, case.folder, {"G54": repr(job.offset)}, case.options.zero)
+    where = contour.machines.profile(job.spec, job.dialect, case.folder, {"G54": job.offset}, case.options.zero)
     try:
         feeds = np.concatenate(stretches(centre(job, job.text, RULES[job.dialect][0])))
     except (control.Refused, blocks.Unreadable):

@@ -14,6 +14,7 @@ import numpy as np
 
 from common import folders
 from common.command import run
+from common.profile import Profile, column
 
 LOCATIONS = {"A": ("EY0A", "EZ0A", "EB0A", "EC0A"), "B": ("EX0B", "EZ0B", "EA0B", "EC0B"), "C": ("EX0C", "EY0C", "EA0C", "EB0C")}
 CHAINS = ["[w C A b X Y Z t]", "[w C A Y b X Z t]", "[w C B Y b X Z t]", "[w C b X Y Z B t]", "[w A b X Y Z B t]", "[w C Y b X Z A t]", "[w b X Y Z C B t]", "[w X b Y Z C A t]"]
@@ -62,20 +63,22 @@ class Machine:
 
     def profile(self, located=()):
         """The machine as it should be; `located`: (name, value) of location errors or squareness to be in it."""
-        text = f'format = 1\nname = "judged"\ncontrol = "fanuc"\nchain = "{self.chain}"\n'
+        p = Profile("judged", "fanuc", self.chain)
         for axis in "XYZ":
-            text += f"\n[axis.{axis}]\ntravel_mm = [-500, 500]\nresolution_mm = 0.001\n"
+            p.axis(axis).update(travel_mm=[-500, 500], resolution_mm=0.001)
         for axis in self.rotary:
-            text += f"\n[rotary.{axis}]\ncentre_mm = [{', '.join(f'{v:.3f}' for v in self.centre[axis])}]\ntravel_deg = [-360, 360]\n"
-            for name, value in located:
-                if name.startswith("rotary.") and name.endswith("0" + axis):
-                    # A tilt is not told without what leans by it; (9): what the axis carries.
-                    text += 'tilt = "body"\n' if name[8] in "ABC" else ""
-                    text += f"{name[7:]}_{'um' if name[8] in 'XYZ' else 'urad'} = {value:.9f}\n"
+            p.axis(axis).update(centre_mm=[round(float(v), 3) for v in self.centre[axis]], travel_deg=[-360, 360])
         for name, value in located:
-            if name.startswith("squareness."):
-                text += f"\n[squareness]\n{ {'XY': 'EC0Y', 'XZ': 'EB0Z', 'YZ': 'EA0Z'}[name[11:]] }_urad = {value:.9f}\n"
-        return text + f"\n[tool]\ndefault_mm = [0.0, 0.0, {-self.tool_mm:.1f}]\n"
+            kind, what = name.split(".")
+            if kind == "squareness":
+                p["squareness"][column({"XY": "EC0Y", "XZ": "EB0Z", "YZ": "EA0Z"}[what])] = round(value, 9)
+            elif what[-1] in self.rotary:
+                p.located(what[-1], {what: round(value, 9)})
+                if what[1] in "ABC":
+                    # A tilt is not told without what leans by it (VP0314); (9): what the axis carries.
+                    p.axis(what[-1])["tilt"] = "body"
+        p["tool"]["default_mm"] = [0.0, 0.0, round(-self.tool_mm, 1)]
+        return p.text()
 
     def command(self, tip, rot, vector):
         """X, Y, Z of an ideal machine that bring the tip there."""

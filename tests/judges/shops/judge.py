@@ -17,7 +17,7 @@ import sys
 
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-from common import cases, interpreter, options  # noqa: E402
+from common import cases, interpreter, options, profile  # noqa: E402
 from common.words import number as word  # noqa: E402
 
 # Ten times what the machine of the profile is crooked by.
@@ -28,25 +28,6 @@ OFFSETS = {1: (100.0, 80.0, 40.0), 2: (110.0, 75.0, 41.0), 3: (-60.0, 33.0, 12.0
 LENGTHS = {1: 120.0, 2: 80.5}
 # A length that the program itself writes, in two parts.
 WRITTEN = {7: (95.5, -0.25)}
-PROFILE = """format = 1
-name = "Judge's machine (invented)"
-control = "{dialect}"
-chain = "[w X Y b Z t]"
-[axis.X]
-travel_mm = [-2000, 2000]
-[axis.Y]
-travel_mm = [-2000, 2000]
-[axis.Z]
-travel_mm = [-2000, 2000]
-[squareness]
-EC0Y_urad = 60.0
-EB0Z_urad = -50.0
-EA0Z_urad = 40.0
-[tool]
-lengths_mm = {{ H1 = 120.0, H2 = 80.5 }}
-[work_offsets_mm]
-{offsets}
-"""
 
 
 class Unreadable(Exception):
@@ -427,11 +408,13 @@ def self_test():
 def one(case):
     control, number = case.number.split("-")
     own, other = Part(random.Random(f"{case.options.seed}/{control}/{number}"), control).write()
-    names = {1: "G15H1", 2: "G15H2"} if control == "okuma" else {1: "G54", 2: "G55", 3: '"G54.1P1"'}
-    offsets = "\n".join(f"{names[k]} = {list(OFFSETS[k])}" for k in names)
+    names = {1: "G15H1", 2: "G15H2"} if control == "okuma" else {1: "G54", 2: "G55", 3: "G54.1P1"}
+    mill = profile.crooked_mill(control)
+    mill["tool"]["lengths_mm"] = {"H1": 120.0, "H2": 80.5}
+    mill["work_offsets_mm"].update({name: OFFSETS[k] for k, name in names.items()})
     case.write("in.nc", own)
     case.write("in.ngc", other)
-    flags = ["-m", case.write("machine.toml", PROFILE.format(dialect=control, offsets=offsets)), "--zero", "true", "-d", control]
+    flags = ["-m", mill.write(case.folder), "--zero", "true", "-d", control]
     flags += [] if control == "mach" else ["--decimal", "increments"]
     done = case.correct(*flags, about=control + " ")
     if not done:

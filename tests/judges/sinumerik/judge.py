@@ -17,32 +17,9 @@ import sys
 
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-from common import cases, options  # noqa: E402
+from common import cases, options, profile  # noqa: E402
 
 NEAR_MM = 0.25
-PROFILE = """format = 1
-name = "Judge's machine (invented)"
-control = "sinumerik"
-chain = "[w X Y b Z t]"
-[axis.X]
-travel_mm = [-2000, 2000]
-[axis.Y]
-travel_mm = [-2000, 2000]
-[axis.Z]
-travel_mm = [-2000, 2000]
-[squareness]
-EC0Y_urad = 60.0
-EB0Z_urad = -50.0
-EA0Z_urad = 40.0
-[tool]
-lengths_mm = { H1 = 120.0, H2 = 80.5, H7 = 95.25 }
-names = { "MILL 12" = 7 }
-[work_offsets_mm]
-G54 = [100, 80, 40]
-G55 = [110, 75, 41]
-G505 = [12, -14, 16]
-G599 = [-30, 22, 5]
-"""
 LENGTHS = {1: 120.0, 2: 80.5, 7: 95.25}
 NAMES = {"MILL 12": 7}
 OFFSETS = {54: (100, 80, 40), 55: (110, 75, 41), 505: (12, -14, 16), 599: (-30, 22, 5)}
@@ -1053,7 +1030,10 @@ def one(case):
     else:
         program = generate(random.Random(f"{case.options.seed}/{case.number}"))
     case.write("in.nc", program)
-    flags = ["-m", case.write("machine.toml", PROFILE), "--zero", "true", "-d", "sinumerik"]
+    mill = profile.crooked_mill("sinumerik")
+    mill["tool"].update(lengths_mm={f"H{n}": length for n, length in LENGTHS.items()}, names=NAMES)
+    mill["work_offsets_mm"].update({f"G{n}": offset for n, offset in OFFSETS.items()})
+    flags = ["-m", mill.write(case.folder), "--zero", "true", "-d", "sinumerik"]
     done = case.correct(*flags)
     if done:
         try:

@@ -16,6 +16,7 @@ import os
 import re
 import sys
 import tempfile
+import tomllib
 
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
@@ -34,8 +35,8 @@ def lathe(linuxcnc, x, system, perfect=False, say=()):
     }
     if not linuxcnc:
         spec["g_code_system"] = system
-        spec["parameters"] = {"thread_chamfer_leads": 1.0, "thread_chamfer_deg": 45.0, "roughing_escape_mm": 0.5, "groove_return_mm": 0.2, "thread_finishing_passes": 1, "thread_least_mm": 0.05, "thread_allowance_mm": 0, "thread_flank_from": '"start"', "drill_pecks": '"full"', "drill_return_mm": 0.5, "contour_compensation": '"finishing"'}
-        spec["parameters"].update(pair.split("=", 1) for pair in say)
+        spec["parameters"] = {"thread_chamfer_leads": 1.0, "thread_chamfer_deg": 45.0, "roughing_escape_mm": 0.5, "groove_return_mm": 0.2, "thread_finishing_passes": 1, "thread_least_mm": 0.05, "thread_allowance_mm": 0, "thread_flank_from": "start", "drill_pecks": "full", "drill_return_mm": 0.5, "contour_compensation": "finishing"}
+        spec["parameters"].update(tomllib.loads("\n".join(say)))
     if not perfect:
         at = [-900 + 150 * k for k in range(13)]
         spec["axes"]["Z"]["table"] = {"position_mm": at, "EZZ_um": SINE, "EXZ_um": SINE[::-1], "EBZ_urad": [4 * v for v in SINE]}
