@@ -23,14 +23,16 @@ HALF_MM = 300.0
 
 
 def exp(v):
-    """Rotation matrices (n, 3, 3) of rotation vectors (n, 3)."""
+    """Rotation matrices (n, 3, 3) of rotation vectors (n, 3), by quaternions."""
     v = np.atleast_2d(np.asarray(v, float))
-    angle = np.sqrt((v * v).sum(1))
-    safe = np.where(angle < 1e-14, 1.0, angle)
-    k = np.zeros((len(v), 3, 3))
-    k[:, 1, 0], k[:, 2, 0], k[:, 2, 1] = v[:, 2], -v[:, 1], v[:, 0]
-    k -= np.transpose(k, (0, 2, 1))
-    return np.eye(3) + np.where(angle < 1e-14, 1.0, np.sin(safe) / safe)[:, None, None] * k + (2 * (np.sin(safe / 2) / safe) ** 2)[:, None, None] * (k @ k)
+    half = np.linalg.norm(v, axis=1) / 2
+    w, (x, y, z) = np.cos(half), (v * np.sinc(half / np.pi)[:, None] / 2).T
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return np.moveaxis(np.array(rows), 2, 0)
 
 
 def times(m, x):
