@@ -301,9 +301,3 @@ def against(vpost):
         worst = max(worst, close(machine.place(q, rot, tool)[0], [[float(v) for v in x[at : at + 3]] for x in lines[1:]]))
         points += len(q)
     return worst, points
-
-
-if __name__ == "__main__":
-    import sys
-
-    sys.exit(run(sys.argv[1] if len(sys.argv) > 1 else None))
