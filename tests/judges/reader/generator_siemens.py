@@ -2,8 +2,10 @@
 
 import os
 
+from writing import Writing
 
-class SiemensMill:
+
+class SiemensMill(Writing):
     KINDS = dict(moves=5, arcs=4, holes=6, modal=7, corners=4, stairs=2, frame=5, offsets=2, loop=3, jump=1, sub=3, machine=1,
                  units=1, misc=1, tool=1, variables=2, refused=0.15)
 
@@ -12,9 +14,6 @@ class SiemensMill:
         self.absolute, self.plane, self.inch = True, 17, False
         self.depth, self.number, self.variable, self.inside, self.tooled = 0, 0, 10, False, False
         self.files, self.rapid = {}, True
-
-    def p(self, chance):
-        return self.rng.random() < chance
 
     def n(self, low, high, letter="", digits=None):
         value = self.rng.uniform(low, high)
@@ -74,11 +73,6 @@ class SiemensMill:
                  and not (self.inside and k in ("frame", "offsets", "machine", "units", "tool"))]
         name = self.rng.choices(names, [self.KINDS[k] for k in names])[0]
         getattr(self, name)()
-
-    def abs(self):
-        if not self.absolute:
-            self.absolute = True
-            self.say("G90")
 
     def here(self):
         self.absolute or self.say("G90")
