@@ -4,13 +4,14 @@
     /usr/bin/python3 -B tests/judges/all.py --vpost target/release/vpost
     /usr/bin/python3 -B tests/judges/all.py --vpost target/release/vpost --only field --only rtest
 
-Counts for the record, and what each asks, stand in docs/testing.md, whose tables are held against the judges first. A judge
-that needs what is not here (NumPy, LinuxCNC's interpreter) is skipped and says so; with CI set that is a failure. Exit
-status 1 where one finds something, is missing from the list below, or cannot run.
+Counts for the record, and what each asks, stand in docs/testing.md, whose tables are held against the judges first. A
+judge that needs what is not here (NumPy, LinuxCNC's interpreter) is skipped and says so; with CI set that is a failure.
+Exit status 1 where one finds something, is missing from the list below, or cannot run.
 """
 
 import argparse
 import functools
+import importlib.util
 import os
 import pathlib
 import shlex
@@ -58,7 +59,7 @@ def missing(judge: str) -> str:
     """What a judge needs and this machine has not."""
     if judge in INTERPRETER and not shutil.which("rs274"):
         return "LinuxCNC's interpreter, `rs274`"
-    if judge not in WITHOUT_NUMPY and subprocess.run([sys.executable, "-c", "import numpy"], capture_output=True, check=False).returncode:
+    if judge not in WITHOUT_NUMPY and not importlib.util.find_spec("numpy"):
         return "NumPy"
     return ""
 
@@ -72,11 +73,12 @@ def played(vpost: str, keep: str, judge: str) -> tuple[str, str, bool]:
     words += ["--before", vpost, "--after", vpost] if judge == "same_bytes" else ["--vpost", vpost]
     words += ["--keep", os.path.join(keep, judge)] if judge != "dialects" else []
     begun = time.monotonic()
-    done = subprocess.run(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
+    done = subprocess.run(words, input=b"", stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
     line = f"{judge}: {time.monotonic() - begun:.0f} s"
     if done.returncode == 0:
         return line, "", True
-    return f"{line}, FAILED with exit status {done.returncode}: {shlex.join(words)}", "\n".join(done.stdout.splitlines()[-40:]), False
+    said = "\n".join(done.stdout.decode("utf-8", "replace").splitlines()[-40:])
+    return f"{line}, FAILED with exit status {done.returncode}: {shlex.join(words)}", said, False
 
 
 def main() -> int:
@@ -91,7 +93,8 @@ def main() -> int:
     for judge in set(shared.judges()) ^ set(COUNTS):
         print(f"tests/judges/all.py: `{judge}` is not in its list and the folder both")
         failed = 1
-    for line, said, passes in cases.in_order(functools.partial(played, vpost, keep), given.only or list(COUNTS), given.jobs):
+    one = functools.partial(played, vpost, keep)
+    for line, said, passes in cases.in_order(one, given.only or list(COUNTS), given.jobs):
         print("\n".join(filter(None, (said, line))), flush=True)
         failed |= not passes
     print("some judge is not content" if failed else "all judges pass")

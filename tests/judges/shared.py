@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Whether docs/testing.md says the truth of the judges: that each is listed, and which of them share more than plumbing.
+"""Whether docs/testing.md says the truth of the judges: that each is listed, and which share more than plumbing.
 
     /usr/bin/python3 tests/judges/shared.py
 
@@ -55,7 +55,8 @@ def copied(trees: dict[str, list[ast.Module]]) -> set[tuple[str, str, str]]:
         if isinstance(node, ast.FunctionDef) and node.name not in PLUMBING
     ]
     found = [one for one in found if len(one[2]) >= TOKENS]
-    return {(*sorted((a[0], b[0])), a[1]) for a, b in itertools.combinations(found, 2) if a[0] != b[0] and alike(a[2], b[2])}
+    pairs = ((a, b) for a, b in itertools.combinations(found, 2) if a[0] != b[0])
+    return {(*sorted((a[0], b[0])), a[1]) for a, b in pairs if alike(a[2], b[2])}
 
 
 def taken(trees: dict[str, list[ast.Module]]) -> set[tuple[str, str]]:
@@ -78,7 +79,8 @@ def section(page: str, title: str) -> str:
 
 def rows(text: str) -> list[tuple[set[str], str]]:
     """Judges of the first cell of each row, and the row."""
-    return [(set(re.findall(r"`(\w+)`", line.split("|")[1])), line) for line in text.splitlines() if line.startswith("| `")]
+    lines = [line for line in text.splitlines() if line.startswith("| `")]
+    return [(set(re.findall(r"`(\w+)`", line.split("|")[1])), line) for line in lines]
 
 
 def main() -> int:
@@ -87,9 +89,10 @@ def main() -> int:
     wrong = [f"`{judge}` is not in the table" for judge in judges() if judge not in listed]
     wrong += [f"`{judge}` has no command" for judge in judges() if f"tests/judges/{judge}/judge.py" not in page]
     wrong += [f"`{name}` is listed and not there" for name in listed - set(judges())]
-    trees = {judge: [ast.parse(path.read_text(encoding="utf-8")) for path in sorted((HERE / judge).glob("*.py"))] for judge in judges()}
+    files = {judge: sorted((HERE / judge).glob("*.py")) for judge in judges()}
+    trees = {judge: [ast.parse(path.read_text(encoding="utf-8")) for path in paths] for judge, paths in files.items()}
     said = rows(section(page, "Who shares what"))
-    needed = [({a, b}, f"`{name}`", f"`{name}` stands in `{a}` and in `{b}`") for a, b, name in sorted(copied(trees))]
+    needed = [({a, b}, f"`{f}`", f"`{f}` stands in `{a}` and in `{b}`") for a, b, f in sorted(copied(trees))]
     needed += [({a, b}, "", f"`{a}` takes from `{b}`") for a, b in sorted(taken(trees))]
     fits = lambda row, pair, name: pair <= row[0] and name in row[1]  # noqa: E731
     wrong += [f"not said: {text}" for pair, name, text in needed if not any(fits(row, pair, name) for row in said)]

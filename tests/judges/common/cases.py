@@ -35,6 +35,16 @@ def shown(results: Iterable, about: Callable[[object], tuple[str, list[tuple[str
     return out
 
 
+def examined(folder: str, examine: Callable[[], tuple[list, dict]]) -> tuple[list, dict]:
+    """(findings, figures) of a case; findings also in its `found.txt`. No answer in time is one."""
+    try:
+        found, figures = examine()
+    except subprocess.TimeoutExpired as slow:
+        found, figures = [("slow", f"more than {slow.timeout:g} s")], {}
+    folders.put(folder, "found.txt", "".join(f"{name}: {words}\n" for name, words in found))
+    return found, figures
+
+
 class Case:
     """One case in a folder of its own: what is counted, found, refused and measured of it."""
 
@@ -60,8 +70,8 @@ class Case:
         return run(self.options.vpost, *words)
 
     def correct(self, *flags: object, about: str = "") -> tuple[str, str] | None:
-        """Output, kept as `out.nc`, and messages of `in.nc`. None where it is refused, which is counted (with `about` before
-        the number), or the profile is, which is found."""
+        """Output, kept as `out.nc`, and messages of `in.nc`. None where it is refused, which is counted (with `about`
+        before the number), or the profile is, which is found."""
         status, output, errors = self.run("correct", self.folder / "in.nc", *flags)
         if status == 2:
             self.find("profile", short(errors))
@@ -94,11 +104,14 @@ def asked(options: argparse.Namespace) -> range:
     return range(options.first, options.first + options.count)
 
 
-def campaign(options: argparse.Namespace, one: Callable[[Case], None], numbers: Iterable[int | str] | None = None) -> int:
-    """Plays the cases that the command line asks for, or those of `numbers`, and prints what came of them; 1 where something
-    is found."""
+def campaign(
+    options: argparse.Namespace, one: Callable[[Case], None], numbers: Iterable[int | str] | None = None
+) -> int:
+    """Plays the cases that the command line asks for, or those of `numbers`, and prints what came of them; 1 where
+    something is found."""
     tally, refused, first, figures = collections.Counter(), collections.Counter(), {}, collections.defaultdict(list)
-    for case in in_order(functools.partial(played, one, options), asked(options) if numbers is None else numbers, getattr(options, "jobs", 1)):
+    numbers = asked(options) if numbers is None else numbers
+    for case in in_order(functools.partial(played, one, options), numbers, getattr(options, "jobs", 1)):
         for what, text in case.found:
             print(f"{what:14} {case.number!s:>4}  {text}", flush=True)
         tally.update(case.tally)

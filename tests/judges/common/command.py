@@ -8,20 +8,25 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 
+Command = str | os.PathLike | Sequence[str]
+Folder = str | os.PathLike | None
+
+
 class Ended(NamedTuple):
     status: int
     output: str
     errors: str
 
 
-def run(vpost: str | os.PathLike | Sequence[str], *words: object, folder: str | os.PathLike | None = None, seconds: float = 180, given: str = "") -> Ended:
-    """Runs it to its end, in `folder`, with `given` at its standard input; subprocess.TimeoutExpired after `seconds`."""
+def run(vpost: Command, *words: object, folder: Folder = None, seconds: float = 180, given: str = "") -> Ended:
+    """Runs it to its end, in `folder`, with `given` at its standard input; TimeoutExpired after `seconds`."""
     first = [vpost] if isinstance(vpost, (str, os.PathLike)) else vpost
-    done = subprocess.run([*map(str, first), *map(str, words)], cwd=folder, input=given.encode(), capture_output=True, timeout=seconds, check=False)
+    line = [*map(str, first), *map(str, words)]
+    done = subprocess.run(line, cwd=folder, input=given.encode(), capture_output=True, timeout=seconds, check=False)
     return Ended(done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace"))
 
 
-def ask(vpost: str | os.PathLike | Sequence[str], *words: object, folder: str | os.PathLike | None = None, seconds: float = 180) -> Ended:
+def ask(vpost: Command, *words: object, folder: Folder = None, seconds: float = 180) -> Ended:
     """The same; where there is no end, status -1 and words about that."""
     try:
         return run(vpost, *words, folder=folder, seconds=seconds)
@@ -46,12 +51,14 @@ def first_error(errors: str) -> str:
 
 
 def microns(messages: str, number: str) -> float | None:
-    """The largest number of micrometres in the first lines of messages of that number, mm: 0 if they say none, None without one."""
+    """The largest number of micrometres in the first lines of messages of that number, mm: 0 if they say none, None
+    without one."""
     texts = re.findall(rf"\[{number}\](.*)", messages)
-    return max([float(x) * 1e-3 for text in texts for x in re.findall(r"([\d.]+) ?[µu]m", text)], default=0.0) if texts else None
+    found = [float(size) * 1e-3 for text in texts for size in re.findall(r"([\d.]+) ?[µu]m", text)]
+    return max(found, default=0.0) if texts else None
 
 
-def schema(vpost: str | os.PathLike, section: str) -> dict:
+def schema(vpost: Command, section: str) -> dict:
     """The keys of a section of profiles that the command knows, with what its schema says of each."""
     try:
         found = json.loads(run(vpost, "profile", "schema").output)

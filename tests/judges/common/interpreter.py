@@ -1,4 +1,4 @@
-"""LinuxCNC's stand-alone interpreter, `rs274`, as a program that is run: what its calls mean is for each judge to read."""
+"""LinuxCNC's stand-alone interpreter, `rs274`, as a program: what its calls mean is for each judge to read."""
 
 import os
 import subprocess
@@ -22,7 +22,8 @@ class Said(NamedTuple):
 
 
 def parameters(values: Mapping[int, float]) -> str:
-    """The file of parameters, G54 in force; 0 what is not named. Without a machine it counts in inches, as its tool table does."""
+    """The file of parameters, G54 in force; 0 what is not named. Without a machine it counts in inches, as its tool
+    table does."""
     return "".join(f"{k}\t{values.get(k, float(k == 5220)):.10f}\n" for k in PARAMETERS)
 
 
@@ -34,5 +35,7 @@ def interpret(text: str, tools: str, variables: str, seconds: float = 120) -> Sa
                 out.write(what)
         # It keeps its tools in a file of the home folder: with one home, runs at the same time mix them.
         words = ["rs274", "-g", "-t", "tool.tbl", "-v", "var", "in.ngc"]
-        done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", timeout=seconds, cwd=folder, env={**os.environ, "HOME": folder}, check=False)
-    return Said("PROGRAM_END" in done.stdout, done.stdout, done.stderr)
+        home = {**os.environ, "HOME": folder}
+        done = subprocess.run(words, input=b"", capture_output=True, timeout=seconds, cwd=folder, env=home, check=False)
+    calls, errors = done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
+    return Said("PROGRAM_END" in calls, calls, errors)

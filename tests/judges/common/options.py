@@ -13,21 +13,25 @@ MORE = {
 }
 
 
-def parser(description: str, count: int, *more: str, vpost: str | None = None, seed: int | str = 1) -> argparse.ArgumentParser:
-    """The options of every judge, and those of MORE that are named. `vpost`: the command if none is named; None: one must be."""
+def parser(
+    description: str, count: int, *more: str, vpost: str | None = None, seed: int | str = 1
+) -> argparse.ArgumentParser:
+    """The options of every judge, and those of MORE that are named. `vpost`: the command if none is named; None: one
+    must be."""
     words = argparse.ArgumentParser(description=description.strip().split("\n")[0])
-    words.add_argument("--vpost", metavar="COMMAND", default=vpost, required=vpost is None, help="the command that is judged")
-    words.add_argument("--count", type=int, default=count, metavar="N", help=f"cases; {count} if not given")
-    words.add_argument("--seed", type=type(seed), default=seed, help=f"of all random numbers; {seed} if not given")
-    words.add_argument("--keep", metavar="DIR", help="folder of what is found")
-    words.add_argument("--self-test", action="store_true", help="shows that what is wrong is found, and what is right passes")
+    option = words.add_argument
+    option("--vpost", metavar="COMMAND", default=vpost, required=vpost is None, help="the command that is judged")
+    option("--count", type=int, default=count, metavar="N", help=f"cases; {count} if not given")
+    option("--seed", type=type(seed), default=seed, help=f"of all random numbers; {seed} if not given")
+    option("--keep", metavar="DIR", help="folder of what is found")
+    option("--self-test", action="store_true", help="shows that what is wrong is found, and what is right passes")
     for name in more:
-        words.add_argument(f"--{name}", **MORE[name])
+        option(f"--{name}", **MORE[name])
     return words
 
 
 def command(words: argparse.ArgumentParser, text: str) -> list[str]:
-    """The command in `text`, by its whole path, with words behind it where it has some; a usage error where there is none."""
+    """The command in `text`, by its whole path, with words behind it if it has some; a usage error if there is none."""
     found = shlex.split(text)
     if not found or not shutil.which(found[0]):
         words.error(f"no command {text}")

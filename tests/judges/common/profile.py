@@ -51,9 +51,17 @@ class Profile:
     def axis(self, name: str) -> dict:
         return self[f"{'rotary' if name in 'ABC' else 'axis'}.{name}"]
 
-    def errors(self, axis: str, places: Iterable[float], rows: Iterable[Iterable[float]], under: str = "errors", digits: str = "", columns: Iterable[str] = ()) -> None:
-        """A table of an axis, um and urad. `digits`: of its numbers, such as `.6f`, all of them if not given; `columns`: six
-        of them if not given."""
+    def errors(
+        self,
+        axis: str,
+        places: Iterable[float],
+        rows: Iterable[Iterable[float]],
+        under: str = "errors",
+        digits: str = "",
+        columns: Iterable[str] = (),
+    ) -> None:
+        """A table of an axis, um and urad. `digits`: of its numbers, such as `.6f`, all of them if not given;
+        `columns`: six of them if not given."""
         head = ["position_deg" if axis in "ABC" else "position_mm", *(columns or six(axis))]
         shown = (lambda v: format(v, digits)) if digits else (lambda v: repr(float(v)))
         self.tables[axis, under] = [head, *([shown(v) for v in (at, *row)] for at, row in zip(places, rows))]

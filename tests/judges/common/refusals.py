@@ -7,13 +7,20 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from .command import first_error, run
 
 
-def asked(vpost: Sequence[str], keep: str, cases: Mapping[str, tuple[str, bool]], prepare: Callable[[str, str], list[str]], written: Iterable[str],
-          bare: Iterable[str] = (), alike: Iterable[str] = ()) -> int:
+def asked(
+    vpost: Sequence[str],
+    keep: str,
+    cases: Mapping[str, tuple[str, bool]],
+    prepare: Callable[[str, str], list[str]],
+    written: Iterable[str],
+    bare: Iterable[str] = (),
+    alike: Iterable[str] = (),
+) -> int:
     """Gives each mistake to the command; 1 where an answer is wrong.
 
-    `cases`: name -> (words that are wanted of the message, whether the input may also be taken and what is poor of it said).
-    `prepare`: (name, folder) -> words of the command. `written`: files that a refusal may not leave. `bare`: cases that may be
-    refused without a number; `alike`: cases that may have the message of another.
+    `cases`: name -> (words that are wanted of the message, whether the input may also be taken and what is poor of it
+    said). `prepare`: (name, folder) -> words of the command. `written`: files that a refusal may not leave. `bare`:
+    cases that may be refused without a number; `alike`: cases that may have the message of another.
     """
     bad, said = 0, {}
     for name, (words, poor) in cases.items():
@@ -34,7 +41,8 @@ def asked(vpost: Sequence[str], keep: str, cases: Mapping[str, tuple[str, bool]]
         if status and found and name not in alike:
             said.setdefault((found[1], re.sub(r"[\d.:]+", "#", first)), []).append(name)
         bad += bool(wrong)
-        print(f"{'WRONG' if wrong else 'ok   '} {name:27} {status} {', '.join(wrong)}{': ' if wrong else ''}{first[:170]}", flush=True)
+        mark, why = ("WRONG", ", ".join(wrong) + ": ") if wrong else ("ok   ", "")
+        print(f"{mark} {name:27} {status} {why}{first[:170]}", flush=True)
     for (code, _), many in said.items():
         if len(many) > 1:
             print(f"      one message for {', '.join(many)}: {code}")

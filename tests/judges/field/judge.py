@@ -15,7 +15,6 @@ import io
 import json
 import os
 import re
-import subprocess
 import sys
 
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
@@ -177,12 +176,7 @@ def examine(case, folder, vpost, programs):
 def one(arguments):
     vpost, seed, number, kind, folder, programs = arguments
     case = generate.Case(seed, number, kind)
-    try:
-        wrong, figures = examine(case, folder, vpost, programs)
-    except subprocess.TimeoutExpired:
-        wrong, figures = [("slow", f"more than {SECONDS} s")], {}
-    folders.put(folder, "found.txt", "".join(f"{name}: {words}\n" for name, words in wrong))
-    return case.name, kind, wrong, figures
+    return case.name, kind, *cases.examined(folder, lambda: examine(case, folder, vpost, programs))
 
 
 def report(results):

@@ -15,7 +15,6 @@ import io
 import os
 import re
 import shlex
-import subprocess
 import sys
 
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
@@ -166,12 +165,7 @@ def examine(case, folder, vpost):
 def one(arguments):
     vpost, seed, number, chain, kind, folder = arguments
     case = generate.Case(seed, number, chain, kind)
-    try:
-        wrong, figures = examine(case, folder, vpost)
-    except subprocess.TimeoutExpired:
-        wrong, figures = [("slow", f"more than {SECONDS} s")], {"covered": []}
-    folders.put(folder, "found.txt", "".join(f"{name}: {words}\n" for name, words in wrong))
-    return case.name, chain, kind, wrong, figures
+    return case.name, chain, kind, *cases.examined(folder, lambda: examine(case, folder, vpost))
 
 
 def report(results):
@@ -184,7 +178,7 @@ def report(results):
     every = []
     for (chain, kind), many in kinds.items():
         good = [f for f in many if "after" in f]
-        inside = [c for f in many for c in f["covered"]]
+        inside = [c for f in many for c in f.get("covered", ())]
         text = f"{chain:11} {kind:10} {len(many):5} {sum('refused' in f for f in many):7} |"
         if good:
             ratio = [f["after"] / max(f["allowed"], 1e-3) for f in good]
