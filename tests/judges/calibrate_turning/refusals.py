@@ -3,6 +3,7 @@
 import re
 import tempfile
 
+from common import folders
 from common.command import run
 
 import generate
@@ -78,16 +79,14 @@ def main(vpost, keep=None):
         with tempfile.TemporaryDirectory() as folder:
             generate.write_base(folder, base)
             if "profile" in how:
-                with open(f"{folder}/lathe.toml", "w") as file:
-                    file.write(how["profile"])
+                folders.put(folder, "lathe.toml", how["profile"])
             for to, what in (("parts.csv", rows), ("held.csv", how.get("held"))):
                 if isinstance(what, str):
                     with open(f"{folder}/{to}", "w") as file:
                         file.write(what)
                 elif what is not None:
                     generate.write_rows(f"{folder}/{to}", what)
-            with open(f"{folder}/out.toml", "w") as file:
-                file.write("# stands here already\n")
+            folders.put(folder, "out.toml", "# stands here already\n")
             more = ["--holdout", "held.csv"] if "held" in how else []
             status, _, errors = run(vpost, "calibrate", "turning", "parts.csv", "-m", "lathe.toml", *more, "-o", "out.toml", "--json", "f.json", folder=folder)
             with open(f"{folder}/out.toml") as file:

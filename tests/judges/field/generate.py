@@ -87,8 +87,7 @@ class Case:
     def write(self, folder, noise=None):
         os.makedirs(folder, exist_ok=True)
         folders.table(f"{folder}/vectors.csv", *self.rows())
-        with open(f"{folder}/machine.toml", "w", encoding="ascii") as file:
-            file.write(self.profile(noise))
+        folders.put(folder, "machine.toml", self.profile(noise))
 
     @property
     def lengths(self):

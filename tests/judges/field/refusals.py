@@ -98,8 +98,7 @@ def prepare(name, folder, seed):
         profile = profile.replace(f"travel_mm = {list(case.box[0])}", f"travel_mm = {[case.box[0][0], case.box[0][1] + 300]}")
     elif name == "another-tool":
         profile = profile.replace("H1 = 100.0", "H1 = 190.0")
-    with open(f"{folder}/machine.toml", "w", encoding="ascii") as file:
-        file.write(profile)
+    folders.put(folder, "machine.toml", profile)
     base = case.offset + [0, 0, 190.0 if name == "another-tool" else -case.tool[2]]
     start = np.round(middle - base, 3)
     lines = ["G21 G17 G90 G94 G40 G54", ("G0 G43 H1 " if name == "another-tool" else "G0 ") + " ".join(f"{n}{v:.3f}" for n, v in zip("XYZ", start))]
@@ -111,8 +110,7 @@ def prepare(name, folder, seed):
         lines += [f"G1 X{far - 10:.3f} F500", f"G2 Y{start[1] - 60:.3f} J-30."]
     else:
         lines.append(f"G1 X{start[0] + 30:.3f} F500")
-    with open(f"{folder}/in.ngc", "w", encoding="ascii") as file:
-        file.write("\n".join(lines + ["M2"]) + "\n")
+    folders.put(folder, "in.ngc", "\n".join(lines + ["M2"]) + "\n")
     if name == "points-outside":
         folders.table(f"{folder}/points.csv", ["x_mm", "y_mm", "z_mm"], [[f"{v:.3f}" for v in high + 20]])
         return ["predict", "points.csv", "-m", "machine.toml"]

@@ -179,10 +179,8 @@ def judge(o, folder):
             os.makedirs(to, exist_ok=True)
             shutil.copy(os.path.join(folder, "in.nc"), to)
             write_profile(m, to, test.dialect, test)
-            with open(os.path.join(to, "out.nc"), "w") as file:
-                file.write(output)
-            with open(os.path.join(to, "found.txt"), "w") as file:
-                file.write(f"{test.name}: expects {test.expect}\n{said}\ncommand: {' '.join(['vpost'] + command[1:])}\n{messages}")
+            folders.put(to, "out.nc", output)
+            folders.put(to, "found.txt", f"{test.name}: expects {test.expect}\n{said}\ncommand: {' '.join(['vpost'] + command[1:])}\n{messages}")
     for item in sorted(items, key=lambda x: int(re.match(r"\d+", x).group())):
         print(f"directed, item {item}: {items[item][0]} of {items[item][1]} as expected")
     print(f"directed tests: {wrong} wrong")

@@ -1,6 +1,6 @@
 """Random programs of Sinumerik mills."""
 
-import os
+from common import folders
 
 from writing import Writing
 
@@ -209,8 +209,7 @@ class SiemensMill(Writing):
         name = f"L{100 + len(self.files)}"
         self.files[name] = None
         body = [self.places(self.some(p + q)) for _ in range(self.rng.randint(1, 3))]
-        with open(os.path.join(self.folder, f"{name}.SPF"), "w") as f:
-            f.write("\n".join(body + ["M17"]) + "\n")
+        folders.put(self.folder, f"{name}.SPF", "\n".join(body + ["M17"]) + "\n")
         self.say(name + self.rng.choice(("", "", " P2")))
 
     def stairs(self):
@@ -384,8 +383,7 @@ class SiemensMill(Writing):
         if self.p(0.4) and not self.inch:
             self.variable += 1
             body += [f"FOR R{self.variable}=1 TO {self.rng.randint(1, 3)}", f"G1 X=R{self.variable}*4 F200", "ENDFOR"]
-        with open(os.path.join(self.folder, f"{name}.SPF"), "w") as f:
-            f.write("\n".join(body + [self.rng.choice(("M17", "RET"))]) + "\n")
+        folders.put(self.folder, f"{name}.SPF", "\n".join(body + [self.rng.choice(("M17", "RET"))]) + "\n")
         count = self.rng.choice((1, 1, 2, 3))
         self.say(name + (f" P{count}" if count > 1 else ""))
         if self.p(0.3):
