@@ -21,7 +21,7 @@ import sys
 import time
 
 import shared
-from common import cases, folders, options
+from common import cases, command, folders, options
 
 HERE = pathlib.Path(__file__).resolve().parent
 # Numbers and seeds at which nothing is found; what a judge does find elsewhere is an open finding, for its own command.
@@ -58,9 +58,9 @@ INTERPRETER = {"compensation", "cutter_radius", "five_axis", "reader", "shops", 
 def missing(judge: str) -> str:
     """What a judge needs and this machine has not."""
     if judge in INTERPRETER and not shutil.which("rs274"):
-        return "LinuxCNC's interpreter, `rs274`"
+        return "LinuxCNC's interpreter is not here: apt-get install linuxcnc-uspace"
     if judge not in WITHOUT_NUMPY and not importlib.util.find_spec("numpy"):
-        return "NumPy"
+        return "NumPy is not here: apt-get install python3-numpy"
     return ""
 
 
@@ -68,7 +68,8 @@ def played(vpost: str, keep: str, judge: str) -> tuple[str, str, bool]:
     """(what came of it in a line, the end of what it said, whether it passes)."""
     lacks = missing(judge)
     if lacks:
-        return f"{judge}: skipped, {lacks} is not here", "", not os.environ.get("CI")
+        failed = bool(os.environ.get("CI"))
+        return f"{judge}: {'FAILED' if failed else 'skipped'}, {lacks}", "", not failed
     words = [sys.executable, "-B", str(HERE / judge / "judge.py"), *shlex.split(COUNTS[judge])]
     words += ["--before", vpost, "--after", vpost] if judge == "same_bytes" else ["--vpost", vpost]
     words += ["--keep", os.path.join(keep, judge)] if judge != "dialects" else []
@@ -89,6 +90,8 @@ def main() -> int:
     words.add_argument("--only", action="append", choices=sorted(COUNTS), help="this judge (repeatable)")
     given = words.parse_args()
     vpost, keep = options.command(words, given.vpost)[0], folders.of_findings(given.keep, "judges-")
+    if command.run(vpost, "--version").status:
+        words.error(f"{vpost} does not even say its version")
     failed = shared.main()
     for judge in set(shared.judges()) ^ set(COUNTS):
         print(f"tests/judges/all.py: `{judge}` is not in its list and the folder both")
