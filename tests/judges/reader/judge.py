@@ -14,64 +14,19 @@ import tempfile
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
 from common import command, folders, options  # noqa: E402
+from common.profile import Profile, column  # noqa: E402
 
 import compare  # noqa: E402
 import readers  # noqa: E402
 import rs274  # noqa: E402
 from core import Invalid  # noqa: E402
 
-PROFILE = """format = 1
-name = "Judge's mill (invented)"
-control = "{dialect}"
-chain = "[w X Y b Z t]"
-[axis.X]
-travel_mm = [-20000, 20000]
-resolution_mm = 0.0001
-errors = "{machine}_x.csv"
-[axis.Y]
-travel_mm = [-20000, 20000]
-resolution_mm = 0.0001
-errors = "{machine}_y.csv"
-[axis.Z]
-travel_mm = [-20000, 20000]
-resolution_mm = 0.0001
-errors = "{machine}_z.csv"
-[tool]
-lengths_mm = {{ H1 = 120.0, H2 = 80.5, H7 = 95.25 }}
-[program]
-zero = "true"
-[work_offsets_mm]
-{offsets}
-"""
-LATHE = """format = 1
-name = "Judge's lathe (invented)"
-control = "{control}"
-chain = "[w S b Z X t]"
-[program]
-zero = "true"
-x = "diameter"
-{system}
-[axis.X]
-travel_mm = [-20000, 20000]
-resolution_mm = 0.0001
-errors = "{machine}_lx.csv"
-[axis.Z]
-travel_mm = [-20000, 20000]
-resolution_mm = 0.0001
-errors = "{machine}_lz.csv"
-[tool]
-lengths_mm = {{ H1 = [0, 0, 0], H2 = [5, 0, -7], H3 = [12.5, 0, 41.25] }}
-[work_offsets_mm]
-G54 = [100, 0, 40]
-G55 = [110, 0, 41]
-G56 = [-60, 0, -12]
-"""
-FANUC_LATHE = """g_code_system = "{system}"
-thread_chamfer_leads = 0
-drill_pecks = "full"
-drill_return_mm = 1.0
-drill_r = "way"
-bore_return_percent = 200"""
+MILL_LENGTHS = {"H1": 120.0, "H2": 80.5, "H7": 95.25}
+LATHE_LENGTHS = {"H1": [0, 0, 0], "H2": [5, 0, -7], "H3": [12.5, 0, 41.25]}
+LATHE_OFFSETS = {"G54": [100, 0, 40], "G55": [110, 0, 41], "G56": [-60, 0, -12]}
+FANUC_LATHE = {
+    "thread_chamfer_leads": 0, "drill_pecks": "full", "drill_return_mm": 1.0, "drill_r": "way", "bore_return_percent": 200,
+}
 OFFSETS = {"G54": (100, 80, 40), "G55": (110, 75, 41), "G56": (-60, 33, -12), "G57": (15, -140, 22), "G58": (7, 9, 3),
            "G59": (-200, 50, 70)}
 NUMBERED = {"G54.1P1": (21, 31, -9), "G54.1P2": (-44, 12, 5), "G54.1P7": (3, -73, 18)}
@@ -79,21 +34,18 @@ NUMBERED = {"G54.1P1": (21, 31, -9), "G54.1P2": (-44, 12, 5), "G54.1P7": (3, -73
 
 def profile(folder, dialect, machine):
     """The profile of one of the two machines."""
-    if dialect in readers.LATHES:
-        return lathe_profile(folder, dialect, machine)
-    for axis, table in machine.tables().items():
-        folders.put(folder, f"{machine.name}_{axis.lower()}.csv", table)
-    offsets = "\n".join(f'"{k}" = {list(v)}' for k, v in readers.profile_offsets(dialect, OFFSETS, NUMBERED).items())
-    return folders.put(folder, f"{dialect}_{machine.name}.toml", PROFILE.format(dialect=dialect, machine=machine.name, offsets=offsets))
-
-
-def lathe_profile(folder, dialect, machine):
-    for axis in "XZ":
-        rows = [row.split(",") for row in machine.tables()[axis].split("\n") if row]
-        folders.put(folder, f"{machine.name}_l{axis.lower()}.csv", "\n".join(",".join((row[0], row[1], row[3])) for row in rows) + "\n")
-    system = readers.SYSTEMS.get(dialect)
-    text = LATHE.format(control="fanuc-lathe" if system else dialect, machine=machine.name, system=FANUC_LATHE.format(system=system) if system else "")
-    return folders.put(folder, f"{dialect}_{machine.name}.toml", text)
+    turning, system = dialect in readers.LATHES, readers.SYSTEMS.get(dialect)
+    axes, chain = ("XZ", "[w S b Z X t]") if turning else ("XYZ", "[w X Y b Z t]")
+    p = Profile("Judge's lathe (invented)" if turning else "Judge's mill (invented)", "fanuc-lathe" if system else dialect, chain)
+    for axis in axes:
+        p.axis(axis).update(travel_mm=[-20000, 20000], resolution_mm=0.0001)
+        places, rows = machine.table(axis)
+        seen = [[row["XYZ".index(k)] for k in axes] for row in rows]
+        p.errors(axis, places, seen, digits=".6f", columns=[column(f"E{k}{axis}") for k in axes])
+    p["tool"]["lengths_mm"] = LATHE_LENGTHS if turning else MILL_LENGTHS
+    p["work_offsets_mm"].update(LATHE_OFFSETS if turning else readers.profile_offsets(dialect, OFFSETS, NUMBERED))
+    p["program"].update(zero="true", x="diameter" if turning else None, g_code_system=system, **(FANUC_LATHE if system else {}))
+    return str(p.write(folder, f"{dialect}_{machine.name}.toml"))
 
 
 class Judge:
