@@ -12,15 +12,13 @@ programmed path than the summary says, the control's part and a twentieth of a m
 commands and the order of small turns). Exit status 1 where it is, or a program is refused.
 """
 
-import argparse
 import math
-import pathlib
 import random
 import sys
-import tempfile
 
 import numpy as np
 
+import campaign
 import judge
 import rig
 from machine import AXES, Machine
@@ -222,12 +220,7 @@ KINDS = (indexed, table_turns, surface, long_ways)
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--vpost", required=True)
-    arguments.add_argument("--programs", type=int, default=8)
-    arguments.add_argument("--seed", type=int, default=1)
-    arguments.add_argument("--keep", type=pathlib.Path)
-    given = arguments.parse_args()
+    given = campaign.parser(__doc__, programs=8).parse_args()
     wrong, judged = [], 0
     print("program            before um  after um  said um  of the control um")
     for number in range(given.programs):
@@ -237,11 +230,7 @@ def main():
         program = Program(table, tip_control)
         kind(program, chance)
         text, name = program.text(), f"{number:02} {kind.__name__}{' M428' if tip_control else ''}"
-        with tempfile.TemporaryDirectory() as temporary:
-            folder = pathlib.Path(temporary)
-            if given.keep:
-                folder = given.keep / f"seed{given.seed}_{number:02}"
-                folder.mkdir(parents=True, exist_ok=True)
+        with campaign.folder(given.keep, f"seed{given.seed}_{number:02}") as folder:
             made, summary = judge.correct(given.vpost, table.write(folder), text, folder)
         if made is None:
             wrong.append(f"{name}: refused\n{summary}")

@@ -10,7 +10,6 @@ summary). Where it says that this is not known nothing is promised, and the dist
 where a tip is farther off than was said, or a program is refused. What is modelled stands in README.md.
 """
 
-import argparse
 import json
 import pathlib
 import random
@@ -20,6 +19,7 @@ import tempfile
 
 import numpy as np
 
+import campaign
 import programs
 import rig
 from machine import Machine
@@ -97,13 +97,7 @@ def correct(vpost, profile, text, folder, *options):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--vpost", required=True)
-    arguments.add_argument("--machines", type=int, default=1)
-    arguments.add_argument("--programs", type=int, default=len(programs.KINDS))
-    arguments.add_argument("--seed", type=int, default=1)
-    arguments.add_argument("--keep", type=pathlib.Path)
-    given = arguments.parse_args()
+    given = campaign.parser(__doc__, machines=1, programs=len(programs.KINDS)).parse_args()
     wrong, table = [], {}
     for number in range(given.machines):
         chance = random.Random(f"{given.seed} {number}")

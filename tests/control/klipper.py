@@ -12,7 +12,6 @@ steps from the words' path must be `control_um` of the summary within 10 % and a
 um, its time is kept to 25 us), else exit status 1.
 """
 
-import argparse
 import json
 import math
 import pathlib
@@ -20,10 +19,10 @@ import random
 import re
 import subprocess
 import sys
-import tempfile
 
 import numpy as np
 
+import campaign
 import canon
 import judge
 import rig
@@ -200,23 +199,15 @@ def one(given, chance, resolution, square_urad, folder):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--vpost", required=True)
+    arguments = campaign.parser(__doc__, programs=4)
     arguments.add_argument("--klippy", required=True, type=lambda path: str(pathlib.Path(path).absolute()))
-    arguments.add_argument("--programs", type=int, default=4)
-    arguments.add_argument("--seed", type=int, default=1)
-    arguments.add_argument("--keep", type=pathlib.Path)
     given = arguments.parse_args()
     failed = 0
     for number in range(given.programs):
         chance = random.Random(f"klipper {given.seed} {number}")
         square_urad = 0.0 if number % 2 == 0 else round(chance.uniform(-600, 600), 1)
         for resolution in RESOLUTIONS_MM:
-            with tempfile.TemporaryDirectory() as temporary:
-                folder = pathlib.Path(temporary)
-                if given.keep:
-                    folder = given.keep / f"{number}_{resolution}"
-                    folder.mkdir(parents=True, exist_ok=True)
+            with campaign.folder(given.keep, f"{number}_{resolution}") as folder:
                 row, wrong = one(given, random.Random(f"{given.seed} {number}"), resolution, square_urad, folder)
             print("\n   ".join([row, *wrong]), flush=True)
             failed += bool(wrong)

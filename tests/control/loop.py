@@ -13,17 +13,15 @@ counted as a part and an instrument have them: less the shift and turn of the wh
 counts as the axes were dragged.
 """
 
-import argparse
 import json
-import pathlib
 import random
 import re
 import subprocess
 import sys
-import tempfile
 
 import numpy as np
 
+import campaign
 import canon
 import judge
 import rig
@@ -333,22 +331,13 @@ def judged(case, folder):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--vpost", required=True)
-    arguments.add_argument("--machines", type=int, default=1)
-    arguments.add_argument("--first", type=int, default=0)
-    arguments.add_argument("--seed", type=int, default=1)
+    arguments = campaign.parser(__doc__, machines=1, first=0)
     arguments.add_argument("--interpreter", action="store_true", help="its way in the place of a recording: minutes")
-    arguments.add_argument("--keep", type=pathlib.Path)
     given = arguments.parse_args()
     failed = 0
     for number in range(given.first, given.first + given.machines):
         case = Case(number, given)
-        with tempfile.TemporaryDirectory() as temporary:
-            folder = pathlib.Path(temporary)
-            if given.keep:
-                folder = given.keep / f"seed{given.seed}_{case.name}"
-                folder.mkdir(parents=True, exist_ok=True)
+        with campaign.folder(given.keep, f"seed{given.seed}_{case.name}") as folder:
             try:
                 row, wrong = judged(case, folder)
             except RuntimeError as why:

@@ -12,13 +12,13 @@ must run in an exact mode under `exact`, and with a stated tolerance under `tole
 these does not hold. The table has the time from the first to the last motion, before and after.
 """
 
-import argparse
 import collections
 import pathlib
 import random
 import sys
 import tempfile
 
+import campaign
 import canon
 import judge
 import programs
@@ -108,13 +108,7 @@ def keep(folder, one, posted, machine):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--vpost", required=True)
-    arguments.add_argument("--machines", type=int, default=1)
-    arguments.add_argument("--programs", type=int, default=3)
-    arguments.add_argument("--seed", type=int, default=1)
-    arguments.add_argument("--keep", type=pathlib.Path)
-    given = arguments.parse_args()
+    given = campaign.parser(__doc__, machines=1, programs=3).parse_args()
     wrong, table = [], collections.defaultdict(list)
     for number in range(given.machines):
         chance = random.Random(f"modes {given.seed} {number}")

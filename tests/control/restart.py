@@ -17,7 +17,6 @@ it that the message names must then be possible. A refusal for which this judge 
 one in twenty of them are wrong, as is everything else (exit status 1).
 """
 
-import argparse
 import collections
 import pathlib
 import random
@@ -28,6 +27,7 @@ import tempfile
 
 import numpy as np
 
+import campaign
 import canon
 import judge
 import posts
@@ -451,16 +451,11 @@ def by_rig(given, tally):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--vpost", required=True)
+    arguments = campaign.parser(__doc__, programs=20, first=0)
     arguments.add_argument("--interpreter", action="store_true")
     arguments.add_argument("--rig", action="store_true")
-    arguments.add_argument("--programs", type=int, default=20)
-    arguments.add_argument("--first", type=int, default=0)
     arguments.add_argument("--lines", type=int, default=10, help="in all, of each program with --rig")
-    arguments.add_argument("--seed", type=int, default=1)
     arguments.add_argument("--only", default="")
-    arguments.add_argument("--keep", type=pathlib.Path)
     given = arguments.parse_args()
     if given.interpreter == given.rig:
         arguments.error("one of --interpreter and --rig")

@@ -8,15 +8,15 @@ angles), and what is left is the error of the field.
 
 import os
 import re
-import subprocess
 
 import numpy
 
+from common import command
 
-def run(vpost, arguments, folder=None, timeout=120):
+
+def run(vpost, arguments, folder=None):
     """(exit status, standard output, standard error) of one command."""
-    done = subprocess.run([vpost, *map(str, arguments)], capture_output=True, text=True, cwd=folder, timeout=timeout)
-    return done.returncode, done.stdout, done.stderr
+    return command.run(vpost, *arguments, folder=folder, seconds=120)
 
 
 def said(stderr):

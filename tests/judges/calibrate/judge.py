@@ -25,7 +25,6 @@ added to FILE as a line of JSON, from which page.py makes docs/calibration-bench
 leaves its folder below --keep with `command.txt` and `found.txt`.
 """
 
-import argparse
 import hashlib
 import json
 import os
@@ -36,15 +35,18 @@ import tempfile
 import time
 import zlib
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-import numpy
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-import bars
-import exports
-import field
-import mistakes
-from field import rest, rms, run, said
-from volume import ORDERS, stations, tracker, volumetric
+from common import folders, options  # noqa: E402  before numpy
+
+import numpy  # noqa: E402
+
+import bars  # noqa: E402
+import exports  # noqa: E402
+import field  # noqa: E402
+import mistakes  # noqa: E402
+from field import rest, rms, run, said  # noqa: E402
+from volume import ORDERS, stations, tracker, volumetric  # noqa: E402
 
 LIMIT, NANO = 1.3, 0.1
 STEADIEST = 0.07  # scatter, from machine to machine, of the share of places within U where a field has about ten independent unknowns
@@ -111,7 +113,7 @@ def identity_rows():
 class Judge:
     def __init__(self, options):
         self.options, self.vpost = options, options.vpost
-        self.keep = options.keep or tempfile.mkdtemp(prefix="calibrate-judge-")
+        self.keep = folders.of_findings(options.keep, "calibrate-judge-")
         self.wrong, self.lines = 0, []
         self.program = {}
 
@@ -128,10 +130,8 @@ class Judge:
             shutil.rmtree(folder)
             return
         command = shlex.join([self.vpost, *(str(a).replace(folder + os.sep, "") for a in arguments)])
-        with open(os.path.join(folder, "command.txt"), "w", encoding="utf-8") as file:
-            file.write(command + "\n")
-        with open(os.path.join(folder, "found.txt"), "w", encoding="utf-8") as file:
-            file.write(found + "\n")
+        folders.put(folder, "command.txt", command + "\n")
+        folders.put(folder, "found.txt", found + "\n")
         os.rename(folder, target)
 
     def numbers(self, count):
@@ -440,30 +440,22 @@ KINDS = ("identity", "mistakes", "export", "axis", "iso", "against", "loop", "no
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--vpost", default="vpost")
-    parser.add_argument("--count", type=int, default=5)
+    parser = options.parser(__doc__, 5, "jobs", vpost="vpost")
     parser.add_argument("--seconds", type=float, default=0.0, help="no further machine of a row after this time; 0: all of them")
     parser.add_argument("--references", type=int, default=0, help="machines of a row that the judge fits too; 0: all of them")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--jobs", type=int, default=1, help="kept for uniformity: the judge runs one command at a time")
     parser.add_argument("--only", default=",".join(KINDS))
     parser.add_argument("--match", default="", help="rows whose name holds this text")
     parser.add_argument("--results", help="add each row to this file as a line of JSON")
-    parser.add_argument("--keep", default=None)
-    parser.add_argument("--self-test", action="store_true")
-    options = parser.parse_args()
-    if options.self_test:
+    given = parser.parse_args()
+    if given.self_test:
         import self_test
-        return self_test.main(options)
-    if options.keep:
-        os.makedirs(options.keep, exist_ok=True)
-    judge = Judge(options)
-    if options.results:
-        with open(options.vpost, "rb") as file:
+        return self_test.main(given)
+    judge = Judge(given)
+    if given.results:
+        with open(given.vpost, "rb") as file:
             judge.program["program"] = hashlib.sha256(file.read()).hexdigest()[:12]
-        judge.program["version"] = run(options.vpost, ["--version"])[1].split("\n")[0]
-    for kind in options.only.split(","):
+        judge.program["version"] = run(given.vpost, ["--version"])[1].split("\n")[0]
+    for kind in given.only.split(","):
         getattr(judge, kind)()
     for name in os.listdir(judge.keep):
         if name.startswith("case-"):

@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 
+from common.profile import Profile
+
 from lathe import Lathe
 
 TRAVEL = (-160.0, 720.0)
@@ -220,26 +222,22 @@ def write_rows(path, rows, style=0):
 def write_base(folder, case):
     """The profile as the user has it: lathe.toml, with a table beside it where there is one."""
     base = case.base
-    lines = ["format = 1", 'name = "judged"', 'control = "fanuc-lathe"', 'chain = "[w S b Z X t]"',
-             'calibrated = { temperature_c = 20.0, uncertainty_um = 1.0, date = "2026-01-01", instrument = "none" }',
-             "[program]", 'g_code_system = "A"', 'x = "diameter"', 'decimal = "millimetres"',
-             "[axis.X]", "travel_mm = [-20, 260]", "resolution_mm = 0.001",
-             "[axis.Z]", f"travel_mm = [{TRAVEL[0]}, {TRAVEL[1]}]", "resolution_mm = 0.001"]
+    p = Profile("judged", "fanuc-lathe", "[w S b Z X t]")
+    p[""]["calibrated"] = {"temperature_c": 20.0, "uncertainty_um": 1.0, "date": "2026-01-01", "instrument": "none"}
+    p["program"].update(g_code_system="A", x="diameter", decimal="millimetres")
+    for axis, travel in (("X", [-20, 260]), ("Z", TRAVEL)):
+        p.axis(axis).update(travel_mm=travel, resolution_mm=0.001)
     if case.base_table:
-        lines.append('errors = "known_z.csv"')
-        with open(f"{folder}/known_z.csv", "w") as file:
-            file.write("position_mm,EXZ_um\n" + "".join(f"{z},{v}\n" for z, v in case.base_table))
-    lines += ["[work_offsets_mm]", "G54 = [0, 0, 0]"]
-    squareness = [f"{k} = {base[k]}" for k in ("EB0Z_urad", "EA0Z_urad") if k in base]
-    spindle = [f"{k} = {base[k]}" for k in ("EX0S_um", "EY0S_um", "EA0S_urad", "EB0S_urad") if k in base]
-    lines += (["[squareness]"] + squareness if squareness else []) + (["[spindle]"] + spindle if spindle else [])
+        p.errors("Z", *zip(*((z, [v]) for z, v in case.base_table)), columns=["EXZ_um"])
+    p["work_offsets_mm"]["G54"] = [0, 0, 0]
+    p["squareness"].update({k: base[k] for k in ("EB0Z_urad", "EA0Z_urad") if k in base})
+    p["spindle"].update({k: base[k] for k in ("EX0S_um", "EY0S_um", "EA0S_urad", "EB0S_urad") if k in base})
     if any(case.length):
-        lines += ["[tool]", f"lengths_mm = {{ H1 = [{case.length[0]}, 0, {case.length[1]}] }}"]
+        p["tool"]["lengths_mm"] = {"H1": [case.length[0], 0, case.length[1]]}
     if "tailstock" in base:
-        lines += ["[tailstock]", f"at_mm = {base['tailstock']['at_mm']}", "offset_um = [0, 0]"]
+        p["tailstock"].update(at_mm=base["tailstock"]["at_mm"], offset_um=[0, 0])
     if "workpiece" in base:
         w = base["workpiece"]
-        lines += ["[workpiece]", f"diameters_mm = [[0, {w['diameter_mm']}], [{w['length_mm']}, {w['diameter_mm']}]]", f"e_gpa = {w['e_gpa']}",
-                  f'clamping = "{w["clamping"]}"', f"radial_force_n = {w['radial_force_n']}"]
-    with open(f"{folder}/lathe.toml", "w") as file:
-        file.write("\n".join(lines) + "\n")
+        p["workpiece"].update(diameters_mm=[[0, w["diameter_mm"]], [w["length_mm"], w["diameter_mm"]]], e_gpa=w["e_gpa"])
+        p["workpiece"].update(clamping=w["clamping"], radial_force_n=w["radial_force_n"])
+    p.write(folder, "lathe.toml")

@@ -9,22 +9,19 @@
 README.md says what is asked. Exit status: 0 nothing found, 1 something, 2 usage.
 """
 
-import argparse
 import collections
 import json
 import math
-import multiprocessing
 import os
 import re
-import shutil
-import subprocess
 import sys
 import tempfile
 
-import numpy as np
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, HERE)
+from common import cases, command, folders, options  # noqa: E402  before numpy
+
+import numpy as np  # noqa: E402
 
 import generate  # noqa: E402
 import lathe  # noqa: E402
@@ -50,8 +47,8 @@ def upper(k, n, p):
 
 
 def run(vpost, folder, arguments):
-    done = subprocess.run([*vpost, "calibrate", "turning", *arguments], cwd=folder, capture_output=True, timeout=120)
-    return done.returncode, done.stdout.decode("utf-8", "replace") + done.stderr.decode("utf-8", "replace")
+    done = command.run(vpost, "calibrate", "turning", *arguments, folder=folder, seconds=120)
+    return done.status, done.output + done.errors
 
 
 def tables(folder, name="out"):
@@ -110,8 +107,7 @@ def examine(case, folder, vpost):
     wrong, figures = [], {"kind": case.kind, "covered": [], "strict": 0}
     status, report = run(vpost, folder, ARGUMENTS)
     figures["status"] = status
-    with open(f"{folder}/report.txt", "w") as file:
-        file.write(report)
+    folders.put(folder, "report.txt", report)
     if status not in (0, 1, 2) or "panicked" in report:
         return [("crash", f"exit status {status}: {report[-300:]}")], figures
     if status:
@@ -260,11 +256,10 @@ def holdout(case, found, machine):
 def corrected(case, folder, vpost, machine):
     """A cylinder corrected with the written profile, played on the machine that this reader takes the profile for."""
     z1, z2, d = round(case.low, 1), round(case.high, 1), 60.0
-    with open(f"{folder}/shaft.nc", "w") as file:
-        file.write(f"%\nO1\nG21 G18 G40 G99 G54\nG0 X100. Z{z2}\nX{d}\nG1 Z{z1} F0.2\nG0 X100.\nM30\n%\n")
-    done = subprocess.run([*vpost, "shaft.nc", "-m", "out.toml", "-o", "shaft_out.nc"], cwd=folder, capture_output=True, text=True, timeout=120)
-    if done.returncode:
-        return [("correct", f"refuses the written profile: {done.stderr[:300]}")]
+    folders.put(folder, "shaft.nc", f"%\nO1\nG21 G18 G40 G99 G54\nG0 X100. Z{z2}\nX{d}\nG1 Z{z1} F0.2\nG0 X100.\nM30\n%\n")
+    status, _, errors = command.run(vpost, "shaft.nc", "-m", "out.toml", "-o", "shaft_out.nc", folder=folder, seconds=120)
+    if status:
+        return [("correct", f"refuses the written profile: {errors[:300]}")]
     x = z = None
     feeds = []
     mode = None
@@ -288,8 +283,7 @@ def corrected(case, folder, vpost, machine):
 def one(job):
     kind, seed, number, vpost, keep = job
     case = generate.make(kind, seed, number)
-    folder = tempfile.mkdtemp(prefix=f"{kind}-{number}-")
-    try:
+    with tempfile.TemporaryDirectory(prefix=f"{kind}-{number}-") as folder:
         generate.write_base(folder, case)
         generate.write_rows(f"{folder}/parts.csv", case.rows, case.style)
         generate.write_rows(f"{folder}/held.csv", case.held_rows)
@@ -298,14 +292,9 @@ def one(job):
         except Exception as error:  # noqa: BLE001  an answer that cannot be read is a finding, not an end
             wrong, figures = [("unreadable", repr(error))], {"kind": kind, "covered": [], "strict": 0, "status": None}
         if wrong and keep:
-            to = os.path.join(keep, f"{kind}-{seed}-{number}")
-            shutil.rmtree(to, ignore_errors=True)
-            shutil.copytree(folder, to)
-            with open(os.path.join(to, "found.txt"), "w") as file:
-                file.write("\n".join(f"{n}: {w}" for n, w in wrong) + f"\n\nnumbers {case.numbers}\nshape um {case.shape} about {case.middle} +- {case.half}\n")
+            words = [f"{n}: {w}" for n, w in wrong] + ["", f"numbers {case.numbers}", f"shape um {case.shape} about {case.middle} +- {case.half}"]
+            folders.keep(folder, os.path.join(keep, f"{kind}-{seed}-{number}"), "\n".join(words))
         return number, wrong, figures
-    finally:
-        shutil.rmtree(folder)
 
 
 def campaign(vpost, kinds, count, seed, jobs, keep, quiet=False):
@@ -313,89 +302,80 @@ def campaign(vpost, kinds, count, seed, jobs, keep, quiet=False):
     say = (lambda *a, **k: None) if quiet else print
     found = 0
     say(f"{'kind':12s} {'cases':>5s} {'done':>5s} {'held out, um form':>18s} {'worse by >0.05':>14s}  intervals (95 %)", flush=True)
-    with multiprocessing.Pool(jobs) as pool:
-        for kind in kinds:
-            answers = pool.map(one, [(kind, seed, n, vpost, keep) for n in range(count)], chunksize=4)
-            problems, covered, named, forms, refused = [], collections.defaultdict(list), collections.Counter(), [], collections.Counter()
-            tests, full = [], []
-            for number, wrong, figures in answers:
-                problems += [(number, *w) for w in wrong]
-                for name, good in figures["covered"]:
-                    covered[name].append(good)
-                named.update(figures.get("named", []))
-                forms += figures.get("forms", [])
-                tests += figures.get("tests", [])
-                full += figures.get("full", [])
-                if figures["status"]:
-                    refused[figures.get("refused", "crash")] += 1
-            done = sum(f["status"] == 0 for _, _, f in answers)
-            rms = lambda k: math.sqrt(np.mean([f[k] ** 2 for f in forms])) if forms else math.nan  # noqa: E731
-            rates = []
-            for name, hits in sorted(covered.items()):
-                k, n = sum(hits), len(hits)
-                p = tail(k, n, 0.95)
-                mark = ""
-                if n >= 20 and p < RARE:
-                    found += 1
-                    mark = f" !! p={p:.0e}"
-                rates.append(f"{name.split('.')[-1] if 'offset' not in name else name} {k}/{n}{mark}")
-            strict = sum(f["strict"] for _, _, f in answers)
-            say(f"{kind:12s} {count:5d} {done:5d} {rms(0):8.2f} -> {rms(1):5.2f} {strict:8d}/{len(forms):<5d}  {'; '.join(rates)}")
-            if full:
-                say(f"{'':12s} with the size entered {math.sqrt(np.mean([a * a for a, _ in full])):.2f} -> {math.sqrt(np.mean([b * b for _, b in full])):.2f} um RMS of the diameter")
-            if refused:
-                say(f"{'':12s} refused: {dict(refused)}")
-            if tests:
-                k, p = sum(tests), upper(sum(tests), len(tests), 0.01)
-                say(f"{'':12s} named on perfect lathes: {k} of {len(tests)} tests at 1 %{' !! p=%.0e' % p if p < RARE else ''}")
-                found += p < RARE
-            for name, k in named.items():
-                p = upper(k, done, 0.01)
-                say(f"{'':12s} {name} named without a cause: {k} of {done}{' !! p=%.0e' % p if p < RARE else ''}")
-                found += p < RARE
-            # hold-outs that get worse: the level of the tests allows a few of those that got nearly nothing
-            chance = [q for q in problems if q[1] == "worse"]
-            if chance and upper(len({q[0] for q in chance}), max(done, 1), 0.01) >= RARE:
-                say(f"{'':12s} held-out parts worse by more than the noise in {len({q[0] for q in chance})} cases: what the level of the tests allows")
-                problems = [q for q in problems if q[1] != "worse"]
-            # refusals of parts that differ and of blunders have a level of their own, 0.1 % a test
-            for name in ("refused-VP1113", "refused-VP1107"):
-                chance = [q for q in problems if q[1] == name]
-                if chance and upper(len(chance), count, 0.003) >= RARE:
-                    say(f"{'':12s} {name} {len(chance)} of {count}, by chance: #{chance[0][0]} {chance[0][2][:140]}")
-                    problems = [q for q in problems if q[1] != name]
-            for name, k in collections.Counter(q[1] for q in problems).items():
-                examples = [q for q in problems if q[1] == name][:3]
-                say(f"{'':12s} !! {name}: {k}; " + " | ".join(f"#{n} {w[:220]}" for n, _, w in examples))
-            found += len(problems)
+    answered = cases.in_order(one, [(kind, seed, n, vpost, keep) for kind in kinds for n in range(count)], jobs)
+    for kind in kinds:
+        answers = [next(answered) for _ in range(count)]
+        problems, covered, named, forms, refused = [], collections.defaultdict(list), collections.Counter(), [], collections.Counter()
+        tests, full = [], []
+        for number, wrong, figures in answers:
+            problems += [(number, *w) for w in wrong]
+            for name, good in figures["covered"]:
+                covered[name].append(good)
+            named.update(figures.get("named", []))
+            forms += figures.get("forms", [])
+            tests += figures.get("tests", [])
+            full += figures.get("full", [])
+            if figures["status"]:
+                refused[figures.get("refused", "crash")] += 1
+        done = sum(f["status"] == 0 for _, _, f in answers)
+        rms = lambda k: math.sqrt(np.mean([f[k] ** 2 for f in forms])) if forms else math.nan  # noqa: E731
+        rates = []
+        for name, hits in sorted(covered.items()):
+            k, n = sum(hits), len(hits)
+            p = tail(k, n, 0.95)
+            mark = ""
+            if n >= 20 and p < RARE:
+                found += 1
+                mark = f" !! p={p:.0e}"
+            rates.append(f"{name.split('.')[-1] if 'offset' not in name else name} {k}/{n}{mark}")
+        strict = sum(f["strict"] for _, _, f in answers)
+        say(f"{kind:12s} {count:5d} {done:5d} {rms(0):8.2f} -> {rms(1):5.2f} {strict:8d}/{len(forms):<5d}  {'; '.join(rates)}")
+        if full:
+            say(f"{'':12s} with the size entered {math.sqrt(np.mean([a * a for a, _ in full])):.2f} -> {math.sqrt(np.mean([b * b for _, b in full])):.2f} um RMS of the diameter")
+        if refused:
+            say(f"{'':12s} refused: {dict(refused)}")
+        if tests:
+            k, p = sum(tests), upper(sum(tests), len(tests), 0.01)
+            say(f"{'':12s} named on perfect lathes: {k} of {len(tests)} tests at 1 %{' !! p=%.0e' % p if p < RARE else ''}")
+            found += p < RARE
+        for name, k in named.items():
+            p = upper(k, done, 0.01)
+            say(f"{'':12s} {name} named without a cause: {k} of {done}{' !! p=%.0e' % p if p < RARE else ''}")
+            found += p < RARE
+        # hold-outs that get worse: the level of the tests allows a few of those that got nearly nothing
+        chance = [q for q in problems if q[1] == "worse"]
+        if chance and upper(len({q[0] for q in chance}), max(done, 1), 0.01) >= RARE:
+            say(f"{'':12s} held-out parts worse by more than the noise in {len({q[0] for q in chance})} cases: what the level of the tests allows")
+            problems = [q for q in problems if q[1] != "worse"]
+        # refusals of parts that differ and of blunders have a level of their own, 0.1 % a test
+        for name in ("refused-VP1113", "refused-VP1107"):
+            chance = [q for q in problems if q[1] == name]
+            if chance and upper(len(chance), count, 0.003) >= RARE:
+                say(f"{'':12s} {name} {len(chance)} of {count}, by chance: #{chance[0][0]} {chance[0][2][:140]}")
+                problems = [q for q in problems if q[1] != name]
+        for name, k in collections.Counter(q[1] for q in problems).items():
+            examples = [q for q in problems if q[1] == name][:3]
+            say(f"{'':12s} !! {name}: {k}; " + " | ".join(f"#{n} {w[:220]}" for n, _, w in examples))
+        found += len(problems)
     return found
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--vpost")
-    parser.add_argument("--count", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--keep")
-    parser.add_argument("--kind", action="append", choices=list(generate.KINDS))
-    parser.add_argument("--refusals", action="store_true", help="bad input only")
-    parser.add_argument("--self-test", action="store_true")
-    options = parser.parse_args()
-    if options.self_test:
+    words = options.parser(__doc__, 100, "jobs", "refusals", vpost="")
+    words.set_defaults(jobs=2)
+    words.add_argument("--kind", action="append", choices=list(generate.KINDS))
+    given = words.parse_args()
+    if given.self_test:
         import self_test
+
         return self_test.main()
-    if not options.vpost:
-        parser.error("--vpost")
-    vpost = [os.path.abspath(options.vpost)]
-    if options.keep:
-        os.makedirs(options.keep, exist_ok=True)
+    vpost = options.command(words, given.vpost)
     import refusals
     found = 0
-    if not options.refusals:
-        found += campaign(vpost, options.kind or list(generate.KINDS), options.count, options.seed, options.jobs, options.keep)
-    if options.refusals or not options.kind:
-        found += refusals.main(vpost, options.keep)
+    if not given.refusals:
+        found += campaign(vpost, given.kind or list(generate.KINDS), given.count, given.seed, given.jobs, given.keep)
+    if given.refusals or not given.kind:
+        found += refusals.main(vpost, given.keep)
     print(f"{found} found")
     return 1 if found else 0
 

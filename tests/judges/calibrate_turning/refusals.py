@@ -1,9 +1,10 @@
 """Bad input of `vpost calibrate turning`: each refused, with its own message, and nothing written."""
 
-import os
 import re
-import subprocess
 import tempfile
+
+from common import folders
+from common.command import run
 
 import generate
 
@@ -78,35 +79,33 @@ def main(vpost, keep=None):
         with tempfile.TemporaryDirectory() as folder:
             generate.write_base(folder, base)
             if "profile" in how:
-                with open(f"{folder}/lathe.toml", "w") as file:
-                    file.write(how["profile"])
+                folders.put(folder, "lathe.toml", how["profile"])
             for to, what in (("parts.csv", rows), ("held.csv", how.get("held"))):
                 if isinstance(what, str):
                     with open(f"{folder}/{to}", "w") as file:
                         file.write(what)
                 elif what is not None:
                     generate.write_rows(f"{folder}/{to}", what)
-            with open(f"{folder}/out.toml", "w") as file:
-                file.write("# stands here already\n")
+            folders.put(folder, "out.toml", "# stands here already\n")
             more = ["--holdout", "held.csv"] if "held" in how else []
-            done = subprocess.run([*vpost, "calibrate", "turning", "parts.csv", "-m", "lathe.toml", *more, "-o", "out.toml", "--json", "f.json"], cwd=folder, capture_output=True, text=True, timeout=60)
+            status, _, errors = run(vpost, "calibrate", "turning", "parts.csv", "-m", "lathe.toml", *more, "-o", "out.toml", "--json", "f.json", folder=folder)
             with open(f"{folder}/out.toml") as file:
                 stands = file.read() == "# stands here already\n"
-        error = re.search(r"error(?:\[(VP\d+)\])?: (.*)", done.stderr)
+        error = re.search(r"error(?:\[(VP\d+)\])?: (.*)", errors)
         wrong = []
-        if done.returncode not in (0, 1, 2) or "panicked" in done.stderr:
-            wrong.append(f"crash, status {done.returncode}")
+        if status not in (0, 1, 2) or "panicked" in errors:
+            wrong.append(f"crash, status {status}")
         elif how.get("right"):
-            wrong += [f"refused: {error and error[0]}"] if done.returncode else []
-        elif not (how.get("may") and done.returncode == 0):
-            wrong += ["not refused"] if done.returncode == 0 else []
+            wrong += [f"refused: {error and error[0]}"] if status else []
+        elif not (how.get("may") and status == 0):
+            wrong += ["not refused"] if status == 0 else []
             wrong += ["what stood there is gone"] if not stands else []
-            wrong += ["no code"] if done.returncode and not (error and error[1]) else []
+            wrong += ["no code"] if status and not (error and error[1]) else []
             if error and len(messages) < 7:
                 words = re.sub(r"[-\d.]+", "#", error[2])
                 if words in messages:
                     wrong.append(f"the message of `{messages[words]}`")
                 messages[words] = name
         found += bool(wrong)
-        print(f"{'!!' if wrong else '  '} {name:24s} status {done.returncode} {error[1] if error else ''} {error[2][:150] if error else ''} {'; '.join(wrong)}")
+        print(f"{'!!' if wrong else '  '} {name:24s} status {status} {error[1] if error else ''} {error[2][:150] if error else ''} {'; '.join(wrong)}")
     return found

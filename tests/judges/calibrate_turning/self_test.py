@@ -3,7 +3,6 @@
 import os
 import sys
 
-import generate  # noqa: F401  the judge's own folder is on the path
 import judge
 import lathe
 

@@ -6,12 +6,11 @@ cancel towards an inner corner square to the contour, under type A as under type
 """
 
 import math
-import os
 import re
-import subprocess
-import tempfile
 
 import numpy as np
+
+from common.interpreter import interpret, parameters
 
 
 class Unreadable(Exception):
@@ -58,19 +57,11 @@ def plain(text, radius):
 
 def linuxcnc(text, radius):
     """[("rapid", end) or ("feed", points)] of the tool's centre in the program's coordinates."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = lambda name: os.path.join(folder, name)
-        with open(path("in.ngc"), "w", encoding="utf-8") as file:
-            file.write(plain(text, radius))
-        with open(path("tool.tbl"), "w", encoding="utf-8") as file:
-            file.write("T1 P1 Z0 D0\n")
-        with open(path("var"), "w", encoding="utf-8") as file:
-            file.writelines("%d\t%d\n" % (k, k == 5220) for k in [*range(5161, 5170), *range(5181, 5190), *range(5210, 5390)])
-        done = subprocess.run(["rs274", "-g", "-t", path("tool.tbl"), "-v", path("var"), path("in.ngc")], capture_output=True, text=True, timeout=120, cwd=folder, env={**os.environ, "HOME": folder})
-    if "PROGRAM_END" not in done.stdout:
-        raise Refused((done.stdout + done.stderr).strip()[-200:])
+    said = interpret(plain(text, radius), "T1 P1 Z0 D0\n", parameters({}))
+    if not said.whole:
+        raise Refused(said.trouble(200))
     out, at = [], np.zeros(3)
-    for line in done.stdout.splitlines():
+    for line in said.calls.splitlines():
         found = re.search(r"\b(STRAIGHT_TRAVERSE|STRAIGHT_FEED|ARC_FEED)\((.*)\)", line)
         if not found:
             continue

@@ -5,12 +5,10 @@ import random
 
 import numpy as np
 
+from common.profile import Profile, column
+from common.words import number
+
 CHAINS = ("[w X Y b Z t]", "[w Y b X Z t]", "[w b X Y Z t]", "[w Y X b Z t]")
-
-
-def number(v, digits=3):
-    text = ("%.*f" % (digits, v)).rstrip("0")
-    return "0." if text in ("-0.", "0.") else text
 
 
 def mill(rng, state):
@@ -35,21 +33,17 @@ def mill(rng, state):
 
 def profile(spec, folder, radius_key=None):
     """Writes the profile. `radius_key`: what the command calls the radius of a mill's tool in [tool], if it knows one."""
-    lines = ["format = 1", 'name = "Compensation (invented)"', 'control = "%s"' % spec["dialect"], 'chain = "%s"' % spec["chain"]]
+    p = Profile("Compensation (invented)", spec["dialect"], spec["chain"])
     for k in "XYZ":
-        lines += ["[axis.%s]" % k, "travel_mm = [-400, 400]", "resolution_mm = %r" % spec["resolution"]]
-        if k in spec["tables"]:
-            data = spec["tables"][k]
-            head = "position_mm," + ",".join(["E%s%s_um" % (x, k) for x in "XYZ"] + ["E%s%s_urad" % (x, k) for x in "ABC"])
-            (folder / ("e_%s.csv" % k)).write_text("\n".join([head] + [",".join(map(repr, [at] + row)) for at, row in zip(data["at"], data["rows"])]) + "\n")
-            lines.append('errors = "e_%s.csv"' % k)
-    lines += ["[squareness]"] + ["%s_urad = %r" % x for x in spec["squareness"].items()]
-    lines += ["[tool]", "lengths_mm = { H1 = %r }" % spec["length"]]
+        p.axis(k).update(travel_mm=[-400, 400], resolution_mm=spec["resolution"])
+    for k, data in spec["tables"].items():
+        p.errors(k, data["at"], data["rows"])
+    p["squareness"].update({column(k): v for k, v in spec["squareness"].items()})
+    p["tool"]["lengths_mm"] = {"H1": spec["length"]}
     if radius_key:
-        lines.append("%s = { %s1 = %r }" % (radius_key, "D" if radius_key.startswith(("radii", "diam")) else "H", spec["radius"]))
-    lines += ["[work_offsets_mm]", "G54 = %r" % spec["offset"], "[correction]", "tolerance_um = %r" % spec["tolerance"]]
-    (folder / "profile.toml").write_text("\n".join(lines) + "\n")
-    return folder / "profile.toml"
+        p["tool"][radius_key] = {("D1" if radius_key.startswith(("radii", "diam")) else "H1"): spec["radius"]}
+    p["work_offsets_mm"]["G54"], p["correction"]["tolerance_um"] = spec["offset"], spec["tolerance"]
+    return p.write(folder)
 
 
 def outline(rng, r):

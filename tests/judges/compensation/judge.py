@@ -7,28 +7,23 @@
 Exit status 1 where something is found. What is asked stands in README.md.
 """
 
-import argparse
-import collections
 import json
-import pathlib
+import os
 import re
-import subprocess
 import sys
-import tempfile
 
-import numpy as np
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-import centre
-import generate
-from mill import Mill
+from common import cases, command, options  # noqa: E402  before numpy
+
+import numpy as np  # noqa: E402
+
+import centre  # noqa: E402
+import generate  # noqa: E402
+from mill import Mill  # noqa: E402
 
 SLACK = {"linuxcnc": 0.25e-3, "fanuc": 0.1e-3}  # rs274 prints four decimals: of ends, and of centres, mm
 LEAD = 1.0
-
-
-def run(vpost, *words):
-    done = subprocess.run([str(vpost), *map(str, words)], capture_output=True, text=True, timeout=180)
-    return done.returncode, done.stdout, done.stderr
 
 
 def limit(spec):
@@ -111,112 +106,57 @@ def compare(spec, text_in, text_out, allowed=None):
     return [], largest
 
 
-class Judge:
-    def __init__(self, options):
-        self.o, self.tally, self.refused, self.first, self.found = options, collections.Counter(), collections.Counter(), {}, 0
-        self.key, self.worst = options.radius_key or radius_key(options.vpost), 0.0
-        print("radius of a tool in the profile: %s" % (self.key or "no key known"))
-
-    def report(self, what, n, folder, text):
-        self.found += 1
-        self.tally["found " + what] += 1
-        print("%-12s %4d  %s" % (what, n, text), flush=True)
-        if self.o.keep:
-            keep = pathlib.Path(self.o.keep) / ("%d-%d-%s" % (self.o.seed, n, what))
-            keep.mkdir(parents=True, exist_ok=True)
-            for f in folder.iterdir():
-                (keep / f.name).write_bytes(f.read_bytes())
-            (keep / "found.txt").write_text(text + "\n")
-
-    def one(self, n, folder):
-        spec, text = generate.case(self.o.seed, n)
-        where = generate.profile(spec, folder, self.key)
-        (folder / "in.nc").write_text(text)
-        (folder / "spec.json").write_text(json.dumps(spec))
-        self.tally["programs " + spec["dialect"]] += 1
-        try:
-            ideal = stretches(centre.path(spec, text))
-        except (centre.Refused, centre.Unreadable) as why:
-            self.tally["unjudged: the input is refused here: %s" % str(why).splitlines()[-1][:60]] += 1
-            return
-        status, output, errors = run(self.o.vpost, "correct", folder / "in.nc", "-m", where, "--zero", "true")
-        if status == 2:
-            self.report("profile", n, folder, errors.strip().replace("\n", " | ")[:300])
-            return
-        if status:
-            code = (re.search(r"error\[(VP\d+)\]", errors) or [None, "none"])[1]
-            self.refused[code] += 1
-            self.first.setdefault(code, (n, errors.strip().splitlines()[:4]))
-            return
-        (folder / "out.nc").write_text(output)
-        self.tally["corrected " + spec["dialect"]] += 1
-        if spec["state"] == "perfect":
-            self.tally["perfect"] += 1
-            if output != text:
-                self.report("perfect", n, folder, "not the same bytes")
-            return
-        self.tally["compensation left in the output"] += bool(re.search(r"^[^(]*G4[12]", output, re.M))
-        if n % 5 == 0:
-            self.tally["of every fifth, off the way before"] += bool(compare(spec, text, text)[0])
-        found, largest = compare(spec, text, output)
-        if found and found[0][0] == "path" and "VP0508" in errors:
-            # The contour was corrected, and the command says so: the error may differ by what it changes over a radius.
-            points = np.concatenate([x for kind, x in ideal if kind == "feed"])
-            more = spec["radius"] * Mill(spec).gradient(points)
-            again, largest = compare(spec, text, output, limit(spec) + more)
-            if not again:
-                self.tally["off by more than the tolerance, and warned of (VP0508)"] += 1
-                self.worst = max(self.worst, largest)
-                return
-            found = again
-        for what, why in found[:2]:
-            self.report(what, n, folder, "%s (%s, radius %s)" % (why, spec["dialect"], spec["radius"]))
-        status, _, errors = run(self.o.vpost, "check", folder / "in.nc", folder / "out.nc", "-m", where, "--zero", "true")
-        if (status != 0) != bool(found):
-            self.report("check-blind" if found else "check-alarm", n, folder, errors.strip().replace("\n", " | ")[:200])
-
-    def all(self):
-        for n in range(self.o.first, self.o.first + self.o.count):
-            if n % 20 == 0:
-                print("# %d" % n, file=sys.stderr, flush=True)
-            with tempfile.TemporaryDirectory() as folder:
-                try:
-                    self.one(n, pathlib.Path(folder))
-                except subprocess.TimeoutExpired:
-                    self.report("slow", n, pathlib.Path(folder), "180 s")
-        for name, count in sorted(self.tally.items()):
-            print("%6d  %s" % (count, name))
-        if self.worst:
-            print("largest distance warned of: %.2f um" % (self.worst * 1e3))
-        for code, count in self.refused.most_common():
-            print("%6d  refused by %s, as number %d: %s" % (count, code, *self.first[code]))
-        return 1 if self.found else 0
-
-
-def radius_key(vpost):
-    """What [tool] of the command's profile calls the radius of a tool, if it has one."""
+def one(case):
+    spec, text = generate.case(case.options.seed, case.number)
+    where = generate.profile(spec, case.folder, case.options.radius_key)
+    case.write("in.nc", text)
+    case.write("spec.json", json.dumps(spec))
+    case.tally["programs " + spec["dialect"]] += 1
     try:
-        names = json.loads(run(vpost, "profile", "schema")[1]).get("$defs", {}).get("Tool", {}).get("properties", {})
-    except (OSError, ValueError):
-        return None
-    return next((k for k in names if re.search(r"radi", k)), None)
+        ideal = stretches(centre.path(spec, text))
+    except (centre.Refused, centre.Unreadable) as why:
+        case.tally["unjudged: the input is refused here: %s" % str(why).splitlines()[-1][:60]] += 1
+        return
+    done = case.correct("-m", where, "--zero", "true")
+    if not done:
+        return
+    output, errors = done
+    case.tally["corrected " + spec["dialect"]] += 1
+    if spec["state"] == "perfect":
+        case.tally["perfect"] += 1
+        if output != text:
+            case.find("perfect", "not the same bytes")
+        return
+    case.tally["compensation left in the output"] += bool(re.search(r"^[^(]*G4[12]", output, re.M))
+    if case.number % 5 == 0:
+        case.tally["of every fifth, off the way before"] += bool(compare(spec, text, text)[0])
+    found, _ = compare(spec, text, output)
+    if found and found[0][0] == "path" and "VP0508" in errors:
+        # The contour was corrected, and the command says so: the error may differ by what it changes over a radius.
+        points = np.concatenate([x for kind, x in ideal if kind == "feed"])
+        more = spec["radius"] * Mill(spec).gradient(points)
+        again, largest = compare(spec, text, output, limit(spec) + more)
+        if not again:
+            case.tally["off by more than the tolerance, and warned of (VP0508)"] += 1
+            case.figures["distance warned of, um"] = largest * 1e3
+            return
+        found = again
+    for what, why in found[:2]:
+        case.find(what, "%s (%s, radius %s)" % (why, spec["dialect"], spec["radius"]))
+    case.check(bool(found), "-m", where, "--zero", "true")
 
 
 def main():
-    words = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    words.add_argument("--vpost", default="target/release/vpost")
-    words.add_argument("--count", type=int, default=100)
-    words.add_argument("--seed", type=int, default=1)
-    words.add_argument("--first", type=int, default=0)
+    words = options.parser(__doc__, 100, "first", vpost="target/release/vpost")
     words.add_argument("--radius-key", help="key of [tool] that holds the radius by D number")
-    words.add_argument("--keep")
-    words.add_argument("--self-test", action="store_true")
-    options = words.parse_args()
-    if options.self_test:
+    given = words.parse_args()
+    if given.self_test:
         import self_test
 
-        return self_test.main(options.vpost)
-    return Judge(options).all()
+        return self_test.main(given.vpost)
+    given.radius_key = given.radius_key or next((k for k in command.schema(given.vpost, "Tool") if "radi" in k), None)
+    print("radius of a tool in the profile: %s" % (given.radius_key or "no key known"))
+    return cases.campaign(given, one)
 
 
 if __name__ == "__main__":

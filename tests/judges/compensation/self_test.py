@@ -4,18 +4,12 @@ import re
 
 import numpy as np
 
+from common.trial import Trial
+
 import centre
 import generate
 import judge
 from mill import Mill
-
-
-class Test:
-    failed = 0
-
-    def ask(self, good, text):
-        self.failed += not good
-        print("%s %s" % ("ok  " if good else "FAIL", text), flush=True)
 
 
 def led(spec, moves):
@@ -76,7 +70,7 @@ def gouged(moves):
 
 
 def main(vpost):
-    t = Test()
+    t = Trial()
     figures(t)
     for dialect, count in (("linuxcnc", 8), ("fanuc", 8)):
         programs = cases(2, count, dialect)
@@ -92,8 +86,7 @@ def main(vpost):
             made = [x for x in made if x[2] is not None]
             caught = sum(bool(judge.compare(s, text, out)[0]) for s, text, out in made)
             t.ask(caught == len(made) and (made or "chord" in name), "%s, %s: found %d of %d" % (dialect, name, caught, len(made)))
-    print("self-test: %s" % ("%d failed" % t.failed if t.failed else "all as it must be"))
-    return 1 if t.failed else 0
+    return t.status()
 
 
 def other(spec, text):

@@ -7,6 +7,8 @@ import sys
 
 import numpy as np
 
+from common.words import number
+
 from blocks import PLANES
 from control import left_of
 
@@ -14,11 +16,6 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "shop"))
 import machine as machines  # noqa: E402
 
 DIALECTS = ("linuxcnc", "linuxcnc", "fanuc", "haas", "sinumerik")
-
-
-def number(v):
-    text = ("%.3f" % v).rstrip("0")
-    return "0." if text == "-0." else text
 
 
 class Case:

@@ -13,13 +13,11 @@ tool radius compensation), NORM and KONT with G450:
 """
 
 import math
-import os
-import pathlib
 import re
-import subprocess
-import tempfile
 
 import numpy as np
+
+from common.interpreter import interpret, parameters
 
 from blocks import PLANES, Unreadable
 
@@ -62,18 +60,11 @@ def in_space(points, plane):
 
 def linuxcnc(text, radius):
     """[(feed, points)] of the tool's centre, program coordinates. Its test command counts tables in inches."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        (folder / "tool.tbl").write_text("T1 P1 Z4 D%.9f\n" % (2 * radius / 25.4))
-        numbers = [*range(5161, 5170), *range(5181, 5190), *range(5210, 5390)]
-        (folder / "var").write_text("".join("%d\t%d\n" % (k, k == 5220) for k in numbers))
-        (folder / "in.ngc").write_text(text)
-        words = ["rs274", "-g", "-t", "tool.tbl", "-v", "var", "in.ngc"]
-        done = subprocess.run(words, capture_output=True, text=True, timeout=120, cwd=name, env={**os.environ, "HOME": name})
-    if "PROGRAM_END" not in done.stdout:
-        raise Refused((done.stdout + done.stderr).strip()[-160:].replace("\n", " | "))
+    said = interpret(text, "T1 P1 Z4 D%.9f\n" % (2 * radius / 25.4), parameters({}))
+    if not said.whole:
+        raise Refused(said.trouble(160).replace("\n", " | "))
     out, at, plane = [], np.full(3, np.nan), 17
-    for what, inside in re.findall(r"\b(STRAIGHT_TRAVERSE|STRAIGHT_FEED|ARC_FEED|SELECT_PLANE)\((.*?)\)", done.stdout):
+    for what, inside in re.findall(r"\b(STRAIGHT_TRAVERSE|STRAIGHT_FEED|ARC_FEED|SELECT_PLANE)\((.*?)\)", said.calls):
         if what == "SELECT_PLANE":
             plane = {"XY": 17, "XZ": 18, "YZ": 19}[inside[-2:]]
             continue

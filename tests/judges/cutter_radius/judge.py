@@ -7,17 +7,20 @@
 Exit status 1 where something is found. What is asked stands in README.md.
 """
 
-import json
+import os
 import sys
 
-import numpy as np
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-import blocks
-import contour
-import control
+from common import cases, command, options  # noqa: E402  before numpy
 
-import plumbing  # of the folder shop, which contour names
-from along import farthest, lengths
+import numpy as np  # noqa: E402
+
+import blocks  # noqa: E402
+import contour  # noqa: E402
+import control  # noqa: E402
+
+from along import farthest, lengths  # noqa: E402  of the folder shop, which contour names
 
 RULES = {"linuxcnc": ("LinuxCNC",), "fanuc": ("A", "B"), "haas": ("A", "B"), "sinumerik": ("NORM", "KONT")}
 SLACK = {"linuxcnc": 0.2e-3}  # rs274 prints four decimals, mm
@@ -88,62 +91,48 @@ def way(case, text, rule, said):
     return wrong if largest > allowed else None, largest
 
 
-def one(task):
-    options, n = task
-    case = contour.Case(options.seed, n, options.dialect)
-    result, text, largest, said = plumbing.in_folder(options, n, lambda folder: judged(options, case, folder))
-    figures = {"corrected and right, largest of a program": largest * 1e3, "warned of (VP0508)": said * 1e3} if result == "right" else {}
-    beyond = {"beyond the tolerance, as stated (VP0528)"} if text == "beyond" else set()
-    return (
-        n,
-        result,
-        text,
-        figures,
-        sorted(case.what | beyond | {case.dialect, "G%d" % case.plane, "good machine" if case.good else "crude machine"}),
-    )
-
-
-def judged(options, case, folder):
-    (folder / "in.nc").write_text(case.text)
-    where = contour.machines.profile(case.spec, case.dialect, folder, {"G54": repr(case.offset)}, options.zero)
+def one(case):
+    job = contour.Case(case.options.seed, case.number, case.options.dialect)
+    case.write("in.nc", job.text)
+    where = contour.machines.profile(job.spec, job.dialect, case.folder, {"G54": job.offset}, case.options.zero)
     try:
-        feeds = np.concatenate(stretches(centre(case, case.text, RULES[case.dialect][0])))
-    except (control.Refused, blocks.Unreadable) as why:
-        return "unjudged: the control refuses the input", str(why), 0.0, 0.0
-    output, errors = plumbing.corrected(options, folder, ["-m", where])
-    if output is None:
-        return *errors, 0.0, 0.0
-    said = plumbing.microns(errors, "VP0508")
+        feeds = np.concatenate(stretches(centre(job, job.text, RULES[job.dialect][0])))
+    except (control.Refused, blocks.Unreadable):
+        case.tally["unjudged: the control refuses the input"] += 1
+        return
+    done = case.correct("-m", where)
+    if not done:
+        return
+    output, errors = done
+    said = command.microns(errors, "VP0508")
     if said == 0.0:
-        said = case.spec["radius"] * gradient(case, feeds)  # the warning says so in words
-    beyond = plumbing.microns(errors, "VP0528")  # what cannot be held within the tolerance, as it is stated
-    beyond = max(0.0, (beyond or 0.0) - case.spec["tolerance"] * 1e-3)
-    wrong, largest = compare(case, output, (said or 0.0) + beyond)
-    if wrong or case.number % 4 == 0:
-        status, _, errors = plumbing.run(options.vpost, "check", folder / "in.nc", folder / "out.nc", "-m", where)
-        if wrong and not status:
-            wrong.append("check passes it")
-        elif status and not wrong:
-            wrong.append("check-alarm: " + plumbing.short(errors))
-    return (wrong[0].split(":")[0], "; ".join(wrong), largest, 0.0) if wrong else ("right", "beyond" if beyond else "", largest, said or 0.0)
-
-
-def knows_true_zeros(vpost):
-    """Whether `[program] zero` is a key of the command's profiles."""
-    found = json.loads(plumbing.run(vpost, "profile", "schema")[1])
-    return '"zero"' in json.dumps(found.get("$defs", {}).get("Program", {}))
+        said = job.spec["radius"] * gradient(job, feeds)  # the warning says so in words
+    beyond = command.microns(errors, "VP0528")  # what cannot be held within the tolerance, as it is stated
+    beyond = max(0.0, (beyond or 0.0) - job.spec["tolerance"] * 1e-3)
+    wrong, largest = compare(job, output, (said or 0.0) + beyond)
+    if wrong:
+        case.find(wrong[0].split(":")[0], "; ".join(wrong))
+    if wrong or job.number % 4 == 0:
+        case.check(bool(wrong), "-m", where)
+    kinds = job.what | {job.dialect, "G%d" % job.plane, "good machine" if job.good else "crude machine"}
+    if beyond and not case.found:
+        kinds |= {"beyond the tolerance, as stated (VP0528)"}
+    case.tally.update(["right"] * (not case.found) + ["%s, %s" % (w, "wrong" if case.found else "right") for w in kinds])
+    if not case.found:
+        case.figures.update({"corrected and right, largest of a program, um": largest * 1e3, "warned of (VP0508), um": (said or 0.0) * 1e3})
 
 
 def main():
-    words = plumbing.arguments(__doc__.splitlines()[0])
+    words = options.parser(__doc__, 300, "first", "jobs", vpost="target/release/vpost")
+    words.set_defaults(jobs=2)
     words.add_argument("--dialect", choices=sorted(RULES))
-    options = words.parse_args()
-    if options.self_test:
+    given = words.parse_args()
+    if given.self_test:
         import self_test
 
         return self_test.main()
-    options.zero = "true" if knows_true_zeros(options.vpost) else None
-    return plumbing.everything(options, one)
+    given.zero = "true" if "zero" in command.schema(given.vpost, "Program") else None
+    return cases.campaign(given, one)
 
 
 if __name__ == "__main__":

@@ -4,18 +4,12 @@ import re
 
 import numpy as np
 
+from common.trial import Trial
+
 import blocks
 import contour
 import control
 import judge
-
-
-class Test:
-    failed = 0
-
-    def ask(self, good, text):
-        self.failed += not good
-        print("%s %s" % ("ok  " if good else "FAIL", text), flush=True)
 
 
 def cases(count, dialect, without="corners beside arcs"):
@@ -120,7 +114,7 @@ DAMAGES = (gains_under, gains_after, loses, corner_aside, other_side, late_cance
 
 
 def main():
-    t = Test()
+    t = Trial()
     for dialect in judge.RULES:
         chosen = cases(10, dialect)
         wrong = [judge.compare(c, corrected(c))[0] for c in chosen]
@@ -139,8 +133,7 @@ def main():
                 % (dialect, damage.__name__.replace("_", " "), sum(map(bool, found)), len(bad), by_path),
             )
     agree(t)
-    print("self-test: %s" % ("%d failed" % t.failed if t.failed else "all as it must be"))
-    return 1 if t.failed else 0
+    return t.status()
 
 
 def agree(t):

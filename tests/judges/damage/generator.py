@@ -7,8 +7,9 @@ Everything follows from the seed.
 """
 
 import math
-import os
 import random
+
+from common.profile import Profile
 
 INCH = 25.4
 AXES = "XYZ"
@@ -27,25 +28,24 @@ def write_machine(folder, kind, dialect, seed):
     pick = random.Random(f"{kind} {seed}")
     cubic = pick.random() < 0.4
     chain = pick.choice(["[w X Y b Z t]", "[w Y b X Z t]", "[w b X Y Z t]", "[w X b Y Z t]"])
-    lines = ["format = 1", f'name = "{kind} {seed}"', f'control = "{dialect}"', f'chain = "{chain}"']
-    lines.append(f'interpolation = "{"monotone" if cubic else "linear"}"')
+    profile = Profile(f"{kind} {seed}", dialect, chain)
+    profile[""]["interpolation"] = "monotone" if cubic else "linear"
     for axis in AXES:
         step = pick.choice([20, 25, 40, 50])
         places = list(range(-100, 601, step))
         level = 0.0 if kind == "straight" else pick.choice([3.0, 10.0])
         # Half of them wavy from node to node, half of them smooth.
         rough = pick.random() < 0.5
-        names = [f"E{d}{axis}_um" for d in AXES] + [f"E{d}{axis}_urad" for d in "ABC"]
 
         def column(size):
             phase, wave = pick.uniform(0, 7), pick.uniform(150, 500)
             return [size * (pick.uniform(-1, 1) if rough else math.sin(p / wave * 6.283 + phase)) for p in places]
 
         columns = [column(level) for _ in range(3)] + [column(2 * level) for _ in range(3)]
-        extra = ""
-        write_table(os.path.join(folder, f"{axis}.csv"), names, places, columns)
+        profile.axis(axis).update(travel_mm=[-100, 600], resolution_mm=0.001)
+        profile.errors(axis, places, zip(*columns), digits=".3f")
         if kind == "backlash":
-            extra = f", backlash_um = {pick.uniform(1, 12):.2f}"
+            profile.axis(axis)["backlash_um"] = round(pick.uniform(1, 12), 2)
         elif kind in ("directions", "mixed", "anyhow"):
             other = [list(c) for c in columns]
             own = AXES.index(axis)
@@ -58,24 +58,12 @@ def write_machine(folder, kind, dialect, seed):
                 for k in [k for k in range(6) if k != own]:
                     size = pick.choice([0.0, 0.5, 3.0])
                     other[k] = [v + size * math.sin(p / wave + k) for v, p in zip(columns[k], places)]
-            write_table(os.path.join(folder, f"{axis}_negative.csv"), names, places, other)
-            extra = f', errors_negative = "{axis}_negative.csv"'
-        lines.append(f'axis.{axis} = {{ travel_mm = [-100, 600], resolution_mm = 0.001, errors = "{axis}.csv"{extra} }}')
+            profile.errors(axis, places, zip(*other), "errors_negative", ".3f")
     if kind != "straight":
-        lines.append("squareness = { " + ", ".join(f"{n}_urad = {pick.uniform(-60, 60):.1f}" for n in ("EC0Y", "EB0Z", "EA0Z")) + " }")
-    lines.append("work_offsets_mm = { " + ", ".join(f"{k} = [{v[0]}, {v[1]}, {v[2]}]" for k, v in OFFSETS.items()) + " }")
-    lines.append("tool = { default_mm = [0, 0, -90], lengths_mm = { " + ", ".join(f"H{k} = {v}" for k, v in LENGTHS.items()) + " } }")
-    path = os.path.join(folder, "machine.toml")
-    with open(path, "w", encoding="ascii") as file:
-        file.write("\n".join(lines) + "\n")
-    return path
-
-
-def write_table(path, names, places, columns):
-    with open(path, "w", encoding="ascii") as file:
-        file.write("position_mm," + ",".join(names) + "\n")
-        for k, place in enumerate(places):
-            file.write(f"{place}," + ",".join(f"{c[k]:.3f}" for c in columns) + "\n")
+        profile["squareness"].update({f"{n}_urad": round(pick.uniform(-60, 60), 1) for n in ("EC0Y", "EB0Z", "EA0Z")})
+    profile["work_offsets_mm"].update(OFFSETS)
+    profile["tool"].update(default_mm=[0, 0, -90], lengths_mm={f"H{k}": v for k, v in LENGTHS.items()})
+    return str(profile.write(folder, "machine.toml"))
 
 
 class Program:

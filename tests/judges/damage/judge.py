@@ -14,18 +14,18 @@ named.py holds single cases of known faults. On machines of the class `straight`
 Exit status: 0 nothing wrong, 1 something, 2 usage. --keep DIR gets a folder for each failure.
 """
 
-import argparse
 import collections
 import json
 import os
 import re
-import shutil
-import subprocess
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+from common import folders, options  # noqa: E402
+from common.command import ask  # noqa: E402
 
 import damages  # noqa: E402
 import generator  # noqa: E402
@@ -44,12 +44,8 @@ class Command:
         self.path = os.path.abspath(path)
 
     def run(self, *arguments):
-        """(exit status, standard output, standard error); status None where it does not come to an end."""
-        try:
-            done = subprocess.run([self.path, *arguments], capture_output=True, timeout=TIMEOUT, check=False)
-        except subprocess.TimeoutExpired:
-            return None, "", "no answer"
-        return done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
+        """(exit status, standard output, standard error)."""
+        return ask(self.path, *arguments, seconds=TIMEOUT)
 
 
 class Case:
@@ -102,13 +98,11 @@ class Tables:
             return
         name = re.sub(r"[^A-Za-z0-9]+", "-", what)
         folder = os.path.join(self.keep, f"{name}-{case.seed}")
-        shutil.copytree(case.folder, folder, dirs_exist_ok=True)
+        command = " ".join(o if not o.startswith(case.folder) else "machine.toml" for o in case.options)
+        folders.keep(case.folder, folder, "\n".join([what, f"vpost in.nc {command} -o out.nc", f"vpost check in.nc out.nc {command}", *map(str, details)]))
         for file, raw in files:
             with open(os.path.join(folder, file), "wb") as out:
                 out.write(raw)
-        command = " ".join(o if not o.startswith(case.folder) else "machine.toml" for o in case.options)
-        with open(os.path.join(folder, "found.txt"), "w", encoding="utf-8") as out:
-            out.write(f"{what}\nvpost in.nc {command} -o out.nc\nvpost check in.nc out.nc {command}\n" + "\n".join(map(str, details)) + "\n")
         print(f"{what}: seed {case.seed} ({case.kind}, {case.dialect}): {'; '.join(map(str, details))[:300]}", flush=True)
 
 
@@ -255,15 +249,9 @@ def report(tables, damaged):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--vpost", required=True, metavar="COMMAND")
-    parser.add_argument("--count", type=int, default=500, help="programs")
+    parser = options.parser(__doc__, 500, "jobs")
     parser.add_argument("--damage", type=int, default=40, metavar="N", help="outputs to damage in every way")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--machines", default=",".join(generator.MACHINES), help="classes of machines, of " + ", ".join(generator.MACHINES))
-    parser.add_argument("--keep", metavar="DIR", help="folder of the failures")
-    parser.add_argument("--self-test", action="store_true", help="shows that wrong outputs and a blind check are found")
     parser.add_argument("--no-named", action="store_true", help="leave out the named cases")
     arguments = parser.parse_args()
     command = Command(arguments.vpost)
@@ -271,8 +259,7 @@ def main():
         import self_test
 
         return self_test.run(command)
-    keep = arguments.keep or tempfile.mkdtemp(prefix="judge-damage-")
-    os.makedirs(keep, exist_ok=True)
+    keep = folders.of_findings(arguments.keep, "judge-damage-")
     tables, kinds, done = Tables(keep), arguments.machines.split(","), 0
     named_bad = [] if arguments.no_named else named.run(command, keep)
 

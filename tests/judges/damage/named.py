@@ -5,6 +5,8 @@ import resource
 import subprocess
 import time
 
+from common import folders
+
 import referee
 from machine import Machine
 from reader import Reader, Unreadable
@@ -22,8 +24,7 @@ def write_profile(folder, control, play=(0, 0, 0), tilt=0.0, resolution=0.001, r
         if negative and axis == "X":
             more = ', errors = "X.csv", errors_negative = "X_negative.csv"'
             for name, value in (("X.csv", 0.0), ("X_negative.csv", negative)):
-                with open(os.path.join(folder, name), "w", encoding="ascii") as file:
-                    file.write(f"position_mm,EXX_um\n-100,{value}\n600,{value}\n")
+                folders.put(folder, name, f"position_mm,EXX_um\n-100,{value}\n600,{value}\n")
         text += LINE.format(axis, more, resolution)
     if tilt:
         text += f"squareness = {{ EB0Z_urad = {tilt} }}\n"

@@ -4,21 +4,13 @@ import json
 import os
 import re
 import shlex
-import subprocess
 
 import numpy
 
+from common import command
+
 NAMING = ("NAMED", "PARTIAL", "AMBIGUOUS")
 INSTRUMENT = re.compile(r"instrument|probe|tracker|station|interferometer|abbe|cosine|dead-path", re.I)
-
-
-def run(arguments, timeout=120):
-    """(exit status, stdout, stderr); status -1 where it does not end."""
-    try:
-        done = subprocess.run([str(a) for a in arguments], capture_output=True, timeout=timeout)
-    except subprocess.TimeoutExpired:
-        return -1, "", "does not end"
-    return done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
 
 
 class Answer:
@@ -115,7 +107,7 @@ def ask(vpost, folder, measurements, profile, holdout=None, write=True, options=
         arguments += ["--holdout", holdout]
     if write:
         arguments += ["--write-profile", written]
-    status, out, err = run(arguments)
+    status, out, err = command.ask(*arguments, seconds=120)
     with open(os.path.join(folder, "command.txt"), "a", encoding="utf-8") as file:
         file.write(shlex.join([os.path.basename(str(a)) if str(a).startswith(folder) else str(a) for a in arguments]) + f"    # exit {status}\n{out}{err}\n")
     data = None
@@ -143,7 +135,7 @@ def predict(vpost, profile, q, tool, dirs, folder, at=None, setup=False):
         arguments += ["--at", ",".join(f"{k}={v}" for k, v in at.items())]
     if setup:
         arguments.append("--include-setup")
-    status, out, err = run(arguments)
+    status, out, err = command.ask(*arguments, seconds=120)
     if status:
         raise RuntimeError(err.strip())
     lines = out.split("\n")

@@ -18,7 +18,6 @@ A valid file that is refused counts against every figure of its case. Column `ho
 95 % interval (Wilson) of so many cases; NO. Exit status 1 where there is a NO, 2 for the command line. What the texts leave open and the judge had to assume: README.md.
 """
 
-import argparse
 import concurrent.futures
 import dataclasses
 import json
@@ -30,8 +29,10 @@ import time
 import traceback
 import zlib
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+from common import folders, options  # noqa: E402  before numpy
+
 import numpy  # noqa: E402
 
 FAMILIES = ("noise", "coverage", "harm", "refuted", "runs", "outside", "books", "repeats", "stations", "circles", "dates", "plans", "bad")
@@ -101,9 +102,7 @@ def one(vpost, kind_at, number, seed, keep):
     if keep and fails:
         target = os.path.join(keep, "".join(c if c.isalnum() else "-" for c in f"{kind.family}-{kind.name}-{number}"))
         shutil.rmtree(target, ignore_errors=True)
-        shutil.copytree(folder, target)
-        with open(os.path.join(target, "found.txt"), "w", encoding="utf-8") as file:
-            file.write(f"{kind.family}/{kind.name}, case {number}, seed {seed}\n{outcome.verdict}\n{outcome.note}\n{figures}\n")
+        folders.keep(folder, target, f"{kind.family}/{kind.name}, case {number}, seed {seed}\n{outcome.verdict}\n{outcome.note}\n{figures}")
     shutil.rmtree(folder)
     return {"family": kind.family, "kind": kind.name, "case": number, "verdict": outcome.verdict, "note": outcome.note.replace(folder + os.sep, ""), "figures": figures, "fails": bool(fails),
             "seconds": round(time.monotonic() - began, 3)}
@@ -169,50 +168,41 @@ def pick(every, only):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--vpost", default="vpost")
-    parser.add_argument("--only", default="")
-    parser.add_argument("--count", type=int, default=0, help="cases of every kind; its own number if not given")
-    parser.add_argument("--case", type=int, default=None, help="this case alone")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--minutes", type=float, default=0, help="begin no case later than this; no limit if not given")
-    parser.add_argument("--json", default=None)
-    parser.add_argument("--keep", default=None)
-    parser.add_argument("--list", action="store_true", help="families and kinds")
-    parser.add_argument("--self-test", action="store_true")
-    options = parser.parse_args()
-    if options.self_test:
+    words = options.parser(__doc__, 0, "jobs", "json", vpost="vpost")
+    words.add_argument("--only", default="", help="families and kinds, by commas")
+    words.add_argument("--case", type=int, default=None, help="this case alone")
+    words.add_argument("--minutes", type=float, default=0, help="begin no case later than this; no limit if not given")
+    words.add_argument("--list", action="store_true", help="families and kinds")
+    given = words.parse_args()
+    if given.self_test:
         import self_test
-        return self_test.main(options.jobs)
+        return self_test.main(given.jobs)
     every = kinds()
-    chosen = pick(every, options.only)
-    if options.list:
+    chosen = pick(every, given.only)
+    if given.list:
         for k in chosen:
             print(f"{every[k].family}/{every[k].name}: {every[k].count} cases; " + "; ".join(f"{n} {wanted_text(*w)}" for n, w in every[k].figures.items()))
         return 0
-    vpost = shutil.which(options.vpost)
-    if vpost is None:
-        raise SystemExit(f"--vpost {options.vpost}: no such command")
-    if options.keep:
-        os.makedirs(options.keep, exist_ok=True)
-    numbers = (lambda k: [options.case]) if options.case is not None else (lambda k: range(options.count or every[k].count))
-    todo = [(os.path.abspath(vpost), k, number, options.seed, options.keep) for k in chosen for number in numbers(k)]
+    vpost = options.command(words, given.vpost)[0]
+    if given.keep:
+        os.makedirs(given.keep, exist_ok=True)
+    numbers = (lambda k: [given.case]) if given.case is not None else (lambda k: range(given.count or every[k].count))
+    todo = [(vpost, k, number, given.seed, given.keep) for k in chosen for number in numbers(k)]
     todo.sort(key=lambda task: task[2])  # so that every kind has its share when the time is over
     cases, began = [], time.monotonic()
-    with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
+    with concurrent.futures.ProcessPoolExecutor(given.jobs) as pool:
         waiting = [pool.submit(one, *task) for task in todo]
         for future in waiting:  # in order; what is begun when the time is over still ends
-            if options.minutes and time.monotonic() - began > 60 * options.minutes:
+            if given.minutes and time.monotonic() - began > 60 * given.minutes:
                 # All that wait: to cancel them one by one would wait for those that run meanwhile.
                 for other in waiting:
                     other.cancel()
             if not future.cancelled():
                 cases.append(future.result())
     if len(cases) < len(todo):
-        print(f"{len(todo) - len(cases)} of {len(todo)} cases were not begun in {options.minutes:g} minutes\n")
+        print(f"{len(todo) - len(cases)} of {len(todo)} cases were not begun in {given.minutes:g} minutes\n")
     rows = table([every[k] for k in chosen], cases)
-    if options.case is not None:
+    if given.case is not None:
         for case in cases:
             print(f"{case['family']}/{case['kind']} {case['case']}: {case['verdict']} {case['figures']} {case['note']}")
         print()
@@ -221,9 +211,8 @@ def main():
     for case in failed[:3]:
         print(f"\nthe judge itself failed: {case['family']}/{case['kind']} --case {case['case']}\n{case['note']}")
     print(f"\n{len(cases)} cases; {sum(r['holds'] == 'yes' for r in rows)} of {len(rows)} figures hold, {sum(r['holds'] == 'chance' for r in rows)} miss by no more than chance")
-    if options.json:
-        with open(options.json, "w", encoding="utf-8") as file:
-            json.dump({"seed": options.seed, "table": rows, "cases": cases}, file, indent=1)
+    if given.json:
+        folders.put(".", given.json, json.dumps({"seed": given.seed, "table": rows, "cases": cases}, indent=1))
     return 1 if failed or any(r["holds"] in ("NO", "nothing") for r in rows) else 0
 
 

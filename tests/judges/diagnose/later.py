@@ -6,7 +6,9 @@ import re
 import numpy
 
 import machine as truth
-from answer import NAMING, ask, run
+from common import command
+
+from answer import NAMING, ask
 from hidden import OUTSIDE, outside_fault
 from judge import Kind, Outcome
 from machine import AXES, Machine, measure, setup
@@ -46,7 +48,7 @@ def dates(change):
         common = ["--chain", "[w X Y b Z t]", "--name", "judged", "--u-um-per-m", "0"]
         first_command = [case.vpost, "calibrate", "interferometer", one, "-o", case.path("old.toml"), *common]
         second_command = [case.vpost, "calibrate", "interferometer", two, "--against", case.path("old.toml"), *common]
-        said = [run(c) for c in (first_command, second_command)]
+        said = [command.ask(*c, seconds=120) for c in (first_command, second_command)]
         if said[0][0] or said[1][0]:
             return Outcome({}, "refused", said[0][2] + said[1][2])
         text = said[1][1][said[1][1].index("against"):] if "against" in said[1][1] else ""
@@ -89,7 +91,7 @@ def whole_plan(curves):
         rng = case.rng
         machine = Machine(rng)
         profile = machine.profile(case.folder)
-        status, out, err = run([case.vpost, "diagnose", "--plan", "points", "-m", profile, "-q"])
+        status, out, err = command.ask(case.vpost, "diagnose", "--plan", "points", "-m", profile, "-q", seconds=120)
         if status:
             return Outcome({}, "refused", err)
         rows = from_plan(out, machine)

@@ -8,6 +8,8 @@ import os
 
 import numpy
 
+from common import folders
+
 from rows import approaches
 
 AXES = "XYZ"
@@ -32,8 +34,7 @@ class Machine:
             text += f"\n[axis.{axis}]\ntravel_mm = [0, {travel:.0f}]\nresolution_mm = 0.001\n{self.axis_text[axis]}"
         text += "\n[tool]\ndefault_mm = [" + ", ".join(f"{v:.1f}" for v in self.tool) + "]\n" + self.text
         for table, content in self.tables.items():
-            with open(os.path.join(folder, table), "w", encoding="utf-8") as file:
-                file.write(content)
+            folders.put(folder, table, content)
         path = os.path.join(folder, name)
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)

@@ -14,9 +14,13 @@ import json
 import os
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
+
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+from common import folders  # noqa: E402
+from common.command import run  # noqa: E402
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "../../.."))
 PROFILE = os.path.join(ROOT, "tests/profiles/corpus.toml")
@@ -39,7 +43,7 @@ def batch(vpost, folder, dialect, out):
     """Corrects a folder under a dialect: what became of each program."""
     results = out + ".jsonl"
     command = [vpost, "batch", folder, "-m", PROFILE, "--zero", "true", "-d", dialect, "-O", out, "-q", "--results", results, "--pattern", "*.*"]
-    subprocess.run(command, capture_output=True, cwd=ROOT)
+    run(*command, folder=ROOT, seconds=600)
     with open(results, encoding="utf-8") as file:
         return [json.loads(line) for line in file]
 
@@ -52,11 +56,11 @@ def off_um(vpost, program, made, dialect):
     text = re.sub(rb"(?m)^[^\n]*CORRECTED BY VPOST[^\n]*\n", b"", text)
     with open(made, "wb") as file:
         file.write(text)
-    ran = subprocess.run([vpost, "check", program, made, "-m", PROFILE, "--zero", "true", "-d", dialect], capture_output=True, text=True, cwd=ROOT)
-    if ran.returncode == 0:
+    status, output, errors = run(vpost, "check", program, made, "-m", PROFILE, "--zero", "true", "-d", dialect, folder=ROOT)
+    if status == 0:
         return 0.0, ""
-    found = re.search(r"after: .* up to\s+([0-9.]+) um", ran.stdout + ran.stderr)
-    said = (ran.stderr or ran.stdout).strip().split("\n")[0]
+    found = re.search(r"after: .* up to\s+([0-9.]+) um", output + errors)
+    said = (errors or output).strip().split("\n")[0]
     return (float(found.group(1)) if found else float("inf")), said
 
 
@@ -98,14 +102,13 @@ def self_test(vpost):
     program = os.path.join(ROOT, "samples/plate_linuxcnc.nc")
     with tempfile.TemporaryDirectory() as folder:
         made = os.path.join(folder, "made.nc")
-        subprocess.run([vpost, program, "-m", PROFILE, "--zero", "true", "-d", "linuxcnc", "-o", made, "-q"], check=True, cwd=ROOT)
+        assert run(vpost, program, "-m", PROFILE, "--zero", "true", "-d", "linuxcnc", "-o", made, "-q", folder=ROOT).status == 0
         whole, _ = off_um(vpost, program, made, "linuxcnc")
         with open(made, encoding="utf-8") as file:
             text = file.read()
         damaged = re.sub(r"(?m)^(N?\d* ?G0?1 .*X)(-?\d+)", lambda m: f"{m.group(1)}{int(m.group(2)) + 1}", text, count=1)
         assert damaged != text, "nothing was damaged"
-        with open(made, "w", encoding="utf-8") as file:
-            file.write(damaged)
+        folders.put(folder, "made.nc", damaged)
         moved, said = off_um(vpost, program, made, "linuxcnc")
     print(f"self-test: as it was {whole:.1f} um, damaged {moved:.1f} um: {said}")
     return whole == 0.0 and moved > ROUNDING_UM

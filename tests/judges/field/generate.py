@@ -5,6 +5,9 @@ import zlib
 
 import numpy as np
 
+from common import folders
+from common.profile import Profile
+
 import fields
 import reader
 
@@ -71,23 +74,20 @@ class Case:
         return head, rows
 
     def profile(self, noise=None):
-        noise = self.noise if noise is None else noise
-        lines = ["format = 1", 'name = "Judge"', 'control = "linuxcnc"', 'chain = "[w X Y b Z t]"']
+        p = Profile("Judge", "linuxcnc", "[w X Y b Z t]")
         for name, b in zip("XYZ", self.box):
-            lines += [f"[axis.{name}]", f"travel_mm = {list(b)}", "resolution_mm = 0.001"]
-        lines += ["[field]", 'file = "vectors.csv"', f"noise_um = {noise}"]
+            p.axis(name).update(travel_mm=b, resolution_mm=0.001)
+        p["field"].update(file="vectors.csv", noise_um=self.noise if noise is None else noise)
         self.offset = np.round([self.box[0][0] + 20, self.box[1][0] + 30, self.box[2][0] + 10 - (-self.tool[2])], 3)
-        lines += ["[tool]", f"default_mm = {self.tool.tolist()}"]
-        if self.tool.any():
-            lines.append(f"lengths_mm = {{ H1 = {-self.tool[2]} }}")
-        lines += ["[work_offsets_mm]", f"G54 = {self.offset.tolist()}", "[correction]", 'engine = "field"', f"tolerance_um = {self.tolerance}"]
-        return "\n".join(lines) + "\n"
+        p["tool"].update(default_mm=self.tool, lengths_mm={"H1": -self.tool[2]} if self.tool.any() else None)
+        p["work_offsets_mm"]["G54"] = self.offset
+        p["correction"].update(engine="field", tolerance_um=self.tolerance)
+        return p.text()
 
     def write(self, folder, noise=None):
         os.makedirs(folder, exist_ok=True)
-        save(f"{folder}/vectors.csv", *self.rows())
-        with open(f"{folder}/machine.toml", "w", encoding="ascii") as file:
-            file.write(self.profile(noise))
+        folders.table(f"{folder}/vectors.csv", *self.rows())
+        folders.put(folder, "machine.toml", self.profile(noise))
 
     @property
     def lengths(self):
@@ -150,8 +150,3 @@ class Case:
                 feed, at = True, end
             blocks -= 1
         return "\n".join(lines + ["M5", "M2"]) + "\n"
-
-
-def save(path, head, rows):
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("\n".join([",".join(head)] + [",".join(row) for row in rows]) + "\n")

@@ -9,26 +9,20 @@
 README.md says what is asked. Exit status: 0 nothing found, 1 something, 2 usage.
 """
 
-import argparse
 import collections
-import concurrent.futures
 import csv
 import io
 import json
 import os
 import re
-import shlex
-import shutil
-import subprocess
 import sys
-import tempfile
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+from common import cases, folders, options  # noqa: E402  before numpy
+from common.command import code, run  # noqa: E402
 
 import numpy as np  # noqa: E402
-
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, HERE)
 
 import compare  # noqa: E402
 import fields  # noqa: E402
@@ -39,19 +33,15 @@ RATIO = 1.6  # RMS at unseen places against the oracle smoother: one case
 TYPICAL = 1.2  # the median of a kind
 NOTHING_UM = 0.7  # what may be predicted of a machine without errors: the oracle, which knows, leaves some 0.3
 SECOND_ORDER_UM = 2e-3  # half the square of 40 urad on 400 mm is 0.3 nm, and figures are printed to 0.01 nm
+SECONDS = 300  # for one answer
 SLACK_UM = 0.05  # sampling, and the order of small rotations
 STEP_MM = 3.0
 
 
-def run(vpost, folder, arguments):
-    done = subprocess.run([*vpost, *arguments], cwd=folder, capture_output=True, timeout=300)
-    return done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
-
-
 def predict(vpost, folder, places, profile="machine.toml", more=()):
     """(n, 3): error of the field at commands, um."""
-    generate.save(f"{folder}/places.csv", ["x_mm", "y_mm", "z_mm"], [[f"{v:.9f}" for v in p] for p in places])
-    status, out, error = run(vpost, folder, ["predict", "places.csv", "-m", profile, *more])
+    folders.table(f"{folder}/places.csv", ["x_mm", "y_mm", "z_mm"], [[f"{v:.9f}" for v in p] for p in places])
+    status, out, error = run(vpost, "predict", "places.csv", "-m", profile, *more, folder=folder, seconds=SECONDS)
     if status:
         raise ValueError(f"predict: {' '.join(error.split())[:300]}")
     if re.search("nan|inf", out, re.I):
@@ -91,8 +81,8 @@ def smooth(case, folder, vpost):
             if not re.search(r"VP\d{4}.*outside", str(refusal)):
                 wrong.append(("outside", str(refusal)))
     # solve is the inverse of predict
-    generate.save(f"{folder}/targets.csv", ["x_mm", "y_mm", "z_mm"], [[f"{v:.6f}" for v in p] for p in targets(case)])
-    status, out, error = run(vpost, folder, ["solve", "targets.csv", "-m", "machine.toml"])
+    folders.table(f"{folder}/targets.csv", ["x_mm", "y_mm", "z_mm"], [[f"{v:.6f}" for v in p] for p in targets(case)])
+    status, out, error = run(vpost, "solve", "targets.csv", "-m", "machine.toml", folder=folder, seconds=SECONDS)
     if status:
         wrong.append(("solve", " ".join(error.split())[:200]))
     else:
@@ -113,12 +103,10 @@ def correct(case, folder, vpost, number):
     wrong, figures = [], {}
     text = case.program()
     source, target = f"in{number}.ngc", f"out{number}.ngc"
-    with open(f"{folder}/{source}", "w", encoding="ascii") as file:
-        file.write(text)
-    status, out, error = run(vpost, folder, [source, "-m", "machine.toml", "--zero", "true", "-o", target, "--summary", "summary.json"])
+    folders.put(folder, source, text)
+    status, out, error = run(vpost, source, "-m", "machine.toml", "--zero", "true", "-o", target, "--summary", "summary.json", folder=folder, seconds=SECONDS)
     if status:
-        code = re.search(r"VP\d{4}", error)
-        return [("refused", f"{source}: {' '.join(error.split())[:250]}")], {"refused": code[0] if code else "?"}
+        return [("refused", f"{source}: {' '.join(error.split())[:250]}")], {"refused": code(error, "?")}
     with open(f"{folder}/{target}", encoding="ascii") as file:
         result = file.read()
     with open(f"{folder}/summary.json", encoding="utf-8") as file:
@@ -141,7 +129,7 @@ def correct(case, folder, vpost, number):
         wrong.append(("rapid", f"{source}: a positioning move ends {found['rapid_um']:.2f} um off"))
     if found["um"] > summary["deviation_after_um"] + SLACK_UM:
         wrong.append(("summary", f"{source}: says {summary['deviation_after_um']} um, found {found['um']:.3f}"))
-    status, out, error = run(vpost, folder, ["check", source, target, "-m", "machine.toml", "--zero", "true", "--json"])
+    status, out, error = run(vpost, "check", source, target, "-m", "machine.toml", "--zero", "true", "--json", folder=folder, seconds=SECONDS)
     if status and found["um"] <= limit:
         wrong.append(("check", f"{source}: {(out + error)[:250]}"))
     # a damaged output is found, where the damage leaves the path
@@ -152,9 +140,8 @@ def correct(case, folder, vpost, number):
         lines[k] = re.sub(r"X(-?[\d.]+)", lambda m: f"X{float(m[1]) + 0.03:.3f}", lines[k], count=1)
         damaged = "\n".join(lines) + "\n"
         off = compare.compare(wanted, reader.read(damaged, case.offset, case.lengths), tips, 1e-3 * limit, STEP_MM)["um"]
-        with open(f"{folder}/damaged{number}.ngc", "w", encoding="ascii") as file:
-            file.write(damaged)
-        status, out, error = run(vpost, folder, ["check", source, f"damaged{number}.ngc", "-m", "machine.toml", "--zero", "true"])
+        folders.put(folder, f"damaged{number}.ngc", damaged)
+        status, out, error = run(vpost, "check", source, f"damaged{number}.ngc", "-m", "machine.toml", "--zero", "true", folder=folder, seconds=SECONDS)
         if off > limit + 3 and status != 1:
             wrong.append(("check-blind", f"{source}: X of line {k + 1} moved by 30 um, {off:.1f} um off the path, is passed, status {status}"))
     return wrong, figures
@@ -162,14 +149,12 @@ def correct(case, folder, vpost, number):
 
 def examine(case, folder, vpost, programs):
     case.write(folder)
-    with open(f"{folder}/command.txt", "w", encoding="utf-8") as file:
-        file.write("vpost predict places.csv -m machine.toml; vpost in0.ngc -m machine.toml -o out0.ngc\n")
-    status, out, error = run(vpost, folder, ["profile", "check", "machine.toml"])
+    folders.put(folder, "command.txt", "vpost predict places.csv -m machine.toml; vpost in0.ngc -m machine.toml -o out0.ngc\n")
+    status, out, error = run(vpost, "profile", "check", "machine.toml", folder=folder, seconds=SECONDS)
     if status not in (0, 1, 2) or "panicked" in error:
         return [("crash", error[-300:])], {}
     if status:
-        code = re.search(r"VP\d{4}", error)
-        return [("refused", " ".join(error.split())[:300])], {"refused": code[0] if code else "?"}
+        return [("refused", " ".join(error.split())[:300])], {"refused": code(error, "?")}
     try:
         wrong, figures = smooth(case, folder, vpost)
     except ValueError as trouble:
@@ -180,7 +165,7 @@ def examine(case, folder, vpost, programs):
         wrong += more
         figures["programs"].append(found)
     for command in (["profile", "show", "machine.toml"], ["map", "-m", "machine.toml", "--grid", "5x5x5", "--json", "map.json", "--csv", "map.csv", "--vtk", "map.vtk"]):
-        status, out, error = run(vpost, folder, command)
+        status, out, error = run(vpost, *command, folder=folder, seconds=SECONDS)
         if status:
             wrong.append((command[0], " ".join(error.split())[:200]))
         elif command[0] == "profile" and not re.search(r"field|vectors", out):
@@ -191,13 +176,7 @@ def examine(case, folder, vpost, programs):
 def one(arguments):
     vpost, seed, number, kind, folder, programs = arguments
     case = generate.Case(seed, number, kind)
-    try:
-        wrong, figures = examine(case, folder, vpost, programs)
-    except subprocess.TimeoutExpired:
-        wrong, figures = [("slow", "more than 300 s")], {}
-    with open(f"{folder}/found.txt", "w", encoding="utf-8") as file:
-        file.write("".join(f"{name}: {words}\n" for name, words in wrong))
-    return case.name, kind, wrong, figures
+    return case.name, kind, *cases.examined(folder, lambda: examine(case, folder, vpost, programs))
 
 
 def report(results):
@@ -239,16 +218,14 @@ def coincide(vpost, keep, seed):
     # tables and vectors have the same nodes
     for name, (nodes, rows) in zip("XYZ", rigid.tables([np.unique(case.places[:, i]) for i in range(3)])):
         head = ["position_mm"] + [f"E{c}{name}_{'um' if c in 'XYZ' else 'urad'}" for c in "XYZABC"]
-        generate.save(f"{folder}/{name.lower()}.csv", head, [[f"{q:.4f}", *(f"{v:.5f}" for v in row)] for q, row in zip(nodes, rows)])
+        folders.table(f"{folder}/{name.lower()}.csv", head, [[f"{q:.4f}", *(f"{v:.5f}" for v in row)] for q, row in zip(nodes, rows)])
         profile.insert(profile.index(f"[axis.{name}]") + 1, f'errors = "{name.lower()}.csv"')
-    with open(f"{folder}/rigid.toml", "w", encoding="ascii") as file:
-        file.write("\n".join(profile) + "\n")
+    folders.put(folder, "rigid.toml", "\n".join(profile) + "\n")
     read = predict(vpost, folder, case.places, "rigid.toml")
     case.read = read
     head, rows = ["x_mm", "y_mm", "z_mm", "dx_um", "dy_um", "dz_um"], [[f"{v:.3f}" for v in p] + [f"{v:.6f}" for v in d] for p, d in zip(case.places, read)]
-    generate.save(f"{folder}/vectors.csv", head, rows)
-    with open(f"{folder}/machine.toml", "w", encoding="ascii") as file:
-        file.write(case.profile())
+    folders.table(f"{folder}/vectors.csv", head, rows)
+    folders.put(folder, "machine.toml", case.profile())
     off = np.abs(predict(vpost, folder, case.places) - read).max()
     between = case.inside
     apart = np.abs(predict(vpost, folder, between) - predict(vpost, folder, between, "rigid.toml")).max()
@@ -265,13 +242,8 @@ def judge(vpost, keep, seed, first, count, kinds=None, jobs=1, programs=2):
         folder = os.path.join(keep, f"{kinds[n % len(kinds)]}-{n}")
         os.makedirs(folder, exist_ok=True)
         work.append((vpost, seed, n, kinds[n % len(kinds)], folder, programs))
-    results = []
-    with concurrent.futures.ProcessPoolExecutor(jobs) as pool:
-        for result in pool.map(one, work):
-            results.append(result)
-            for name, words in result[2]:
-                found[name] += 1
-                print(f"{result[0]} {name}: {words}", flush=True)
+    results = cases.shown(cases.in_order(one, work, jobs), lambda result: (result[0], result[2]))
+    found.update(name for result in results for name, _ in result[2])
     for name, words in report(results):
         found[name] += 1
         print(f"!! {name}: {words}")
@@ -287,32 +259,20 @@ def judge(vpost, keep, seed, first, count, kinds=None, jobs=1, programs=2):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--vpost", default="vpost", help="the command, with words in front of its own where needed")
-    parser.add_argument("--count", type=int, default=70)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--seed", default="1")
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--programs", type=int, default=2, help="programs corrected for each field")
-    parser.add_argument("--kind", choices=list(generate.KINDS), action="append")
-    parser.add_argument("--keep", metavar="DIR", help="all cases go here; a temporary folder if not given")
-    parser.add_argument("--refusals", action="store_true", help="bad input instead")
-    parser.add_argument("--self-test", action="store_true")
-    arguments = parser.parse_args()
-    if arguments.self_test:
+    words = options.parser(__doc__, 70, "first", "jobs", "refusals", vpost="vpost", seed="1")
+    words.add_argument("--programs", type=int, default=2, help="programs corrected for each field")
+    words.add_argument("--kind", choices=list(generate.KINDS), action="append")
+    given = words.parse_args()
+    if given.self_test:
         import self_test
 
         return self_test.main()
-    vpost = shlex.split(arguments.vpost)
-    if not shutil.which(vpost[0]):
-        parser.error(f"no command {vpost[0]}")
-    vpost[0] = os.path.abspath(shutil.which(vpost[0]))
-    keep = os.path.abspath(arguments.keep or tempfile.mkdtemp(prefix="field-"))
-    if arguments.refusals:
+    vpost, keep = options.command(words, given.vpost), folders.of_findings(given.keep, "field-")
+    if given.refusals:
         import refusals
 
-        return refusals.main(vpost, keep, arguments.seed)
-    return judge(vpost, keep, arguments.seed, arguments.first, arguments.count, arguments.kind, arguments.jobs, arguments.programs)
+        return refusals.main(vpost, keep, given.seed)
+    return judge(vpost, keep, given.seed, given.first, given.count, given.kind, given.jobs, given.programs)
 
 
 if __name__ == "__main__":

@@ -5,8 +5,9 @@ import re
 
 import numpy as np
 
+from common import folders, refusals
+
 import generate
-import judge
 
 # name -> (words, whether it may also be taken and said)
 CASES = {
@@ -79,7 +80,7 @@ def prepare(name, folder, seed):
         head, rows = head[1:], [r[1:] for r in rows]
     elif name == "no-dz":
         head, rows = head[:5], [r[:5] for r in rows]
-    generate.save(f"{folder}/vectors.csv", head, rows)
+    folders.table(f"{folder}/vectors.csv", head, rows)
     with open(f"{folder}/machine.toml", encoding="ascii") as file:
         profile = file.read()
     if name == "no-file":
@@ -89,7 +90,7 @@ def prepare(name, folder, seed):
     elif name == "rotary-axis":
         profile = profile.replace("[w X Y b Z t]", "[w C X Y b Z t]").replace("[field]", "[rotary.C]\ncentre_mm = [0, 0, 0]\ntravel_deg = [-180, 180]\n[field]")
     elif name == "tables-and-field":
-        generate.save(f"{folder}/x.csv", ["position_mm", "EXX_um"], [[f"{low[0]}", "0"], [f"{high[0]}", "9"]])
+        folders.table(f"{folder}/x.csv", ["position_mm", "EXX_um"], [[f"{low[0]}", "0"], [f"{high[0]}", "9"]])
         profile = profile.replace("[axis.X]\n", '[axis.X]\nerrors = "x.csv"\n')
     elif name == "unknown-key":
         profile = profile.replace("[field]\n", "[field]\ncolour = 3\n")
@@ -97,8 +98,7 @@ def prepare(name, folder, seed):
         profile = profile.replace(f"travel_mm = {list(case.box[0])}", f"travel_mm = {[case.box[0][0], case.box[0][1] + 300]}")
     elif name == "another-tool":
         profile = profile.replace("H1 = 100.0", "H1 = 190.0")
-    with open(f"{folder}/machine.toml", "w", encoding="ascii") as file:
-        file.write(profile)
+    folders.put(folder, "machine.toml", profile)
     base = case.offset + [0, 0, 190.0 if name == "another-tool" else -case.tool[2]]
     start = np.round(middle - base, 3)
     lines = ["G21 G17 G90 G94 G40 G54", ("G0 G43 H1 " if name == "another-tool" else "G0 ") + " ".join(f"{n}{v:.3f}" for n, v in zip("XYZ", start))]
@@ -110,40 +110,12 @@ def prepare(name, folder, seed):
         lines += [f"G1 X{far - 10:.3f} F500", f"G2 Y{start[1] - 60:.3f} J-30."]
     else:
         lines.append(f"G1 X{start[0] + 30:.3f} F500")
-    with open(f"{folder}/in.ngc", "w", encoding="ascii") as file:
-        file.write("\n".join(lines + ["M2"]) + "\n")
+    folders.put(folder, "in.ngc", "\n".join(lines + ["M2"]) + "\n")
     if name == "points-outside":
-        generate.save(f"{folder}/points.csv", ["x_mm", "y_mm", "z_mm"], [[f"{v:.3f}" for v in high + 20]])
+        folders.table(f"{folder}/points.csv", ["x_mm", "y_mm", "z_mm"], [[f"{v:.3f}" for v in high + 20]])
         return ["predict", "points.csv", "-m", "machine.toml"]
     return ["in.ngc", "-m", "machine.toml", "-o", "out.ngc", *(["--engine", "field"] if name == "no-section" else [])]
 
 
 def main(vpost, keep, seed="1"):
-    bad, said = 0, {}
-    for name, (words, poor) in CASES.items():
-        folder = os.path.join(keep, name)
-        os.makedirs(folder, exist_ok=True)
-        if os.path.exists(f"{folder}/out.ngc"):
-            os.remove(f"{folder}/out.ngc")
-        status, out, error = judge.run(vpost, folder, prepare(name, folder, seed))
-        first = next((line for line in error.splitlines() if line.startswith("error")), (error or out).strip()[:200])
-        wrong = []
-        if status not in (0, 1, 2) or "panicked" in error:
-            wrong.append(f"exit status {status}")
-        if status == 0 and not poor:
-            wrong.append("taken")
-        if status and not re.search(r"error\[VP\d{4}\]", error):
-            wrong.append("no code")
-        if status and os.path.exists(f"{folder}/out.ngc"):
-            wrong.append("refused and yet written")
-        if (status or poor) and not re.search(words, error + (out if status == 0 else "")):
-            wrong.append("not a word of it")
-        code = re.search(r"VP\d{4}", error)
-        if status and code:
-            said.setdefault((code[0], re.sub(r"[\d.:]+", "#", first)), []).append(name)
-        bad += bool(wrong)
-        print(f"{'WRONG' if wrong else 'ok   '} {name:26} {status} {', '.join(wrong)}{': ' if wrong else ''}{first[:170]}", flush=True)
-    for (code, _), many in said.items():
-        if len(many) > 1:
-            print(f"      one message for {', '.join(many)}: {code}")
-    return int(bool(bad))
+    return refusals.asked(vpost, keep, CASES, lambda name, folder: prepare(name, folder, seed), ["out.ngc"])

@@ -80,7 +80,3 @@ def main():
         if wrong:
             print("      " + "\n      ".join(said.getvalue().splitlines())[:3000])
     return int(bool(bad))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -12,7 +12,7 @@ import random
 import re
 import shutil
 
-from common import REPOSITORY, broke_down, first_line, profile, program, read, write
+from runner import REPOSITORY, broke_down, first_line, profile, program, read, write
 
 SAMPLES = os.path.join(REPOSITORY, "samples")
 SECONDS, MEGABYTES = 10, 1000       # of processor time, for the computer may be busy; twice that by the clock

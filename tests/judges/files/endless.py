@@ -13,7 +13,7 @@ import signal
 import subprocess
 import time
 
-from common import REPOSITORY, broke_down, first_line, profile, program, read, tree, write
+from runner import REPOSITORY, broke_down, first_line, profile, program, read, tree, write
 
 SECONDS, MEGABYTES = 10, 1000       # of processor time, for the computer may be busy; three times that by the clock
 HEAD = "%\nO1\nG17 G21 G40 G49 G80 G90 G54\nG0 X10. Y10.\nG43 H1 Z50.\nG1 Z40. F500\n"

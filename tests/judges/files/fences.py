@@ -10,7 +10,7 @@ import random
 import shutil
 
 import blake3
-from common import broke_down, first_line, profile, program, read, tree, write
+from runner import broke_down, first_line, profile, program, read, tree, write
 
 SECONDS, MEGABYTES = 30, 1000
 

@@ -17,16 +17,17 @@ The checks, one file each: power_cut, moving_input, slips, fences, terminal, abs
 doubling the input less than triples the processor time (2 for linear, 4 for quadratic; least of two runs each, 0.2 s ignored).
 """
 
-import argparse
 import os
 import shutil
 import sys
 import tempfile
 import time
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-import common  # noqa: E402
+from common import folders, options  # noqa: E402
+
+import runner  # noqa: E402
 
 CHECKS = ("power_cut", "moving_input", "slips", "fences", "terminal", "absurd", "endless")
 
@@ -34,7 +35,7 @@ CHECKS = ("power_cut", "moving_input", "slips", "fences", "terminal", "absurd", 
 def judged(vpost, count, seed, keep, only, silent=False):
     """Runs the checks; returns the judge with what it found."""
     work = tempfile.mkdtemp(prefix="judge-files-")
-    judge = common.Judge(vpost, count, seed, keep, work)
+    judge = runner.Judge(vpost, count, seed, keep, work)
     judge.silent = silent
     try:
         for name in only:
@@ -60,28 +61,21 @@ def report(judge):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Judge of files, terminals, absurd values and power cuts.")
-    parser.add_argument("--vpost", default=os.path.join(common.REPOSITORY, "target", "release", "vpost"))
-    parser.add_argument("--count", type=int, default=50)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--keep", default=None)
-    parser.add_argument("--only", action="append", choices=CHECKS)
-    parser.add_argument("--self-test", action="store_true")
-    options = parser.parse_args()
+    words = options.parser(__doc__, 50, "jobs", vpost=os.path.join(runner.REPOSITORY, "target", "release", "vpost"))
+    words.add_argument("--only", action="append", choices=CHECKS)
+    given = words.parse_args()
     if not sys.platform.startswith("linux"):
         print("SKIPPED: this judge is for Linux")
         return 0
-    keep = options.keep or tempfile.mkdtemp(prefix="judge-files-found-")
-    only = options.only or CHECKS
-    if options.self_test:
+    keep = folders.of_findings(given.keep, "judge-files-found-")
+    only = given.only or CHECKS
+    if given.self_test:
         import self_test
-        return 0 if self_test.run(keep, only, options.seed) else 1
-    if not os.access(options.vpost, os.X_OK):
-        parser.error("no command at %s" % options.vpost)
+        return 0 if self_test.run(keep, only, given.seed) else 1
+    vpost = options.command(words, given.vpost)[0]
     if os.geteuid() != 0:
         print("SKIPPED in part: power cuts and device nodes need root")
-    return 0 if report(judged(options.vpost, options.count, options.seed, keep, only)) else 1
+    return 0 if report(judged(vpost, given.count, given.seed, keep, only)) else 1
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ import subprocess
 import sys
 import time
 
-from common import broke_down, profile, program, read, stop, write
+from runner import broke_down, profile, program, read, stop, write
 
 GROW = """
 import os, sys, time

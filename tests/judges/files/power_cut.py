@@ -22,7 +22,7 @@ import signal
 import subprocess
 import time
 
-from common import first_line, profile, program, read, stop, tree, words, write
+from runner import first_line, profile, program, read, stop, tree, words, write
 
 CALLS = "fsync,fdatasync,sync,syncfs,rename,renameat,renameat2,link,linkat,unlink,unlinkat,ftruncate"
 OPTIONS = "loop,data=writeback,noauto_da_alloc,nodiscard"

@@ -13,7 +13,7 @@ import stat
 import subprocess
 import time
 
-from common import REPOSITORY, broke_down, first_line, profile, program, read, tree, write
+from runner import REPOSITORY, broke_down, first_line, profile, program, read, tree, write
 
 SAMPLES = os.path.join(REPOSITORY, "samples")
 

@@ -18,12 +18,11 @@ import re
 import select
 import shutil
 import struct
-import subprocess
 import termios
 import time
 import tty
 
-from common import REPOSITORY, first_line, profile, program, read, write
+from runner import REPOSITORY, first_line, profile, program, read, write
 
 SAMPLES = os.path.join(REPOSITORY, "samples")
 TEXTS = ["\x1b[2JZq0", "\x1b]0;Zq1\x07", "\x1b[31;1mZq2", "\x1b[8mZq3", "\x07Zq4", "\x08\x08Zq5", "\x0b\x0cZq6", "\x0eZq7", "\x7fZq8", "\u009b2JZq9",

@@ -4,6 +4,8 @@ import os
 import random
 import re
 
+from common import folders
+
 import reader
 
 ROTARY = re.compile(r"(?<![A-Z])([ABC])(=?)(-?\d*\.?\d+|-?\d+\.)")
@@ -79,9 +81,7 @@ def judge(vpost, spec, result, folder, check, seed, orientation=None):
     for name, text in all_of(result["out"], spec, rng):
         if text is None:
             continue
-        path = os.path.join(folder, "damaged.nc")
-        with open(path, "w", encoding="ascii") as file:
-            file.write(text)
+        path = folders.put(folder, "damaged.nc", text)
         answer = check(vpost, result["source"], path, result["options"])
         if answer.get("passed") is True:
             # Is it one? A dropped word may say what holds already, 20 um may lie along the path, a line may be a short one.

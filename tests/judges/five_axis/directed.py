@@ -4,6 +4,8 @@ programs come out as they went in."""
 import os
 import re
 
+from common.command import first_error
+
 import generate
 
 START = {"fanuc": "G21 G17 G90 G94 G40 G54\nG0 X0. Y0. Z200. A0. C0.\n", "sinumerik": "G710 G17 G90 G94 G40\nG54\nG0 X0 Y0 Z200 A=0 C=0\n", "linuxcnc": "G21 G17 G90 G94 G40 G54\nG0 X0 Y0 Z200 A0 C0\n"}
@@ -44,9 +46,8 @@ def run(vpost, folder, has, correct):
         where = os.path.join(folder, f"bad-{n}")
         os.makedirs(where, exist_ok=True)
         result = correct(vpost, base(control), START[control] + text + "M30\n", where, has if declared else lambda key: key != "kinematics" and has(key), None)
-        code = re.search(r"VP\d{4}", result["stderr"])
-        said = next((x for x in result["stderr"].splitlines() if x.startswith("error")), result["stderr"][:100])
-        wrong = None if result["status"] == 1 and code else f"exit status {result['status']}"
+        said = first_error(result["stderr"]) or result["stderr"][:100]
+        wrong = None if result["status"] == 1 and re.search(r"VP\d{4}", said) else f"exit status {result['status']}"
         out.append((name, wrong, said))
     for number in range(len(generate.CHAINS) * len(generate.KINDS)):
         chain, kind, spec, text = generate.pair("identity", number, has)

@@ -7,10 +7,11 @@ control_centres, tool, lengths, offset, tolerance_um, tcp (codes or None).
 """
 
 import math
-import os
 import random
 
 import numpy as np
+
+from common.profile import Profile
 
 import planes
 from machine import LOCATIONS, UNIT, Machine
@@ -408,68 +409,46 @@ def indexed(w, rng, q, rot, arcs):
     w.last = {}
 
 
-def csv(name, nodes, rows):
-    head = ["position_deg" if name in "ABC" else "position_mm"] + [f"E{c}{name}_{'um' if k < 3 else 'urad'}" for k, c in enumerate("XYZABC")]
-    return "\n".join([",".join(head)] + [",".join([f"{q:.6f}"] + [f"{v:.6f}" for v in row]) for q, row in zip(nodes, rows)]) + "\n"
-
-
 def write_profile(spec, folder, has, orientation=None):
     """machine.toml and its tables; keys that the command does not know yet (`has`) are left out."""
-    lines = ["format = 1", 'name = "Judge"', f'control = "{spec["control"]}"', f'chain = "{spec["chain"]}"']
-
-    def errors(name, one):
-        for key, written, suffix in (("table", "errors", ""), ("table_negative", "errors_negative", "_negative")):
-            if one.get(key):
-                file = f"{name.lower()}{suffix}.csv"
-                with open(os.path.join(folder, file), "w", encoding="ascii") as out:
-                    out.write(csv(name, *one[key]))
-                lines.append(f'{written} = "{file}"')
-
+    p = Profile("Judge", spec["control"], spec["chain"])
     for name, one in spec["axes"].items():
-        lines += [f"[axis.{name}]", f"travel_mm = {one['travel']}", f"resolution_mm = {one['resolution']}"]
-        errors(name, one)
-        if one.get("backlash_um"):
-            lines.append(f"backlash_um = {one['backlash_um']}")
-    lines += ["[squareness]"] + [f"{k} = {v}" for k, v in zip(("EC0Y_urad", "EB0Z_urad", "EA0Z_urad"), spec["squareness_urad"])]
+        p.axis(name).update(travel_mm=one["travel"], resolution_mm=one["resolution"], backlash_um=one.get("backlash_um") or None)
+    p["squareness"].update(zip(("EC0Y_urad", "EB0Z_urad", "EA0Z_urad"), spec["squareness_urad"]))
     for name, one in spec["rotary"].items():
-        lines += [f"[rotary.{name}]", f"centre_mm = {one['centre']}", f"travel_deg = {one['travel']}"]
-        errors(name, one)
-        if one.get("backlash_urad"):
-            lines.append(f"backlash_urad = {one['backlash_urad']}")
-        for key, value in one["location"].items():
-            lines.append(f"{key}_{'um' if key[1] in 'XYZ' else 'urad'} = {value}")
+        p.axis(name).update(centre_mm=one["centre"], travel_deg=one["travel"], backlash_urad=one.get("backlash_urad") or None)
+        p.located(name, one["location"])
         if has("tilt"):
-            lines.append(f'tilt = "{one.get("tilt", "body")}"')
+            p.axis(name)["tilt"] = one.get("tilt", "body")
         if "direction" in one and has("direction"):
             size = math.sqrt(sum(v * v for v in one["direction"]))
-            lines.append(f"direction = {[v / size for v in one['direction']]}")
+            p.axis(name)["direction"] = [v / size for v in one["direction"]]
         if has("resolution_deg"):
-            lines.append(f"resolution_deg = {one['resolution']}")
-    lines += ["[tool]", f"default_mm = {spec['tool']}"]
-    if spec["lengths"]:
-        lines.append("lengths_mm = { " + ", ".join(f"{k} = {v}" for k, v in spec["lengths"].items()) + " }")
-    lines += ["[work_offsets_mm]", f"G54 = {spec['offset']}", "[correction]", f"tolerance_um = {spec['tolerance_um']}"]
+            p.axis(name)["resolution_deg"] = one["resolution"]
+    for name, one in {**spec["axes"], **spec["rotary"]}.items():
+        for key, under in (("table", "errors"), ("table_negative", "errors_negative")):
+            if one.get(key):
+                p.errors(name, *one[key], under, ".6f")
+    p["tool"].update(default_mm=spec["tool"], lengths_mm=spec["lengths"] or None)
+    p["work_offsets_mm"]["G54"] = spec["offset"]
+    p["correction"]["tolerance_um"] = spec["tolerance_um"]
     if orientation == "full" and has("orientation_urad"):
-        lines.append(f"orientation_urad = {spec.get('orientation_urad', 20.0)}")
+        p["correction"]["orientation_urad"] = spec.get("orientation_urad", 20.0)
     if has("kinematics"):
-        lines += kinematics(spec)
+        p["kinematics"].update(kinematics(spec))
     if spec["control"] == "linuxcnc":
-        lines += ["[program]", 'tool_change = { keeps = "XYZ" }']
-    path = os.path.join(folder, "machine.toml")
-    with open(path, "w", encoding="ascii") as out:
-        out.write("\n".join(lines) + "\n")
-    return path
+        p["program"]["tool_change"] = {"keeps": "XYZ"}
+    return str(p.write(folder, "machine.toml"))
 
 
 def kinematics(spec):
     """The section on what the control computes."""
-    centres = spec.get("control_centres") or {k: one["centre"] for k, one in spec["rotary"].items()}
-    own = ['on = ["M428"]', 'off = ["M429"]'] if spec["control"] == "linuxcnc" else []
-    own += ["at_start = true"] if spec.get("tcp_at_start") else []
-    text = ", ".join(f"{k} = {v}" for k, v in centres.items())
-    own += ['vectors = "axes"'] if spec.get("vectors") else []
-    own += [f'branch = "{spec["branch"]}"', f'turn = "{spec["turn"]}"'] if "branch" in spec else []
-    return ["[kinematics]", 'straight = "tip"', f"centres_mm = {{ {text} }}"] + own
+    own = {"straight": "tip", "centres_mm": spec.get("control_centres") or {k: one["centre"] for k, one in spec["rotary"].items()}}
+    if spec["control"] == "linuxcnc":
+        own |= {"on": ["M428"], "off": ["M429"]}
+    own |= {"at_start": True} if spec.get("tcp_at_start") else {}
+    own |= {"vectors": "axes"} if spec.get("vectors") else {}
+    return own | ({"branch": spec["branch"], "turn": spec["turn"]} if "branch" in spec else {})
 
 
 def pair(seed, number, has, chains=tuple(CHAINS), kinds=tuple(KINDS)):

@@ -23,21 +23,20 @@ of the output. Asked:
 A refusal (status 1) is counted by its code. Exit status: 0 nothing wrong, 1 something, 2 usage.
 """
 
-import argparse
 import collections
-import concurrent.futures
 import json
 import os
 import re
 import shutil
-import subprocess
 import sys
-import tempfile
 import time
 
-import numpy as np
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from common import cases, folders, options  # noqa: E402  before numpy
+from common.command import code, first_error, run  # noqa: E402
+
+import numpy as np  # noqa: E402
 
 import compare  # noqa: E402
 import damages  # noqa: E402
@@ -55,9 +54,8 @@ class Has:
     """Keys of profiles that the command knows, and its options."""
 
     def __init__(self, vpost):
-        schema = subprocess.run([vpost, "profile", "schema"], capture_output=True, text=True).stdout
-        self.names = set(re.findall(r'"(\w+)"\s*:\s*\{', schema))
-        self.help = subprocess.run([vpost, "correct", "--help"], capture_output=True, text=True).stdout
+        self.names = set(re.findall(r'"(\w+)"\s*:\s*\{', run(vpost, "profile", "schema").output))
+        self.help = run(vpost, "correct", "--help").output
 
     def __call__(self, key):
         return key in self.names
@@ -69,19 +67,14 @@ class Has:
 def correct(vpost, spec, text, folder, has, orientation):
     """Runs the command on one program; status, stderr, output, summary and the options it took."""
     profile = generate.write_profile(spec, folder, has, orientation)
-    source, target = os.path.join(folder, "in.nc"), os.path.join(folder, "out.nc")
-    with open(source, "w", encoding="ascii") as out:
-        out.write(text)
-    with open(os.path.join(folder, "spec.json"), "w", encoding="ascii") as out:
-        json.dump(spec, out)
-    options = ["-m", profile, "--zero", "true"]
-    more = ["--orientation", orientation] if orientation and has.option("--orientation") else []
-    command = [vpost, source, *options, *more, "-o", target, "--summary", os.path.join(folder, "summary.json")]
-    with open(os.path.join(folder, "command.txt"), "w", encoding="utf-8") as out:
-        out.write(" ".join(c.replace(folder + "/", "") for c in command) + "\n")
-    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
-    result = {"status": done.returncode, "stderr": done.stderr, "options": options + more, "source": source, "target": target}
-    if done.returncode == 0:
+    source, target = folders.put(folder, "in.nc", text), os.path.join(folder, "out.nc")
+    folders.put(folder, "spec.json", json.dumps(spec))
+    flags = ["-m", profile, "--zero", "true"] + (["--orientation", orientation] if orientation and has.option("--orientation") else [])
+    words = [source, *flags, "-o", target, "--summary", os.path.join(folder, "summary.json")]
+    folders.put(folder, "command.txt", " ".join([vpost, *(w.replace(folder + "/", "") for w in words)]) + "\n")
+    status, _, errors = run(vpost, *words, seconds=600)
+    result = {"status": status, "stderr": errors, "options": flags, "source": source, "target": target}
+    if status == 0:
         with open(target, encoding="ascii") as file:
             result["out"] = file.read()
         with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
@@ -89,13 +82,13 @@ def correct(vpost, spec, text, folder, has, orientation):
     return result
 
 
-def check(vpost, one, two, options):
+def check(vpost, one, two, flags):
     """`vpost check --json` as a dictionary; `passed` None where it gave none."""
-    done = subprocess.run([vpost, "check", one, two, *options, "--json"], capture_output=True, text=True, timeout=600)
+    status, said, errors = run(vpost, "check", one, two, *flags, "--json", seconds=600)
     try:
-        return json.loads(done.stdout)
+        return json.loads(said)
     except ValueError:
-        return {"passed": False if done.returncode == 1 else None, "refused": done.stderr[:300], "findings": []}
+        return {"passed": False if status == 1 else None, "refused": errors[:300], "findings": []}
 
 
 def same_reading(text, spec, motions):
@@ -207,9 +200,7 @@ def one(arguments):
     result = correct(vpost, spec, text, folder, has, orientation)
     verdict["seconds"] = time.time() - begun
     if result["status"] == 1:
-        code = re.search(r"VP\d{4}", result["stderr"])
-        verdict["refused"] = code.group(0) if code else "?"
-        verdict["message"] = next((x for x in result["stderr"].splitlines() if x.startswith("error")), "")
+        verdict["refused"], verdict["message"] = code(result["stderr"], "?"), first_error(result["stderr"])
     elif result["status"]:
         verdict["problems"].append(("status", f"{result['status']}: {result['stderr'][:300]}"))
     else:
@@ -244,43 +235,28 @@ def one(arguments):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--vpost", default="vpost")
-    parser.add_argument("--count", type=int, default=220)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--seed", default="1")
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--chain", choices=list(generate.CHAINS), action="append")
-    parser.add_argument("--kind", choices=generate.KINDS + generate.PLANE_KINDS + generate.VECTOR_KINDS, action="append")
-    parser.add_argument("--orientation", choices=["xyz", "full"])
-    parser.add_argument("--damage", type=int, default=3, metavar="N", help="damage every Nth pair; 0 for none")
-    parser.add_argument("--directed", action="store_true", help="bad input and perfect machines as well")
-    parser.add_argument("--keep", metavar="DIR", help="reproducers of failures go here; a temporary folder if not given")
-    parser.add_argument("--json", metavar="FILE", help="write all verdicts")
-    parser.add_argument("--self-test", action="store_true")
-    arguments = parser.parse_args()
-    if arguments.self_test:
+    words = options.parser(__doc__, 220, "first", "jobs", "json", vpost="vpost", seed="1")
+    words.add_argument("--chain", choices=list(generate.CHAINS), action="append")
+    words.add_argument("--kind", choices=generate.KINDS + generate.PLANE_KINDS + generate.VECTOR_KINDS, action="append")
+    words.add_argument("--orientation", choices=["xyz", "full"])
+    words.add_argument("--damage", type=int, default=3, metavar="N", help="damage every Nth pair; 0 for none")
+    words.add_argument("--directed", action="store_true", help="bad input and perfect machines as well")
+    given = words.parse_args()
+    if given.self_test:
         import self_test
 
-        return self_test.run(arguments.vpost)
-    if not shutil.which(arguments.vpost):
-        parser.error(f"no command {arguments.vpost}")
-    keep = arguments.keep or tempfile.mkdtemp(prefix="five-axis-")
-    chains, kinds = tuple(arguments.chain or generate.CHAINS), tuple(arguments.kind or generate.KINDS)
-    work = [(shutil.which(arguments.vpost), arguments.seed, n, os.path.join(keep, f"{arguments.seed}-{n}"), arguments.orientation,
-             bool(arguments.damage) and n % arguments.damage == 0, chains, kinds) for n in range(arguments.first, arguments.first + arguments.count)]
-    begun, verdicts = time.time(), []
-    with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
-        for verdict in pool.map(one, work):
-            verdicts.append(verdict)
-            for name, message in verdict["problems"]:
-                print(f"{verdict['chain']} {verdict['kind']} {verdict['number']} {name}: {message}", flush=True)
-    if arguments.json:
-        with open(arguments.json, "w", encoding="utf-8") as out:
-            json.dump(verdicts, out, indent=1, default=str)
+        return self_test.run(given.vpost)
+    vpost, keep = options.command(words, given.vpost)[0], folders.of_findings(given.keep, "five-axis-")
+    chains, kinds = tuple(given.chain or generate.CHAINS), tuple(given.kind or generate.KINDS)
+    work = [(vpost, given.seed, n, os.path.join(keep, f"{given.seed}-{n}"), given.orientation, bool(given.damage) and n % given.damage == 0, chains, kinds)
+            for n in cases.asked(given)]
+    begun = time.time()
+    verdicts = cases.shown(cases.in_order(one, work, given.jobs), lambda v: (f"{v['chain']} {v['kind']} {v['number']}", v["problems"]))
+    if given.json:
+        folders.put(".", given.json, json.dumps(verdicts, indent=1, default=str))
     status = report(verdicts, keep, time.time() - begun)
-    if arguments.directed:
-        answers = directed.run(shutil.which(arguments.vpost), keep, Has(arguments.vpost), correct)
+    if given.directed:
+        answers = directed.run(vpost, keep, Has(vpost), correct)
         for (name, wrong, said), n in collections.Counter(answers).items():
             print(f"directed {'WRONG' if wrong else 'ok   '} {n:3} {name}: {wrong or ''} {said[:110]}")
             status |= bool(wrong)

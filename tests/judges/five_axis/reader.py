@@ -9,12 +9,11 @@ tip in the workpiece, which is the machine frame at angles 0. `rs274` gives Linu
 """
 
 import math
-import os
 import re
-import subprocess
-import tempfile
 
 import numpy as np
+
+from common.interpreter import interpret
 
 import planes
 from machine import Machine
@@ -352,25 +351,14 @@ CANON = re.compile(r"(STRAIGHT_TRAVERSE|STRAIGHT_FEED|ARC_FEED|COMMENT)\((.*)\)"
 
 def rs274(text, lengths=None, tries=3):
     """LinuxCNC's reading: [(kind, x, y, z, a, b, c)] in program coordinates; M428 and M429 are passed over (no remap here)."""
-    folder = tempfile.mkdtemp(prefix="rs274-")
-    source, tools = os.path.join(folder, "in.ngc"), os.path.join(folder, "tool.tbl")
-    with open(source, "w", encoding="ascii", errors="replace") as out:
-        out.write(re.sub(r"(?im)\bM0*42[89]\b", "", text))
-    with open(tools, "w", encoding="ascii") as out:
-        for name, value in (lengths or {}).items():
-            out.write(f"T{name[1:]} P{name[1:]} Z{value:.6f} D1\n")
-    try:
-        done = subprocess.run(["rs274", "-g", "-t", tools, "-v", os.path.join(folder, "var"), source], capture_output=True, text=True, timeout=120, cwd=folder)
-    finally:
-        for name in os.listdir(folder):
-            os.remove(os.path.join(folder, name))
-        os.rmdir(folder)
-    if "PROGRAM_END" not in done.stdout and tries > 1:
+    tools = "".join(f"T{name[1:]} P{name[1:]} Z{value:.6f} D1\n" for name, value in (lengths or {}).items())
+    said = interpret(re.sub(r"(?im)\bM0*42[89]\b", "", text), tools, "")
+    if not said.whole and tries > 1:
         return rs274(text, lengths, tries - 1)  # its file of variables is not always written in time
-    if "PROGRAM_END" not in done.stdout:
-        raise Unreadable("rs274: " + (done.stdout + done.stderr).strip()[-300:])
+    if not said.whole:
+        raise Unreadable("rs274: " + said.trouble(300))
     out = []
-    for kind, body in CANON.findall(done.stdout):
+    for kind, body in CANON.findall(said.calls):
         if kind == "COMMENT":
             continue
         v = [float(x) for x in body.split(",")]

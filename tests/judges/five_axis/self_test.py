@@ -4,11 +4,11 @@ import math
 import random
 import re
 import shutil
-import subprocess
 
 import numpy as np
 
-import compare
+from common import command
+
 import damages
 import generate
 import judge
@@ -292,18 +292,12 @@ def against(vpost):
         head = "x_mm,y_mm,z_mm," + ",".join(f"{k.lower()}_deg" for k in machine.rotary) + ",tool_x_mm,tool_y_mm,tool_z_mm\n"
         rows = head + "\n".join(",".join(f"{v:.12g}" for v in [*a, *b, *tool]) for a, b in zip(q, rot)) + "\n"
         with tempfile.TemporaryDirectory() as folder:
-            done = subprocess.run([vpost, "predict", "-", "-m", generate.write_profile(spec, folder, has)], input=rows, capture_output=True, text=True)
-        if done.returncode:
-            print(done.stderr[:400])
+            status, said, errors = command.run(vpost, "predict", "-", "-m", generate.write_profile(spec, folder, has), given=rows)
+        if status:
+            print(errors[:400])
             return math.inf, 0
-        lines = [x.split(",") for x in done.stdout.splitlines()]
+        lines = [x.split(",") for x in said.splitlines()]
         at = lines[0].index("px_mm")
         worst = max(worst, close(machine.place(q, rot, tool)[0], [[float(v) for v in x[at : at + 3]] for x in lines[1:]]))
         points += len(q)
     return worst, points
-
-
-if __name__ == "__main__":
-    import sys
-
-    sys.exit(run(sys.argv[1] if len(sys.argv) > 1 else None))

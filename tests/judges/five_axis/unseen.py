@@ -18,13 +18,12 @@ import os
 import random
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 
 import numpy as np
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
 import compare  # noqa: E402
 import generate  # noqa: E402

@@ -17,8 +17,10 @@ import random
 import re
 import shutil
 import stat
-import subprocess
 import tempfile
+
+from common import folders
+from common.command import ask, run
 
 import cases
 import compare
@@ -29,8 +31,7 @@ import model
 @functools.lru_cache(maxsize=None)
 def correct(vpost):
     """How this binary is asked to correct: `vpost IN.nc`, or `vpost correct IN.nc` where it has that command."""
-    has = subprocess.run([vpost, "help", "correct"], capture_output=True).returncode == 0
-    return [vpost, "correct"] if has else [vpost]
+    return [vpost, "correct"] if run(vpost, "help", "correct").status == 0 else [vpost]
 
 
 def machine():
@@ -74,8 +75,7 @@ def write_profile(m, folder, dialect, test):
 def execute(vpost, folder, test, m):
     """One test; gives (what is wrong or '', status, output, messages, command)."""
     text = compare.with_marks(test.lines, test.dialect) if test.judged is not None else test.text
-    with open(os.path.join(folder, "in.nc"), "w", newline="") as file:
-        file.write(text)
+    folders.put(folder, "in.nc", text)
     wrong, best = "", None
     for extra in test.either or [test.extra]:
         test.extra = extra
@@ -85,16 +85,13 @@ def execute(vpost, folder, test, m):
             if text is None:
                 return "the program that check is to judge was refused", 1, "", "", []
         command = [*([vpost, "check", "in.nc", "changed.nc"] if test.check else [*correct(vpost), "in.nc"]), "-m", profile, "--zero", "true", "--dialect", test.dialect, "--color", "never", *test.args]
-        try:
-            done = subprocess.run(command, cwd=folder, capture_output=True, timeout=60)
-        except subprocess.TimeoutExpired:
-            return "no end within 60 s", -1, "", "", command
-        status, output, messages = done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
+        status, output, messages = ask(*command, folder=folder, seconds=60)
+        if status == -1:
+            return messages, status, output, "", command
         wrong = verdict(test, text, status, output, messages, m)
         if not wrong and test.like:
-            with open(os.path.join(folder, "other.nc"), "w", newline="") as file:
-                file.write(text.replace(*test.like))
-            other = subprocess.run(["other.nc" if x == "in.nc" else x for x in command], cwd=folder, capture_output=True, timeout=60).stdout.decode("utf-8", "replace")
+            folders.put(folder, "other.nc", text.replace(*test.like))
+            other = run(*("other.nc" if x == "in.nc" else x for x in command), folder=folder, seconds=60).output
             if other != output.replace(*test.like):
                 wrong = f"{test.like[0]} is not corrected as {test.like[1]} is"
         if best is None or not wrong:
@@ -107,15 +104,12 @@ def execute(vpost, folder, test, m):
 def corrected_and_changed(vpost, folder, test, profile):
     """For tests of `check`: corrects the program, then puts the same other block into both files."""
     old, new = test.check
-    paths = [os.path.join(folder, x) for x in ("in.nc", "changed.nc")]
-    with open(paths[0], "w", newline="") as file:
-        file.write(test.text)
-    done = subprocess.run([*correct(vpost), "in.nc", "-m", profile, "--zero", "true", "--dialect", test.dialect], cwd=folder, capture_output=True, timeout=60)
-    if done.returncode or old not in done.stdout.decode():
+    folders.put(folder, "in.nc", test.text)
+    done = run(*correct(vpost), "in.nc", "-m", profile, "--zero", "true", "--dialect", test.dialect, folder=folder, seconds=60)
+    if done.status or old not in done.output:
         return None
-    for path, text in zip(paths, (test.text, done.stdout.decode())):
-        with open(path, "w", newline="") as file:
-            file.write(text.replace(old, new))
+    for name, text in (("in.nc", test.text), ("changed.nc", done.output)):
+        folders.put(folder, name, text.replace(old, new))
     return test.text.replace(old, new)
 
 
@@ -185,10 +179,8 @@ def judge(o, folder):
             os.makedirs(to, exist_ok=True)
             shutil.copy(os.path.join(folder, "in.nc"), to)
             write_profile(m, to, test.dialect, test)
-            with open(os.path.join(to, "out.nc"), "w") as file:
-                file.write(output)
-            with open(os.path.join(to, "found.txt"), "w") as file:
-                file.write(f"{test.name}: expects {test.expect}\n{said}\ncommand: {' '.join(['vpost'] + command[1:])}\n{messages}")
+            folders.put(to, "out.nc", output)
+            folders.put(to, "found.txt", f"{test.name}: expects {test.expect}\n{said}\ncommand: {' '.join(['vpost'] + command[1:])}\n{messages}")
     for item in sorted(items, key=lambda x: int(re.match(r"\d+", x).group())):
         print(f"directed, item {item}: {items[item][0]} of {items[item][1]} as expected")
     print(f"directed tests: {wrong} wrong")

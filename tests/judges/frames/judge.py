@@ -15,17 +15,18 @@ Prints one line per check and one per kind of failure with its smallest program;
 `--keep DIR` holds a folder for each kind: program, output, profile and tables, command, what was found.
 """
 
-import argparse
 import collections
 import os
 import random
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+from common import folders, options  # noqa: E402
+from common.command import ask, run  # noqa: E402
 
 import compare
 import control
@@ -40,15 +41,9 @@ LINE = re.compile(r"-->\s*[^\n]*?:(\d+):\d+")
 
 def call(vpost, folder, text, profile, dialect, arguments=()):
     """(exit status, output, messages) of one run."""
-    program = os.path.join(folder, "in.nc")
-    with open(program, "w") as file:
-        file.write(text)
+    folders.put(folder, "in.nc", text)
     command = [*directed.correct(vpost), "in.nc", "-m", profile, "--zero", "true", "--dialect", dialect, "--color", "never", *arguments]
-    try:
-        done = subprocess.run(command, cwd=folder, capture_output=True, timeout=60)
-    except subprocess.TimeoutExpired:
-        return -1, "", "no end within 60 s", command
-    return done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace"), command
+    return *ask(*command, folder=folder, seconds=60), command
 
 
 def judge_output(lines, output, machine, dialect, start_at):
@@ -79,8 +74,7 @@ class Random:
         self.kinds = {}                       # (dialect, kind) -> [times, lines, found, command, machine, arguments]
         self.profiles = {}
         self.machines = [model.Machine(random.Random(f"{options.seed} machine {k}"), k, keeps=k == 0) for k in range(8)]
-        known = subprocess.run([options.vpost, "profile", "check", self.profile(self.machines[0], "fanuc")], cwd=folder, capture_output=True)
-        if known.returncode:
+        if run(options.vpost, "profile", "check", self.profile(self.machines[0], "fanuc"), folder=folder).status:
             print("random: this vpost knows no [program] tool_change: machines without it only")
             self.machines[0].keeps, self.profiles = False, {}
 
@@ -196,13 +190,10 @@ def keep(to, machine, lines, dialect, kind, detail, command):
     """Writes a reproducer folder: program, output, profile with its tables, command, what was found."""
     os.makedirs(to, exist_ok=True)
     machine.write(to, dialect)
-    with open(os.path.join(to, "in.nc"), "w") as file:
-        file.write(compare.with_marks(lines, dialect))
-    done = subprocess.run(command, cwd=to, capture_output=True)
-    with open(os.path.join(to, "out.nc"), "wb") as file:
-        file.write(done.stdout)
-    with open(os.path.join(to, "found.txt"), "w") as file:
-        file.write(f"{dialect}: {kind}\n{detail}\ncommand: {' '.join(['vpost'] + command[1:])}\n{done.stderr.decode('utf-8', 'replace')}")
+    folders.put(to, "in.nc", compare.with_marks(lines, dialect))
+    done = run(*command, folder=to)
+    folders.put(to, "out.nc", done.output)
+    folders.put(to, "found.txt", f"{dialect}: {kind}\n{detail}\ncommand: {' '.join(['vpost'] + command[1:])}\n{done.errors}")
 
 
 def self_test():
@@ -265,24 +256,15 @@ def self_test():
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("--vpost", default="vpost")
-    p.add_argument("--count", type=int, default=2000, help="random programs that are judged")
-    p.add_argument("--seed", default="1")
-    p.add_argument("--jobs", type=int, default=1, help="accepted for the common interface; one process at a time runs")
+    p = options.parser(__doc__, 2000, "jobs", vpost="vpost", seed="1")
     p.add_argument("--only", choices=["random", "directed"])
     p.add_argument("--dialect")
     p.add_argument("--name", help="directed tests whose name contains this")
-    p.add_argument("--keep", help="folder of reproducers; kept only where something is wrong")
-    p.add_argument("--self-test", action="store_true")
     o = p.parse_args()
     if o.self_test:
         return self_test()
-    if os.path.sep in o.vpost:
-        o.vpost = os.path.abspath(o.vpost)
+    o.vpost, o.keep = options.command(p, o.vpost)[0], folders.of_findings(o.keep, "judge-frames-kept-")
     folder = tempfile.mkdtemp(prefix="judge-frames-")
-    if o.keep is None:
-        o.keep = tempfile.mkdtemp(prefix="judge-frames-kept-")
     bad = False
     try:
         if o.only != "random":

@@ -12,6 +12,8 @@ for every tool, plus the output's rounding. Frames are wrong by millimetres, so 
 import bisect
 import os
 
+from common.profile import Profile
+
 AXES = "XYZ"
 ROUNDING_MM = 0.006          # half a step of 0.001 mm or 0.0001 inch, split pieces, arcs' centres
 FACTOR = 1.5
@@ -90,22 +92,15 @@ class Machine:
     def write(self, folder, control, extra=""):
         """Writes the profile into `folder`; gives its path. `extra` is TOML that is appended."""
         os.makedirs(folder, exist_ok=True)
-        path = os.path.join(folder, f"{self.name}-{control}.toml")
-        lines = ["format = 1", f'name = "{self.name}"', f'control = "{control}"', 'chain = "[w X Y b Z t]"', ""]
+        profile = Profile(str(self.name), control, "[w X Y b Z t]")
         for axis in AXES:
-            table = f"{self.name}-{axis}.csv"
-            others = [b for b in AXES]
-            head = ["position_mm"] + [f"E{b}{axis}_um" for b in others] + [f"E{r}{axis}_urad" for r in "ABC"]
-            with open(os.path.join(folder, table), "w") as file:
-                file.write(",".join(head) + "\n")
-                for q, values in self.tables[axis]:
-                    file.write(",".join([repr(q)] + [repr(v) for v in values]) + "\n")
-            low, high = self.travel[axis]
-            lines += [f"[axis.{axis}]", f"travel_mm = [{low}, {high}]", f'errors = "{table}"']
-        lines += ["[squareness]"] + [f"{k}_urad = {v!r}" for k, v in self.square.items()]
-        lines += ["[tool]", f"default_mm = {self.default_tool}",
-                  "lengths_mm = { " + ", ".join(f"H{h} = {v}" for h, v in self.lengths.items()) + " }"]
-        lines += ["[work_offsets_mm]"] + [f'"{k}" = {v}' for k, v in self.offsets.items()]
-        with open(path, "w") as file:
-            file.write("\n".join(lines) + "\n" + (KEEPS if self.keeps else "") + extra)
+            profile.axis(axis)["travel_mm"] = self.travel[axis]
+            profile.errors(axis, *zip(*self.tables[axis]))
+        profile["squareness"].update({f"{k}_urad": v for k, v in self.square.items()})
+        profile["tool"].update(default_mm=self.default_tool, lengths_mm={f"H{h}": v for h, v in self.lengths.items()})
+        profile["work_offsets_mm"].update(self.offsets)
+        path = str(profile.write(folder, f"{self.name}-{control}.toml"))
+        if self.keeps or extra:
+            with open(path, "a", encoding="utf-8") as file:
+                file.write((KEEPS if self.keeps else "") + extra)
         return path

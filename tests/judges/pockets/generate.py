@@ -10,6 +10,9 @@ import random
 
 import numpy as np
 
+from common.profile import Profile, column
+from common.words import number
+
 # Names of systems B and C; those of A are the keys.
 NAMES = {
     "A": {},
@@ -17,12 +20,6 @@ NAMES = {
     "C": {"G98": "G94", "G99": "G95", "G50": "G92", "G21": "G71", "G70": "G72", "G71": "G73", "G72": "G74", "G74": "G76", "G75": "G77", "G76": "G78"},
 }
 KINDS = ("turn-1", "turn-2", "turn-2", "face-1", "face-2", "bore-1", "bore-2", "groove", "peck", "thread", "hole", "tap", "side")
-
-
-def number(v):
-    text = "%.3f" % v
-    text = text.rstrip("0")
-    return "0." if text in ("-0.", "0.") else text
 
 
 def lathe(rng, state):
@@ -51,27 +48,20 @@ def lathe(rng, state):
 
 
 def profile(spec, folder):
-    lines = ["format = 1", 'name = "Pockets (invented)"', 'control = "fanuc-lathe"', 'chain = "[w S b Z X t]"']
+    p = Profile("Pockets (invented)", "fanuc-lathe", "[w S b Z X t]")
     for k, travel in (("X", [-30, 220]), ("Z", [-60, 560])):
-        lines += ["[axis.%s]" % k, "travel_mm = %r" % travel, "resolution_mm = %r" % spec["resolution"][k]]
-        if k in spec["tables"]:
-            head = "position_mm," + ",".join(["E%s%s_um" % (x, k) for x in "XYZ"] + ["E%s%s_urad" % (x, k) for x in "ABC"])
-            data = spec["tables"][k]
-            rows = [",".join(repr(x) for x in [at] + row) for at, row in zip(data["at"], data["rows"])]
-            (folder / ("e_%s.csv" % k)).write_text("\n".join([head] + rows) + "\n")
-            lines.append('errors = "e_%s.csv"' % k)
-    lines += ["[squareness]"] + ["%s_urad = %r" % x for x in spec["squareness"].items()]
-    lines += ["[spindle]", "face_mm = %r" % spec["face"]]
-    lines += ["%s_%s = %r" % (k, "um" if k[1] in "XY" else "urad", v) for k, v in spec["spindle"].items()]
-    lines += ["[tool]", "lengths_mm = { H1 = [%r, 0, %r] }" % tuple(spec["length"])]
-    lines += ["[work_offsets_mm]", "G54 = [0, 0, %r]" % spec["offset"][1]]
-    lines += ["[correction]", "tolerance_um = %r" % spec["tolerance"]]
-    lines += ["[program]", 'x = "diameter"', 'decimal = "increments"', 'g_code_system = "%s"' % spec["system"]]
-    lines += ["roughing_escape_mm = %r" % spec["escape"], "groove_return_mm = %r" % spec["return"]]
-    lines += ["thread_finishing_passes = 1", "thread_least_mm = 0.05", "thread_allowance_mm = 0.02", "thread_chamfer_leads = 0.0", "thread_chamfer_deg = 45.0"]
-    lines += ['drill_pecks = "full"', "drill_return_mm = 0.5"]
-    (folder / "profile.toml").write_text("\n".join(lines) + "\n")
-    return folder / "profile.toml"
+        p.axis(k).update(travel_mm=travel, resolution_mm=spec["resolution"][k])
+    for k, data in spec["tables"].items():
+        p.errors(k, data["at"], data["rows"])
+    p["squareness"].update({column(k): v for k, v in spec["squareness"].items()})
+    p["spindle"].update({"face_mm": spec["face"], **{column(k): v for k, v in spec["spindle"].items()}})
+    p["tool"]["lengths_mm"] = {"H1": [spec["length"][0], 0, spec["length"][1]]}
+    p["work_offsets_mm"]["G54"] = [0, 0, spec["offset"][1]]
+    p["correction"]["tolerance_um"] = spec["tolerance"]
+    p["program"].update(x="diameter", decimal="increments", g_code_system=spec["system"], roughing_escape_mm=spec["escape"], groove_return_mm=spec["return"])
+    p["program"].update(thread_finishing_passes=1, thread_least_mm=0.05, thread_allowance_mm=0.02, thread_chamfer_leads=0.0, thread_chamfer_deg=45.0)
+    p["program"].update(drill_pecks="full", drill_return_mm=0.5)
+    return p.write(folder)
 
 
 class Contour:

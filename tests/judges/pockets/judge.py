@@ -7,28 +7,23 @@
 Exit status 1 where something is found. What is asked stands in README.md.
 """
 
-import argparse
-import collections
-import pathlib
+import os
 import re
-import subprocess
 import sys
-import tempfile
 
-import numpy as np
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-import generate
-import reader
-from lathe import Lathe
+from common import cases, options  # noqa: E402  before numpy
+
+import numpy as np  # noqa: E402
+
+import generate  # noqa: E402
+import reader  # noqa: E402
+from lathe import Lathe  # noqa: E402
 
 SLACK = 0.06e-3
 LEAD = 1.0  # a feed to a corrected start is shorter, mm
 RAPID = 0.02  # how far a rapid may be below what was cut: twice the errors there, mm
-
-
-def run(vpost, *words):
-    done = subprocess.run([str(vpost), *map(str, words)], capture_output=True, text=True, timeout=180)
-    return done.returncode, done.stdout, done.stderr
 
 
 def limit(spec):
@@ -281,83 +276,38 @@ def compare(spec, asked, text_in, text_out):
     return found
 
 
-class Judge:
-    def __init__(self, options):
-        self.o, self.tally, self.refused, self.first, self.found = options, collections.Counter(), collections.Counter(), {}, 0
-
-    def report(self, what, n, folder, text):
-        self.found += 1
-        self.tally["found " + what] += 1
-        print("%-14s %4d  %s" % (what, n, text), flush=True)
-        if self.o.keep:
-            keep = pathlib.Path(self.o.keep) / ("%d-%d-%s" % (self.o.seed, n, what.replace(" ", "-")))
-            keep.mkdir(parents=True, exist_ok=True)
-            for f in folder.iterdir():
-                (keep / f.name).write_bytes(f.read_bytes())
-            (keep / "found.txt").write_text(text + "\n")
-
-    def one(self, n, folder):
-        spec, text, asked = generate.case(self.o.seed, n)
-        kind = "%s %s" % (spec["kind"], spec["system"])
-        where = generate.profile(spec, folder)
-        (folder / "in.nc").write_text(text)
-        self.tally["programs"] += 1
-        status, output, errors = run(self.o.vpost, "correct", folder / "in.nc", "-m", where)
-        if status == 2:
-            return self.report("profile", n, folder, errors.strip().replace("\n", " | ")[:300])
-        if status:
-            code = (re.search(r"error\[(VP\d+)\]", errors) or [None, "none"])[1]
-            key = "%s %s" % (spec["kind"], code)
-            self.refused[key] += 1
-            self.first.setdefault(key, (n, errors.strip().splitlines()[:4]))
-            return None
-        (folder / "out.nc").write_text(output)
-        self.tally["corrected " + spec["kind"]] += 1
-        if spec["state"] == "perfect":
-            self.tally["perfect"] += 1
-            if output != text:
-                self.report("perfect", n, folder, "not the same bytes")
-            return None
-        try:
-            found = compare(spec, asked, text, output)
-        except reader.Kept as why:
-            self.tally["unjudged: kept %s" % str(why).split()[0]] += 1
-            return None
-        for what, why in found[:2]:
-            self.report(what, n, folder, "%s (%s)" % (why, kind))
-        status, _, errors = run(self.o.vpost, "check", folder / "in.nc", folder / "out.nc", "-m", where)
-        if (status != 0) != bool(found):
-            self.report("check-blind" if found else "check-alarm", n, folder, errors.strip().replace("\n", " | ")[:200])
-        return None
-
-    def all(self):
-        for n in range(self.o.first, self.o.first + self.o.count):
-            with tempfile.TemporaryDirectory() as folder:
-                try:
-                    self.one(n, pathlib.Path(folder))
-                except subprocess.TimeoutExpired:
-                    self.report("slow", n, pathlib.Path(folder), "180 s")
-        for name, count in sorted(self.tally.items()):
-            print("%6d  %s" % (count, name))
-        for code, count in self.refused.most_common():
-            print("%6d  refused: %s, as number %d: %s" % (count, code, *self.first[code]))
-        return 1 if self.found else 0
+def one(case):
+    spec, text, asked = generate.case(case.options.seed, case.number)
+    where = generate.profile(spec, case.folder)
+    case.write("in.nc", text)
+    case.tally["programs"] += 1
+    done = case.correct("-m", where, about=spec["kind"] + " ")
+    if not done:
+        return
+    output, _ = done
+    case.tally["corrected " + spec["kind"]] += 1
+    if spec["state"] == "perfect":
+        case.tally["perfect"] += 1
+        if output != text:
+            case.find("perfect", "not the same bytes")
+        return
+    try:
+        found = compare(spec, asked, text, output)
+    except reader.Kept as why:
+        case.tally["unjudged: kept %s" % str(why).split()[0]] += 1
+        return
+    for what, why in found[:2]:
+        case.find(what, "%s (%s %s)" % (why, spec["kind"], spec["system"]))
+    case.check(bool(found), "-m", where)
 
 
 def main():
-    words = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    words.add_argument("--vpost", default="target/release/vpost")
-    words.add_argument("--count", type=int, default=100)
-    words.add_argument("--seed", type=int, default=1)
-    words.add_argument("--first", type=int, default=0)
-    words.add_argument("--keep")
-    words.add_argument("--self-test", action="store_true")
-    options = words.parse_args()
-    if options.self_test:
+    given = options.parser(__doc__, 100, "first", vpost="target/release/vpost").parse_args()
+    if given.self_test:
         import self_test
 
-        return self_test.main(options.vpost)
-    return Judge(options).all()
+        return self_test.main(given.vpost)
+    return cases.campaign(given, one)
 
 
 if __name__ == "__main__":

@@ -4,18 +4,12 @@ import re
 
 import numpy as np
 
+from common.trial import Trial
+
 import generate
 import judge
 import reader
 from lathe import Lathe
-
-
-class Test:
-    failed = 0
-
-    def ask(self, good, text):
-        self.failed += not good
-        print("%s %s" % ("ok  " if good else "FAIL", text), flush=True)
 
 
 def passes(asked, below=0.0, sign=1.0):
@@ -125,7 +119,7 @@ def names(spec, asked, text, out):
 
 
 def main(vpost):
-    t = Test()
+    t = Trial()
     figures(t)
     for kinds in (("turn-1", "bore-1"), ("turn-2", "bore-2"), ("face-1",), ("face-2",)):
         programs = cases(4, kinds, 4)
@@ -149,8 +143,7 @@ def main(vpost):
             got.append(names(s, a, text, "\n".join(good)))
         t.ask(all(got), "%s: U for X: found %d of %d" % (kinds[0], sum(bool(x) for x in got), len(got)))
     others(t, vpost)
-    print("self-test: %s" % ("%d failed" % t.failed if t.failed else "all as it must be"))
-    return 1 if t.failed else 0
+    return t.status()
 
 
 def others(t, vpost):

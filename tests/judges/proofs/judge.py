@@ -23,20 +23,20 @@ A refusal (status 1) is allowed and counted by its number. Any other status is a
 1 something, 2 usage.
 """
 
-import argparse
 import collections
 import json
 import math
 import os
 import re
-import subprocess
 import sys
-import tempfile
 import time
 
-import numpy as np
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from common import cases, folders, options  # noqa: E402  before numpy
+from common.command import code, run  # noqa: E402
+
+import numpy as np  # noqa: E402
 
 import generate  # noqa: E402
 import match  # noqa: E402
@@ -175,42 +175,42 @@ def first_play(spec, text, start_at):
 def run_pair(vpost, spec, text, start_at, folder):
     """Corrects and checks one program; a dictionary of what came of it."""
     path = profiles.write(spec, folder)
-    source, target = os.path.join(folder, "in.ngc"), os.path.join(folder, "out.ngc")
-    with open(source, "w", encoding="ascii") as out:
-        out.write(text)
-    options = ["-m", path, "--zero", "true"] + profiles.conditions(spec)
+    source, target = folders.put(folder, "in.ngc", text), os.path.join(folder, "out.ngc")
+    flags = ["-m", path, "--zero", "true"] + profiles.conditions(spec)
     if start_at:
-        options += ["--start-at", ",".join(f"{v:.6f}" for v in start_at)]
-    command = [vpost, source, *options, "-o", target, "--summary", os.path.join(folder, "summary.json")]
-    with open(os.path.join(folder, "command.txt"), "w", encoding="ascii") as out:
-        out.write(" ".join([command[0]] + [os.path.basename(c) if c.startswith(folder) else c for c in command[1:]]) + "\n")
-    with open(os.path.join(folder, "machine.json"), "w", encoding="ascii") as out:
-        json.dump({"spec": spec, "start_at": start_at}, out, indent=1)
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
-    result = {"status": done.returncode, "stderr": done.stderr}
-    if done.returncode:
+        flags += ["--start-at", ",".join(f"{v:.6f}" for v in start_at)]
+    words = [source, *flags, "-o", target, "--summary", os.path.join(folder, "summary.json")]
+    folders.put(folder, "command.txt", " ".join([vpost, *(os.path.basename(w) if w.startswith(folder) else w for w in words)]) + "\n")
+    folders.put(folder, "machine.json", json.dumps({"spec": spec, "start_at": start_at}, indent=1))
+    status, _, errors = run(vpost, *words, seconds=300)
+    result = {"status": status, "stderr": errors}
+    if status:
         return result
     with open(target, encoding="ascii") as file:
         result["out"] = file.read()
     with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
         result["summary"] = json.load(file)
-    check = subprocess.run([vpost, "check", source, target, *options, "--json"], capture_output=True, text=True, timeout=300)
-    result["check"] = json.loads(check.stdout) if check.stdout.strip() else {"passed": None, "stderr": check.stderr}
+    _, said, errors = run(vpost, "check", source, target, *flags, "--json", seconds=300)
+    result["check"] = json.loads(said) if said.strip() else {"passed": None, "stderr": errors}
     return result
 
 
-def judge_pair(vpost, seed, number, folder):
-    """The verdict on one pair."""
+def judge_pair(task):
+    """The verdict on one pair, whose folder stays where something is found."""
+    vpost, seed, number, keep = task
     kind, spec, text, start_at = generate.pair(seed, number)
-    return assess(kind, number, spec, text, start_at, run_pair(vpost, spec, text, start_at, folder))
+    folder = os.path.join(keep, f"{seed}-{number}")
+    os.makedirs(folder, exist_ok=True)
+    verdict = assess(kind, number, spec, text, start_at, run_pair(vpost, spec, text, start_at, folder))
+    folders.settle(folder, json.dumps(verdict, indent=1, default=str) if verdict["problems"] else "")
+    return verdict
 
 
 def assess(kind, number, spec, text, start_at, result):
     """The verdict on what the command made of a program."""
     verdict = {"kind": kind, "number": number, "problems": [], "tolerance_um": spec["tolerance_um"]}
     if result["status"] == 1:
-        code = re.search(r"VP\d{4}", result["stderr"])
-        verdict["refused"] = code.group(0) if code else "?"
+        verdict["refused"] = code(result["stderr"], "?")
         verdict["message"] = result["stderr"].strip().splitlines()[0] if result["stderr"].strip() else ""
         return verdict
     if result["status"]:
@@ -254,45 +254,22 @@ def assess(kind, number, spec, text, start_at, result):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--vpost", default="vpost")
-    parser.add_argument("--count", type=int, default=500)
-    parser.add_argument("--first", type=int, default=0, help="number of the first pair; a multiple of 14 with --kind")
-    parser.add_argument("--kind", choices=generate.KINDS, help="only this kind of pair")
-    parser.add_argument("--seed", default="1")
-    parser.add_argument("--jobs", type=int, default=1, choices=[1], help="one process at a time")
-    parser.add_argument("--keep", metavar="DIR", help="reproducers of failures go here; a temporary folder if not given")
-    parser.add_argument("--json", metavar="FILE", help="write all verdicts")
-    parser.add_argument("--self-test", action="store_true")
-    arguments = parser.parse_args()
-    if arguments.self_test:
+    words = options.parser(__doc__, 500, "first", "jobs", "json", vpost="vpost", seed="1")
+    words.add_argument("--kind", choices=generate.KINDS, help="only this kind of pair; --first is then a multiple of 14")
+    given = words.parse_args()
+    if given.self_test:
         import self_test
 
         return self_test.run()
-    keep = arguments.keep or tempfile.mkdtemp(prefix="proofs-")
-    os.makedirs(keep, exist_ok=True)
-    verdicts, begun = [], time.time()
-    numbers = range(arguments.first, arguments.first + arguments.count)
-    if arguments.kind:
+    keep = folders.of_findings(given.keep, "proofs-")
+    numbers, begun = cases.asked(given), time.time()
+    if given.kind:
         step = len(generate.KINDS)
-        numbers = [arguments.first + k * step + generate.KINDS.index(arguments.kind) for k in range(arguments.count)]
-    for number in numbers:
-        folder = os.path.join(keep, f"{arguments.seed}-{number}")
-        os.makedirs(folder, exist_ok=True)
-        verdict = judge_pair(arguments.vpost, arguments.seed, number, folder)
-        verdicts.append(verdict)
-        if verdict["problems"]:
-            with open(os.path.join(folder, "found.txt"), "w", encoding="utf-8") as out:
-                out.write(json.dumps(verdict, indent=1, default=str) + "\n")
-            for name, message in verdict["problems"]:
-                print(f"{verdict['kind']} {number} {name}: {message}", flush=True)
-        else:
-            for file in os.listdir(folder):
-                os.remove(os.path.join(folder, file))
-            os.rmdir(folder)
-    if arguments.json:
-        with open(arguments.json, "w", encoding="utf-8") as out:
-            json.dump(verdicts, out, indent=1, default=str)
+        numbers = [given.first + k * step + generate.KINDS.index(given.kind) for k in range(given.count)]
+    verdicts = cases.in_order(judge_pair, [(given.vpost, given.seed, n, keep) for n in numbers], given.jobs)
+    verdicts = cases.shown(verdicts, lambda v: (f"{v['kind']} {v['number']}", v["problems"]))
+    if given.json:
+        folders.put(".", given.json, json.dumps(verdicts, indent=1, default=str))
     return report(verdicts, keep, time.time() - begun)
 
 

@@ -13,7 +13,9 @@ import json
 import os
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+from common import folders  # noqa: E402
 
 import judge  # noqa: E402
 import reader  # noqa: E402
@@ -101,8 +103,7 @@ def main():
                     spec, again, changed = less, True, True
                     break
     found = problems(arguments.vpost, spec, lines, start_at, small)
-    with open(os.path.join(small, "found.txt"), "w", encoding="utf-8") as out:
-        out.write(json.dumps(found, indent=1) + "\n")
+    folders.put(small, "found.txt", json.dumps(found, indent=1) + "\n")
     for name in ("in.ngc", "out.ngc", "machine.toml", "command.txt", "found.txt"):
         with open(os.path.join(small, name), encoding="utf-8") as file:
             print(f"--- {name}\n{file.read()}", end="")

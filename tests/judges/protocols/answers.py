@@ -5,8 +5,9 @@ import io
 import json
 import math
 import re
-import subprocess
 import time
+
+from common.command import ask, run
 
 from machine import AXES
 
@@ -81,11 +82,7 @@ def diagnose(vpost, folder, holdout=None, tag="plain"):
     for name in (f"{tag}.json", f"{tag}.toml"):
         (folder / name).unlink(missing_ok=True)
     begun = time.perf_counter()
-    try:
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
-        status, messages, out = done.returncode, done.stderr, done.stdout
-    except subprocess.TimeoutExpired:
-        status, messages, out = 124, "no end after 300 s", ""
+    status, out, messages = ask(*command, folder=folder, seconds=300)
     seconds = time.perf_counter() - begun
     (folder / f"{tag}.txt").write_text(f"exit status {status}\n{out}\n{messages}")
 
@@ -103,10 +100,9 @@ def predict(vpost, folder, profile, rows, tool):
         lines.append(",".join(f"{v:.9g}" for v in (*row.q, *row.dirs, *(row.tool or tool))))
     (folder / "points.csv").write_text("\n".join(lines) + "\n")
     for extra in ([], ["--at", CONDITIONS]):
-        done = subprocess.run([vpost, "predict", "points.csv", "-m", profile, *extra], cwd=folder, capture_output=True,
-                              text=True, timeout=120)
-        if done.returncode == 0:
-            table = csv.DictReader(io.StringIO(done.stdout))
+        done = run(vpost, "predict", "points.csv", "-m", profile, *extra, folder=folder, seconds=120)
+        if done.status == 0:
+            table = csv.DictReader(io.StringIO(done.output))
             return [[float(line[f"d{k}_um"]) for k in "xyz"] for line in table]
     return None
 

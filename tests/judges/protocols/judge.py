@@ -1,9 +1,7 @@
 #!/usr/bin/env python3
 """Judge of `vpost diagnose` on the protocols of shops. See README.md."""
 
-import argparse
 import json
-import multiprocessing
 import random
 import shutil
 import sys
@@ -12,7 +10,9 @@ import time
 from pathlib import Path
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+sys.path.insert(1, str(Path(__file__).resolve().parents[1]))
+
+from common import cases, options  # noqa: E402
 
 import answers  # noqa: E402
 import design  # noqa: E402
@@ -160,16 +160,8 @@ def many_rows(vpost):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--vpost", help="the binary to judge")
-    parser.add_argument("--count", type=int, default=6, help="machines of each kind")
-    parser.add_argument("--first", type=int, default=0, help="number of the first machine")
-    parser.add_argument("--seed", default="1")
+    parser = options.parser(__doc__, 6, "first", "jobs", "json", vpost="", seed="1")
     parser.add_argument("--only", default="", help="kinds, by commas")
-    parser.add_argument("--keep", help="folder for failures")
-    parser.add_argument("--json", help="write every answer's flags")
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--self-test", action="store_true", help="made-up answers: does the judge find what is wrong?")
     given = parser.parse_args()
     if given.self_test:
         import self_test
@@ -177,22 +169,12 @@ def main():
             return 1
         if not given.vpost:
             return 0
-    if not given.vpost:
-        parser.error("--vpost is missing")
     kinds = [k for k in given.only.split(",") if k] or list(KINDS)
     unknown = sorted(set(kinds) - set(KINDS))
     if unknown:
         parser.error(f"no such kind: {', '.join(unknown)}; there are {', '.join(KINDS)}")
-    if given.keep:
-        Path(given.keep).mkdir(parents=True, exist_ok=True)
-    vpost = str(Path(given.vpost).resolve())
-    numbers = range(given.first, given.first + given.count)
-    tasks = [(kind, given.seed, n, vpost, given.keep) for kind in kinds for n in numbers]
-    if given.jobs > 1:
-        with multiprocessing.Pool(given.jobs) as pool:
-            results = pool.map(one, tasks, chunksize=1)
-    else:
-        results = [one(task) for task in tasks]
+    vpost = options.command(parser, given.vpost)[0]
+    results = list(cases.in_order(one, [(kind, given.seed, n, vpost, given.keep) for kind in kinds for n in cases.asked(given)], given.jobs))
     if given.json:
         Path(given.json).write_text(json.dumps(results, indent=1) + "\n")
     missed = table.show(results, VARIANTS)

@@ -24,16 +24,11 @@ class Machine:
             return tuple(None if v is None else m for v, m in zip(q, moved))
         return tuple(q[i] + self.shift[i] + sum(self.slope[i][j] * q[j] for j in range(3)) for i in range(3))
 
-    def tables(self):
-        """{axis: (header, rows)} of the profile's error tables."""
-        found = {}
-        for j, axis in enumerate("XYZ"):
-            rows = []
-            for at in (-20000.0, 0.0, 20000.0):
-                e = [1000 * (self.slope[i][j] * at + (self.shift[i] if i == j else 0.0)) for i in range(3)]
-                rows.append(f"{at:g},{e[0]:.6f},{e[1]:.6f},{e[2]:.6f}")
-            found[axis] = "position_mm," + ",".join(f"E{i}{axis}_um" for i in "XYZ") + "\n" + "\n".join(rows) + "\n"
-        return found
+    def table(self, axis):
+        """(places, errors in X, Y and Z, um) of the profile's error table of an axis."""
+        j, places = "XYZ".index(axis), (-20000.0, 0.0, 20000.0)
+        shifts = [self.shift[i] if i == j else 0.0 for i in range(3)]
+        return places, [[1000 * (self.slope[i][j] * at + shifts[i]) for i in range(3)] for at in places]
 
 
 SHIFTED = Machine("shifted", (0.004, -0.003, 0.002), [[0.0] * 3] * 3, 0.0011)

@@ -4,8 +4,10 @@ A program is a row of snippets; most go on from wherever the one before has left
 control allows is judged by the interpreter, which refuses to read the others.
 """
 
+from writing import Writing
 
-class Mill:
+
+class Mill(Writing):
     """Writes programs of one dialect."""
 
     ALL = {
@@ -65,9 +67,6 @@ class Mill:
     def feed(self):
         value = self.rng.choice((80, 100, 150, 200, 300, 450))
         return f"F{value / 25.4:.2f}" if self.inch else f"F{value}."
-
-    def p(self, chance):
-        return self.rng.random() < chance
 
     def axis_words(self, axes, low=-60, high=60):
         return " ".join(self.n(low, high, a) for a in axes)
@@ -129,11 +128,6 @@ class Mill:
             self.say(f"G90 G0 {self.axis_words('XY')} {self.n(45, 80, 'Z')}")
         else:
             self.say(f"G0 {self.axis_words('XY')} {self.n(45, 80, 'Z')}")
-
-    def abs(self):
-        if not self.absolute:
-            self.absolute = True
-            self.say("G90")
 
     def snippet(self):
         kinds = [k for k in self.kinds if self.allowed(k)]

@@ -1,16 +1,15 @@
 """Random programs of Fanuc lathes, systems A and B."""
 
+from writing import Writing
 
-class LatheProgram:
+
+class LatheProgram(Writing):
     KINDS = dict(moves=4, arcs=2, corners=4, angles=3, passes=4, flow=3, faces=2, threads=1, holes=4, rough=4, pattern=2, face_rough=2,
                  grooves=2, sub=2, loop=2, tool=1, offset=1, misc=1, home=1, lead=1)
 
     def __init__(self, rng, system):
         self.rng, self.system, self.lines, self.tail = rng, system, [], []
         self.number, self.depth, self.variable, self.absolute = 10, 0, 100, True
-
-    def p(self, chance):
-        return self.rng.random() < chance
 
     def n(self, low, high, letter="", digits=None):
         value = round(self.rng.uniform(low, high), self.rng.choice((0, 0, 1, 2)) if digits is None else digits)
@@ -49,11 +48,6 @@ class LatheProgram:
     def here(self, x=None):
         self.abs()
         self.say(f"G0 {self.n(40, 90, 'X') if x is None else x} {self.n(2, 8, 'Z')}")
-
-    def abs(self):
-        if not self.absolute:
-            self.absolute = True
-            self.say("G90")
 
     def place(self, axes, low=20, high=70):
         """X or U, Z or W."""
@@ -278,44 +272,27 @@ class LatheProgram:
         lines.append(f"N{q} X{x}.")
         return p, q, lines, top + r.randint(1, 6), 2
 
-    def rough(self):
-        r = self.rng
+    def multiple(self, axis, code, first):
+        """A roughing cycle in two blocks; `first`: the words of the first one."""
         self.abs()
-        p, q, lines, x, z = self.contour("X")
+        p, q, lines, x, z = self.contour(axis)
         self.say(f"G0 X{x}. Z{z}.")
-        self.say(f"G71 U{self.n(1, 3, digits=1)} R{self.n(0.3, 1, digits=1)}")
+        self.say(f"{code} {first()}")
         allowance = f" U{self.n(0.2, 0.8, digits=1)} W{self.n(0.05, 0.2, digits=2)}" if self.p(0.8) else ""
-        self.say(f"G71 P{p} Q{q}{allowance} {self.feed()}")
+        self.say(f"{code} P{p} Q{q}{allowance} {self.feed()}")
         self.lines += lines
         if self.p(0.6):
             self.say(f"G70 P{p} Q{q}")
         self.behind()
+
+    def rough(self):
+        self.multiple("X", "G71", lambda: f"U{self.n(1, 3, digits=1)} R{self.n(0.3, 1, digits=1)}")
 
     def pattern(self):
-        r = self.rng
-        self.abs()
-        p, q, lines, x, z = self.contour("X")
-        self.say(f"G0 X{x}. Z{z}.")
-        self.say(f"G73 U{self.n(2, 6, digits=1)} W{self.n(0.5, 2, digits=1)} R{r.randint(2, 4)}")
-        allowance = f" U{self.n(0.2, 0.8, digits=1)} W{self.n(0.05, 0.2, digits=2)}" if self.p(0.8) else ""
-        self.say(f"G73 P{p} Q{q}{allowance} {self.feed()}")
-        self.lines += lines
-        if self.p(0.6):
-            self.say(f"G70 P{p} Q{q}")
-        self.behind()
+        self.multiple("X", "G73", lambda: f"U{self.n(2, 6, digits=1)} W{self.n(0.5, 2, digits=1)} R{self.rng.randint(2, 4)}")
 
     def face_rough(self):
-        r = self.rng
-        self.abs()
-        p, q, lines, x, z = self.contour("Z")
-        self.say(f"G0 X{x}. Z{z}.")
-        self.say(f"G72 W{self.n(1, 3, digits=1)} R{self.n(0.3, 1, digits=1)}")
-        allowance = f" U{self.n(0.2, 0.8, digits=1)} W{self.n(0.05, 0.2, digits=2)}" if self.p(0.8) else ""
-        self.say(f"G72 P{p} Q{q}{allowance} {self.feed()}")
-        self.lines += lines
-        if self.p(0.6):
-            self.say(f"G70 P{p} Q{q}")
-        self.behind()
+        self.multiple("Z", "G72", lambda: f"W{self.n(1, 3, digits=1)} R{self.n(0.3, 1, digits=1)}")
 
     def grooves(self):
         r = self.rng
@@ -354,17 +331,7 @@ class LatheProgram:
         self.say(self.rng.choice(("M8", "M9", "S1200", "G4 P500", "M1")))
 
     def body(self):
-        was, self.lines = self.lines, []
-        start = self.absolute
-        self.depth += 1
-        for _ in range(self.rng.randint(1, 2)):
-            self.snippet({k: 1 for k in ("moves", "arcs", "corners", "passes", "holes", "faces", "angles", "grooves")})
-        self.depth -= 1
-        if self.absolute != start:
-            self.absolute = start
-            self.lines.append("G90" if start else "G91")
-        body, self.lines = self.lines, was
-        return body
+        return self.body_of("moves", "arcs", "corners", "passes", "holes", "faces", "angles", "grooves")
 
     def sub(self):
         name = 1000 + self.label()

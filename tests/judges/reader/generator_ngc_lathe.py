@@ -1,15 +1,14 @@
 """Random programs of LinuxCNC lathes; read by rs274 alone."""
 
+from writing import Writing
 
-class NgcLatheProgram:
+
+class NgcLatheProgram(Writing):
     KINDS = dict(moves=4, arcs=3, rough=4, face=2, thread=1, sync=1, loop=2, sub=2, diameter=1, shift=1, misc=1)
 
     def __init__(self, rng, include=None):
         self.rng, self.lines, self.number, self.depth = rng, [], 100, 0
         self.absolute, self.how, self.variable = True, "G7", 100
-
-    def p(self, chance):
-        return self.rng.random() < chance
 
     def n(self, low, high, letter="", digits=None):
         value = round(self.rng.uniform(low, high), self.rng.choice((0, 1, 2)) if digits is None else digits)
@@ -47,11 +46,6 @@ class NgcLatheProgram:
     def here(self):
         self.abs()
         self.say(f"G0 {self.x(70, 110)} {self.n(3, 8, 'Z')}")
-
-    def abs(self):
-        if not self.absolute:
-            self.absolute = True
-            self.say("G90")
 
     def places(self, axes):
         if self.absolute:

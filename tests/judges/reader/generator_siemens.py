@@ -1,9 +1,11 @@
 """Random programs of Sinumerik mills."""
 
-import os
+from common import folders
+
+from writing import Writing
 
 
-class SiemensMill:
+class SiemensMill(Writing):
     KINDS = dict(moves=5, arcs=4, holes=6, modal=7, corners=4, stairs=2, frame=5, offsets=2, loop=3, jump=1, sub=3, machine=1,
                  units=1, misc=1, tool=1, variables=2, refused=0.15)
 
@@ -12,9 +14,6 @@ class SiemensMill:
         self.absolute, self.plane, self.inch = True, 17, False
         self.depth, self.number, self.variable, self.inside, self.tooled = 0, 0, 10, False, False
         self.files, self.rapid = {}, True
-
-    def p(self, chance):
-        return self.rng.random() < chance
 
     def n(self, low, high, letter="", digits=None):
         value = self.rng.uniform(low, high)
@@ -74,11 +73,6 @@ class SiemensMill:
                  and not (self.inside and k in ("frame", "offsets", "machine", "units", "tool"))]
         name = self.rng.choices(names, [self.KINDS[k] for k in names])[0]
         getattr(self, name)()
-
-    def abs(self):
-        if not self.absolute:
-            self.absolute = True
-            self.say("G90")
 
     def here(self):
         self.absolute or self.say("G90")
@@ -215,8 +209,7 @@ class SiemensMill:
         name = f"L{100 + len(self.files)}"
         self.files[name] = None
         body = [self.places(self.some(p + q)) for _ in range(self.rng.randint(1, 3))]
-        with open(os.path.join(self.folder, f"{name}.SPF"), "w") as f:
-            f.write("\n".join(body + ["M17"]) + "\n")
+        folders.put(self.folder, f"{name}.SPF", "\n".join(body + ["M17"]) + "\n")
         self.say(name + self.rng.choice(("", "", " P2")))
 
     def stairs(self):
@@ -390,8 +383,7 @@ class SiemensMill:
         if self.p(0.4) and not self.inch:
             self.variable += 1
             body += [f"FOR R{self.variable}=1 TO {self.rng.randint(1, 3)}", f"G1 X=R{self.variable}*4 F200", "ENDFOR"]
-        with open(os.path.join(self.folder, f"{name}.SPF"), "w") as f:
-            f.write("\n".join(body + [self.rng.choice(("M17", "RET"))]) + "\n")
+        folders.put(self.folder, f"{name}.SPF", "\n".join(body + [self.rng.choice(("M17", "RET"))]) + "\n")
         count = self.rng.choice((1, 1, 2, 3))
         self.say(name + (f" P{count}" if count > 1 else ""))
         if self.p(0.3):

@@ -52,14 +52,8 @@ class SiemensTurnProgram(SiemensMill):
         return " ".join(self.step(a, 6) if self.p(0.002) else
                         (self.n(low, high, "X") if a == "X" else self.n(-60, 5, "Z")) for a in axes)
 
-    def moves(self):
-        r = self.rng
-        for _ in range(r.randint(1, 4)):
-            code = r.choice(("G0", "G1", "G1", ""))
-            if self.p(0.25):
-                self.absolute = not self.absolute
-                code = f"{'G90' if self.absolute else 'G91'} {code or 'G1'}"
-            self.say(f"{code} {self.places(r.choice(('X', 'Z', 'XZ')))} {self.feed() if self.p(0.3) else ''}".strip())
+    def some(self):
+        return self.rng.choice(("X", "Z", "XZ"))
 
     def arcs(self):
         r = self.rng
@@ -115,17 +109,7 @@ class SiemensTurnProgram(SiemensMill):
         self.say(f"{r.choice(('G0', 'G1'))} {how}")
 
     def body(self):
-        was, self.lines = self.lines, []
-        start = self.absolute
-        self.depth += 1
-        for _ in range(self.rng.randint(1, 2)):
-            self.snippet({k: 1 for k in ("moves", "arcs", "variables")})
-        self.depth -= 1
-        if self.absolute != start:
-            self.absolute = start
-            self.lines.append("G90" if start else "G91")
-        body, self.lines = self.lines, was
-        return body
+        return self.body_of("moves", "arcs", "variables")
 
     def jump(self):
         r = self.rng

@@ -3,73 +3,30 @@
     python3 judge.py --vpost target/release/vpost --count 300 --seed 1 [--dialect fanuc] [--keep DIR]
 """
 
-import argparse
 import collections
 import os
 import random
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 
-import compare
-import readers
-import rs274
-from core import Invalid
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-PROFILE = """format = 1
-name = "Judge's mill (invented)"
-control = "{dialect}"
-chain = "[w X Y b Z t]"
-[axis.X]
-travel_mm = [-20000, 20000]
-resolution_mm = 0.0001
-errors = "{machine}_x.csv"
-[axis.Y]
-travel_mm = [-20000, 20000]
-resolution_mm = 0.0001
-errors = "{machine}_y.csv"
-[axis.Z]
-travel_mm = [-20000, 20000]
-resolution_mm = 0.0001
-errors = "{machine}_z.csv"
-[tool]
-lengths_mm = {{ H1 = 120.0, H2 = 80.5, H7 = 95.25 }}
-[program]
-zero = "true"
-[work_offsets_mm]
-{offsets}
-"""
-LATHE = """format = 1
-name = "Judge's lathe (invented)"
-control = "{control}"
-chain = "[w S b Z X t]"
-[program]
-zero = "true"
-x = "diameter"
-{system}
-[axis.X]
-travel_mm = [-20000, 20000]
-resolution_mm = 0.0001
-errors = "{machine}_lx.csv"
-[axis.Z]
-travel_mm = [-20000, 20000]
-resolution_mm = 0.0001
-errors = "{machine}_lz.csv"
-[tool]
-lengths_mm = {{ H1 = [0, 0, 0], H2 = [5, 0, -7], H3 = [12.5, 0, 41.25] }}
-[work_offsets_mm]
-G54 = [100, 0, 40]
-G55 = [110, 0, 41]
-G56 = [-60, 0, -12]
-"""
-FANUC_LATHE = """g_code_system = "{system}"
-thread_chamfer_leads = 0
-drill_pecks = "full"
-drill_return_mm = 1.0
-drill_r = "way"
-bore_return_percent = 200"""
+from common import command, folders, options  # noqa: E402
+from common.profile import Profile, column  # noqa: E402
+
+import compare  # noqa: E402
+import readers  # noqa: E402
+import rs274  # noqa: E402
+from core import Invalid  # noqa: E402
+
+MILL_LENGTHS = {"H1": 120.0, "H2": 80.5, "H7": 95.25}
+LATHE_LENGTHS = {"H1": [0, 0, 0], "H2": [5, 0, -7], "H3": [12.5, 0, 41.25]}
+LATHE_OFFSETS = {"G54": [100, 0, 40], "G55": [110, 0, 41], "G56": [-60, 0, -12]}
+FANUC_LATHE = {
+    "thread_chamfer_leads": 0, "drill_pecks": "full", "drill_return_mm": 1.0, "drill_r": "way", "bore_return_percent": 200,
+}
 OFFSETS = {"G54": (100, 80, 40), "G55": (110, 75, 41), "G56": (-60, 33, -12), "G57": (15, -140, 22), "G58": (7, 9, 3),
            "G59": (-200, 50, 70)}
 NUMBERED = {"G54.1P1": (21, 31, -9), "G54.1P2": (-44, 12, 5), "G54.1P7": (3, -73, 18)}
@@ -77,30 +34,18 @@ NUMBERED = {"G54.1P1": (21, 31, -9), "G54.1P2": (-44, 12, 5), "G54.1P7": (3, -73
 
 def profile(folder, dialect, machine):
     """The profile of one of the two machines."""
-    if dialect in readers.LATHES:
-        return lathe_profile(folder, dialect, machine)
-    for axis, table in machine.tables().items():
-        with open(os.path.join(folder, f"{machine.name}_{axis.lower()}.csv"), "w") as f:
-            f.write(table)
-    offsets = readers.profile_offsets(dialect, OFFSETS, NUMBERED)
-    path = os.path.join(folder, f"{dialect}_{machine.name}.toml")
-    with open(path, "w") as f:
-        f.write(PROFILE.format(dialect=dialect, machine=machine.name,
-                               offsets="\n".join(f'"{k}" = {list(v)}' for k, v in offsets.items())))
-    return path
-
-
-def lathe_profile(folder, dialect, machine):
-    for axis in "XZ":
-        rows = [row.split(",") for row in machine.tables()[axis].split("\n") if row]
-        with open(os.path.join(folder, f"{machine.name}_l{axis.lower()}.csv"), "w") as f:
-            f.write("\n".join(",".join((row[0], row[1], row[3])) for row in rows) + "\n")
-    system = readers.SYSTEMS.get(dialect)
-    path = os.path.join(folder, f"{dialect}_{machine.name}.toml")
-    with open(path, "w") as f:
-        f.write(LATHE.format(control="fanuc-lathe" if system else dialect, machine=machine.name,
-                             system=FANUC_LATHE.format(system=system) if system else ""))
-    return path
+    turning, system = dialect in readers.LATHES, readers.SYSTEMS.get(dialect)
+    axes, chain = ("XZ", "[w S b Z X t]") if turning else ("XYZ", "[w X Y b Z t]")
+    p = Profile("Judge's lathe (invented)" if turning else "Judge's mill (invented)", "fanuc-lathe" if system else dialect, chain)
+    for axis in axes:
+        p.axis(axis).update(travel_mm=[-20000, 20000], resolution_mm=0.0001)
+        places, rows = machine.table(axis)
+        seen = [[row["XYZ".index(k)] for k in axes] for row in rows]
+        p.errors(axis, places, seen, digits=".6f", columns=[column(f"E{k}{axis}") for k in axes])
+    p["tool"]["lengths_mm"] = LATHE_LENGTHS if turning else MILL_LENGTHS
+    p["work_offsets_mm"].update(LATHE_OFFSETS if turning else readers.profile_offsets(dialect, OFFSETS, NUMBERED))
+    p["program"].update(zero="true", x="diameter" if turning else None, g_code_system=system, **(FANUC_LATHE if system else {}))
+    return str(p.write(folder, f"{dialect}_{machine.name}.toml"))
 
 
 class Judge:
@@ -119,17 +64,14 @@ class Judge:
 
     def correct(self, dialect, text, machine):
         """What vpost writes, and its error code."""
-        source = os.path.join(self.folder, "in.nc")
-        with open(source, "w") as f:
-            f.write(text)
-        done = subprocess.run([self.o.vpost, source, "-m", machine, "-q", "--include", self.include, *readers.FLAGS.get(dialect, [])],
-                              capture_output=True, text=True, timeout=60)
-        if done.returncode == 0:
-            return done.stdout, None
-        code = re.search(r"error\[(VP\d+)\]", done.stderr)
-        if done.returncode not in (1, 2):
-            return None, f"exit {done.returncode}"
-        return None, (code.group(1) if code else f"exit {done.returncode}: {done.stderr[:200]}"), done.stderr
+        source = folders.put(self.folder, "in.nc", text)
+        flags = ["-m", machine, "-q", "--include", self.include, *readers.FLAGS.get(dialect, [])]
+        status, output, errors = command.run(self.o.vpost, source, *flags, seconds=60)
+        if status == 0:
+            return output, None
+        if status not in (1, 2):
+            return None, f"exit {status}"
+        return None, command.code(errors, f"exit {status}: {errors[:200]}"), errors
 
     def one(self, dialect, seed, machines):
         rng = random.Random(f"{dialect} {seed}")
@@ -200,7 +142,7 @@ class Judge:
     def like_rs274(self, seed, text, motions):
         """Whether LinuxCNC's own interpreter reads the program as this one does."""
         counts = self.count["linuxcnc"]
-        theirs, said = rs274.read(self.folder, text)
+        theirs, said = rs274.read(text)
         if theirs is None:
             counts["not taken by rs274"] += 1
             if self.o.invalid:
@@ -229,35 +171,34 @@ class Judge:
         if self.o.keep:
             os.makedirs(self.o.keep, exist_ok=True)
             for end, what in ((".in.nc", text), (".out.nc", output)):
-                with open(os.path.join(self.o.keep, name + end), "w") as f:
-                    f.write(what)
+                folders.put(self.o.keep, name + end, what)
             for called in os.listdir(self.include):
                 shutil.copy(os.path.join(self.include, called), os.path.join(self.o.keep, f"{name}.{called}"))
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--vpost", required=True)
-    parser.add_argument("--count", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--keep")
+    parser = options.parser(__doc__, 100)
     parser.add_argument("--keep-refused", action="store_true")
     parser.add_argument("--dialect", action="append")
     parser.add_argument("--invalid", action="store_true", help="show why the generator's programs were thrown away")
     parser.add_argument("--program", action="append", help="compare this program of one --dialect instead")
-    options = parser.parse_args()
-    judge = Judge(options)
-    for dialect in options.dialect or readers.DIALECTS:
+    given = parser.parse_args()
+    if given.self_test:
+        import self_test
+
+        return self_test.run(given)
+    judge = Judge(given)
+    for dialect in given.dialect or readers.DIALECTS:
         machines = [(m, profile(judge.folder, dialect, m)) for m in compare.machines(dialect in readers.LATHES)]
-        for path in options.program or ():
+        for path in given.program or ():
             judge.given(dialect, path, machines)
-        if options.program:
+        if given.program:
             continue
-        for seed in range(options.seed, options.seed + options.count):
+        for seed in range(given.seed, given.seed + given.count):
             judge.one(dialect, seed, machines)
         counts = judge.count[dialect]
         shown = {k: v for k, v in sorted(counts.items(), key=lambda e: (-e[1], e[0]))
-                 if options.invalid or not k.startswith("invalid")}
+                 if given.invalid or not k.startswith("invalid")}
         print(dialect, shown)
     return 1 if any(c["different"] for c in judge.count.values()) else 0
 

@@ -1,6 +1,5 @@
 """One reader per dialect."""
 
-import tempfile
 
 import rs274
 from core import Invalid
@@ -40,8 +39,7 @@ LATHES = ("fanuc-lathe", "fanuc-lathe-b", "sinumerik-turn", "linuxcnc-lathe")
 
 def read_by_rs274(text):
     """A lathe's program by LinuxCNC's own interpreter; its Y stands still."""
-    with tempfile.TemporaryDirectory(prefix="rs274-") as folder:
-        events, said = rs274.read(folder, text, turning=True)
+    events, said = rs274.read(text, turning=True)
     if events is None:
         raise Invalid(f"rs274: {said}")
     return [e for e in events if not isinstance(e, tuple)]

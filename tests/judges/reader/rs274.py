@@ -4,9 +4,9 @@ It prints four decimals, in the unit in force; work offsets stand in its variabl
 """
 
 import math
-import os
 import re
-import subprocess
+
+from common.interpreter import interpret, parameters
 
 from core import Motion
 from iso import LENGTHS, OFFSETS
@@ -14,33 +14,17 @@ from iso import LENGTHS, OFFSETS
 CALL = re.compile(r"N\S*\s+([A-Z0-9_]+)\((.*)\)\s*$")
 
 
-def files(folder, turning):
-    """The variable file and the tool table."""
-    variables = os.path.join(folder, "judge.var")
-    with open(variables, "w") as f:
-        for k, code in enumerate(sorted(OFFSETS)):
-            for i, value in enumerate(OFFSETS[code]):
-                value = 0.0 if turning and (i == 1 or code > 56) else value
-                f.write(f"{5221 + 20 * k + i}\t{value / 25.4:.10f}\n")
-    table = os.path.join(folder, "judge.tbl")
-    with open(table, "w") as f:
-        for number, length in LENGTHS.items():
-            f.write(f"T{number} P{number} Z{length / 25.4:.10f}\n")
-    return variables, table
-
-
-def read(folder, text, turning=False):
+def read(text, turning=False):
     """(motions, None) or (None, what the interpreter says)."""
-    variables, table = files(folder, turning)
-    path = os.path.join(folder, "judge.ngc")
-    with open(path, "w") as f:
-        f.write(text)
-    home = os.environ.get("READER_HOME", folder)
-    done = subprocess.run(["rs274", "-t", table, "-v", variables, "-g", path], stdin=subprocess.DEVNULL,
-                          capture_output=True, text=True, timeout=60, env={**os.environ, "HOME": home})
-    if "PROGRAM_END" not in done.stdout and "PROGRAM_STOP" not in done.stdout:
-        return None, (done.stderr.strip().split("\n") or ["?"])[-1] + done.stdout[-200:]
-    return calls(done.stdout), None
+    zeros = {}
+    for k, code in enumerate(sorted(OFFSETS)):
+        for i, value in enumerate(OFFSETS[code]):
+            zeros[5221 + 20 * k + i] = 0.0 if turning and (i == 1 or code > 56) else value / 25.4
+    tools = "".join(f"T{number} P{number} Z{length / 25.4:.10f}\n" for number, length in LENGTHS.items())
+    said = interpret(text, tools, parameters(zeros), 60)
+    if not said.whole and "PROGRAM_STOP" not in said.calls:
+        return None, said.trouble(200)
+    return calls(said.calls), None
 
 
 class State:

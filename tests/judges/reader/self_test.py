@@ -1,16 +1,14 @@
 """Does the judge see damage? Right outputs are spoiled one by one: a word moved by 0.05 mm, a line lost, a code changed.
 
-    python3 self_test.py --vpost target/release/vpost --count 20
+    python3 judge.py --vpost target/release/vpost --count 20 --self-test
 
 Damage that changes no motion (a word that repeats where the axis stands, a comment) is known by the interpreter: both
 texts are then the same program to it, and it is counted apart.
 """
 
-import argparse
 import collections
 import random
 import re
-import sys
 
 import compare
 import judge
@@ -39,11 +37,7 @@ def spoil(rng, text):
     return how, "\n".join(lines)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--vpost", required=True)
-    parser.add_argument("--count", type=int, default=20)
-    options = parser.parse_args()
+def run(options):
     options.keep = options.keep_refused = None
     options.invalid = False
     found = collections.Counter()
@@ -68,7 +62,7 @@ def main():
             except (Invalid, ValueError, KeyError):
                 found[how, "no program any more"] += 1
                 continue
-            if compare.compare(machine, right_as_program(right), output, False)[0] is None and repr(right) == repr(output):
+            if compare.compare(machine, right, output, False)[0] is None and repr(right) == repr(output):
                 found[how, "means the same"] += 1
                 continue
             inch = re.search(r"G70|G20|G700", text) is not None
@@ -78,11 +72,3 @@ def main():
                 print(dialect, how, [(a, b) for a, b in zip(answer[0].split("\n"), damaged.split("\n")) if a != b][:1])
     print(dict(found))
     return 1 if any(k[1] == "NOT SEEN" for k in found) else 0
-
-
-def right_as_program(events):
-    return events
-
-
-if __name__ == "__main__":
-    sys.exit(main())

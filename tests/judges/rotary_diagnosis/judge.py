@@ -8,20 +8,20 @@ Exit status 1 where fewer than 95 % of the faults that can be told are named fir
 README.md says what a case is.
 """
 
-import argparse
-import concurrent.futures
 import json
 import math
 import os
 import random
 import shutil
-import subprocess
 import sys
 import tempfile
 
-import numpy as np
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from common import cases, folders, options  # noqa: E402  before numpy
+from common.command import run  # noqa: E402
+
+import numpy as np  # noqa: E402
 
 import machine as model  # noqa: E402
 
@@ -154,17 +154,15 @@ def case(seed, number):
 
 def write(folder, machine, rows, readings, sigma):
     """Profile and measurements."""
-    with open(os.path.join(folder, "machine.toml"), "w", encoding="ascii") as out:
-        out.write(machine.profile())
+    folders.put(folder, "machine.toml", machine.profile())
     used = [a for a in "ABC" if a in machine.rotary]
-    with open(os.path.join(folder, "rows.csv"), "w", encoding="ascii") as out:
-        head = ["run", "x_mm", "y_mm", "z_mm", *(f"{a.lower()}_deg" for a in used), "dx_um", "dy_um", "dz_um", "dir_x", "dir_y", "dir_z", "tool_x_mm", "tool_y_mm", "tool_z_mm", "u_um"]
-        out.write(",".join(head) + "\n")
-        for n in range(len(readings)):
-            rot = [rows["rot"][n][machine.rotary.index(a)] for a in used]
-            cells = [rows["run"][n], *(f"{v:.3f}" for v in rows["q"][n]), *(f"{v:.3f}" for v in rot), *(f"{v:.2f}" for v in readings[n])]
-            cells += [str(int(v)) for v in rows["dirs"][n]] + [f"{v:.1f}" for v in rows["tool"][n]] + [f"{sigma:.2f}"]
-            out.write(",".join(cells) + "\n")
+    head = ["run", "x_mm", "y_mm", "z_mm", *(f"{a.lower()}_deg" for a in used), "dx_um", "dy_um", "dz_um", "dir_x", "dir_y", "dir_z", "tool_x_mm", "tool_y_mm", "tool_z_mm", "u_um"]
+    table = []
+    for n in range(len(readings)):
+        rot = [rows["rot"][n][machine.rotary.index(a)] for a in used]
+        cells = [rows["run"][n], *(f"{v:.3f}" for v in rows["q"][n]), *(f"{v:.3f}" for v in rot), *(f"{v:.2f}" for v in readings[n])]
+        table.append(cells + [str(int(v)) for v in rows["dirs"][n]] + [f"{v:.1f}" for v in rows["tool"][n]] + [f"{sigma:.2f}"])
+    folders.table(os.path.join(folder, "rows.csv"), head, table)
 
 
 def one(arguments):
@@ -173,13 +171,12 @@ def one(arguments):
     os.makedirs(folder, exist_ok=True)
     machine, rows, name, weights, readings, sigma, rivals, snr = case(seed, number)
     write(folder, machine, rows, readings, sigma)
-    with open(os.path.join(folder, "truth.json"), "w", encoding="ascii") as out:
-        json.dump({"effect": name, "coefficients": weights, "sigma_um": sigma, "snr": snr, "rivals": rivals, "chain": machine.chain}, out, indent=1)
-    command = [vpost, "diagnose", os.path.join(folder, "rows.csv"), "-m", os.path.join(folder, "machine.toml"), "--json", os.path.join(folder, "answer.json")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
-    verdict = {"number": number, "effect": name, "chain": machine.chain, "snr": snr, "rivals": rivals, "status": done.returncode}
-    if done.returncode or not os.path.exists(os.path.join(folder, "answer.json")):
-        verdict.update(verdict="refused", causes=[], told=[], message=done.stderr[:300])
+    truth = {"effect": name, "coefficients": weights, "sigma_um": sigma, "snr": snr, "rivals": rivals, "chain": machine.chain}
+    folders.put(folder, "truth.json", json.dumps(truth, indent=1))
+    status, _, errors = run(vpost, "diagnose", "rows.csv", "-m", "machine.toml", "--json", "answer.json", folder=folder, seconds=600)
+    verdict = {"number": number, "effect": name, "chain": machine.chain, "snr": snr, "rivals": rivals, "status": status}
+    if status or not os.path.exists(os.path.join(folder, "answer.json")):
+        verdict.update(verdict="refused", causes=[], told=[], message=errors[:300])
     else:
         with open(os.path.join(folder, "answer.json"), encoding="utf-8") as file:
             answer = json.load(file)
@@ -323,22 +320,14 @@ def self_test(vpost):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--vpost", default="vpost")
-    parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--seed", default="1")
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--keep", metavar="DIR")
-    parser.add_argument("--self-test", action="store_true")
-    arguments = parser.parse_args()
-    vpost = shutil.which(arguments.vpost) or parser.error(f"no command {arguments.vpost}")
-    if arguments.self_test:
+    words = options.parser(__doc__, 200, "first", "jobs", vpost="vpost", seed="1")
+    given = words.parse_args()
+    vpost = options.command(words, given.vpost)
+    if given.self_test:
         return self_test(vpost)
-    keep = arguments.keep or tempfile.mkdtemp(prefix="rotary-diagnosis-")
-    work = [(vpost, arguments.seed, n, keep) for n in range(arguments.first, arguments.first + arguments.count)]
-    with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
-        return report(list(pool.map(one, work)), keep)
+    keep = folders.of_findings(given.keep, "rotary-diagnosis-")
+    work = [(vpost, given.seed, n, keep) for n in cases.asked(given)]
+    return report(list(cases.in_order(one, work, given.jobs)), keep)
 
 
 if __name__ == "__main__":

@@ -9,9 +9,12 @@ The fault is one of the library's names; `columns` are its first-order displacem
 """
 
 import os
-import subprocess
 
 import numpy as np
+
+from common import folders
+from common.command import run
+from common.profile import Profile, column
 
 LOCATIONS = {"A": ("EY0A", "EZ0A", "EB0A", "EC0A"), "B": ("EX0B", "EZ0B", "EA0B", "EC0B"), "C": ("EX0C", "EY0C", "EA0C", "EB0C")}
 CHAINS = ["[w C A b X Y Z t]", "[w C A Y b X Z t]", "[w C B Y b X Z t]", "[w C b X Y Z B t]", "[w A b X Y Z B t]", "[w C Y b X Z A t]", "[w b X Y Z C B t]", "[w X b Y Z C A t]"]
@@ -20,14 +23,16 @@ HALF_MM = 300.0
 
 
 def exp(v):
-    """Rotation matrices (n, 3, 3) of rotation vectors (n, 3)."""
+    """Rotation matrices (n, 3, 3) of rotation vectors (n, 3), by quaternions."""
     v = np.atleast_2d(np.asarray(v, float))
-    angle = np.sqrt((v * v).sum(1))
-    safe = np.where(angle < 1e-14, 1.0, angle)
-    k = np.zeros((len(v), 3, 3))
-    k[:, 1, 0], k[:, 2, 0], k[:, 2, 1] = v[:, 2], -v[:, 1], v[:, 0]
-    k -= np.transpose(k, (0, 2, 1))
-    return np.eye(3) + np.where(angle < 1e-14, 1.0, np.sin(safe) / safe)[:, None, None] * k + (2 * (np.sin(safe / 2) / safe) ** 2)[:, None, None] * (k @ k)
+    half = np.linalg.norm(v, axis=1) / 2
+    w, (x, y, z) = np.cos(half), (v * np.sinc(half / np.pi)[:, None] / 2).T
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return np.moveaxis(np.array(rows), 2, 0)
 
 
 def times(m, x):
@@ -60,20 +65,22 @@ class Machine:
 
     def profile(self, located=()):
         """The machine as it should be; `located`: (name, value) of location errors or squareness to be in it."""
-        text = f'format = 1\nname = "judged"\ncontrol = "fanuc"\nchain = "{self.chain}"\n'
+        p = Profile("judged", "fanuc", self.chain)
         for axis in "XYZ":
-            text += f"\n[axis.{axis}]\ntravel_mm = [-500, 500]\nresolution_mm = 0.001\n"
+            p.axis(axis).update(travel_mm=[-500, 500], resolution_mm=0.001)
         for axis in self.rotary:
-            text += f"\n[rotary.{axis}]\ncentre_mm = [{', '.join(f'{v:.3f}' for v in self.centre[axis])}]\ntravel_deg = [-360, 360]\n"
-            for name, value in located:
-                if name.startswith("rotary.") and name.endswith("0" + axis):
-                    # A tilt is not told without what leans by it; (9): what the axis carries.
-                    text += 'tilt = "body"\n' if name[8] in "ABC" else ""
-                    text += f"{name[7:]}_{'um' if name[8] in 'XYZ' else 'urad'} = {value:.9f}\n"
+            p.axis(axis).update(centre_mm=[round(float(v), 3) for v in self.centre[axis]], travel_deg=[-360, 360])
         for name, value in located:
-            if name.startswith("squareness."):
-                text += f"\n[squareness]\n{ {'XY': 'EC0Y', 'XZ': 'EB0Z', 'YZ': 'EA0Z'}[name[11:]] }_urad = {value:.9f}\n"
-        return text + f"\n[tool]\ndefault_mm = [0.0, 0.0, {-self.tool_mm:.1f}]\n"
+            kind, what = name.split(".")
+            if kind == "squareness":
+                p["squareness"][column({"XY": "EC0Y", "XZ": "EB0Z", "YZ": "EA0Z"}[what])] = round(value, 9)
+            elif what[-1] in self.rotary:
+                p.located(what[-1], {what: round(value, 9)})
+                if what[1] in "ABC":
+                    # A tilt is not told without what leans by it (VP0314); (9): what the axis carries.
+                    p.axis(what[-1])["tilt"] = "body"
+        p["tool"]["default_mm"] = [0.0, 0.0, round(-self.tool_mm, 1)]
+        return p.text()
 
     def command(self, tip, rot, vector):
         """X, Y, Z of an ideal machine that bring the tip there."""
@@ -165,18 +172,16 @@ class Machine:
 
     def against_predict(self, vpost, folder, name, value, rows):
         """Largest difference, um, of this machine from `vpost predict` of a profile with the same error."""
-        profile, points = os.path.join(folder, "m.toml"), os.path.join(folder, "p.csv")
-        with open(profile, "w", encoding="ascii") as out:
-            out.write(self.profile([(name, value)]))
+        profile, points = folders.put(folder, "m.toml", self.profile([(name, value)])), os.path.join(folder, "p.csv")
         used = [a for a in "ABC" if a in self.rotary]
         with open(points, "w", encoding="ascii") as out:
             out.write("x_mm,y_mm,z_mm," + ",".join(f"{a.lower()}_deg" for a in used) + ",tool_x_mm,tool_y_mm,tool_z_mm\n")
             for q, rot, tool in zip(rows["q"], rows["rot"], rows["tool"]):
                 out.write(",".join(f"{v:.4f}" for v in (*q, *(rot[self.rotary.index(a)] for a in used), *tool)) + "\n")
-        done = subprocess.run([vpost, "predict", points, "-m", profile, "-q"], capture_output=True, text=True)
-        if done.returncode:
-            raise SystemExit(done.stderr)
-        lines = done.stdout.split("\n")
+        status, said, errors = run(vpost, "predict", points, "-m", profile, "-q")
+        if status:
+            raise SystemExit(errors)
+        lines = said.split("\n")
         at = [lines[0].split(",").index(n) for n in ("dx_um", "dy_um", "dz_um")]
         found = np.array([[float(line.split(",")[k]) for k in at] for line in lines[1:] if line])
         return float(np.abs(found - self.error(name, [value], rows)).max())

@@ -9,6 +9,9 @@ import zlib
 
 import numpy as np
 
+from common import folders
+from common.profile import Profile
+
 from machine import LOCATIONS, SCALE, Machine, place, unit
 
 CHAINS = {
@@ -212,46 +215,28 @@ class Case:
 
     def write(self, folder):
         os.makedirs(folder, exist_ok=True)
-        save(f"{folder}/rows.csv", *self.rows())
-        save(f"{folder}/held.csv", *self.held())
+        folders.table(f"{folder}/rows.csv", *self.rows())
+        folders.table(f"{folder}/held.csv", *self.held())
         write_profile(self.base, f"{folder}/base.toml")
-
-
-def save(path, head, rows):
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("\n".join([",".join(head)] + [",".join(row) for row in rows]) + "\n")
 
 
 def write_profile(machine, path, located=None, tables=None):
     """The profile of a machine whose rotary axes are described by `location` and `table` (or the `tables` given)."""
-    spec, folder, stem = machine.spec, os.path.dirname(path), os.path.splitext(os.path.basename(path))[0]
-    lines = ["format = 1", 'name = "Judge"', 'control = "linuxcnc"', f'chain = "{spec["chain"]}"']
-
-    def table(name, nodes, rows):
-        file = f"{stem}_{name.lower()}.csv"
-        head = ["position_deg" if name in "ABC" else "position_mm"] + [f"E{c}{name}_{'um' if c in 'XYZ' else 'urad'}" for c in "XYZABC"]
-        save(os.path.join(folder, file), head, [[f"{q:.6f}", *(f"{v:.6f}" for v in row)] for q, row in zip(nodes, rows)])
-        return f'errors = "{file}"'
-
+    spec = machine.spec
+    p = Profile("Judge", "linuxcnc", spec["chain"])
     for name, one in spec["axes"].items():
-        lines += [f"[axis.{name}]", f"travel_mm = {one['travel']}"]
+        p.axis(name)["travel_mm"] = one["travel"]
         if one.get("table"):
-            lines.append(table(name, *one["table"][1:]))
-    lines += ["[squareness]"] + [f"{k} = {v}" for k, v in zip(("EC0Y_urad", "EB0Z_urad", "EA0Z_urad"), spec["squareness_urad"])]
+            p.errors(name, *one["table"][1:], digits=".6f")
+    p["squareness"].update(zip(("EC0Y_urad", "EB0Z_urad", "EA0Z_urad"), spec["squareness_urad"]))
     for name, one in spec["rotary"].items():
-        lines += [f"[rotary.{name}]", f"centre_mm = {one['centre']}", f"travel_deg = {one['travel']}", f'tilt = "{one["tilt"]}"']
-        if "direction" in one:
-            lines.append(f"direction = {one['direction']}")
+        p.axis(name).update(centre_mm=one["centre"], travel_deg=one["travel"], tilt=one["tilt"], direction=one.get("direction"))
         at = dict(one.get("location", {}))
         for k in LOCATIONS[name]:
             value = at.get(k, 0.0) + (0 if located is None else located.get(name, np.zeros(6))[place(k)] / SCALE[place(k)])
-            if value:
-                lines.append(f"{k}_{unit(k)} = {value:.6f}")
-        if tables and name in tables:
-            lines.append(table(name, *tables[name]))
-        elif one.get("table"):
-            lines.append(table(name, *one["table"]))
-    lines += ["[tool]", "default_mm = [0, 0, -150]"]
-    with open(path, "w", encoding="ascii") as out:
-        out.write("\n".join(lines) + "\n")
-    return path
+            p.located(name, {k: round(float(value), 6)} if value else {})
+        table = tables[name] if tables and name in tables else one.get("table")
+        if table:
+            p.errors(name, *table, digits=".6f")
+    p["tool"]["default_mm"] = [0, 0, -150]
+    return str(p.write(os.path.dirname(path), os.path.basename(path)))

@@ -9,25 +9,20 @@
 README.md says what is asked. Exit status: 0 nothing found, 1 something, 2 usage.
 """
 
-import argparse
 import collections
-import concurrent.futures
 import csv
 import io
 import os
 import re
 import shlex
-import shutil
-import subprocess
 import sys
-import tempfile
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+from common import cases, folders, options  # noqa: E402  before numpy
+from common.command import code, run, short  # noqa: E402
 
 import numpy as np  # noqa: E402
-
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, HERE)
 
 import answer  # noqa: E402
 import generate  # noqa: E402
@@ -38,11 +33,7 @@ RATIO = 2.0  # RMS at unseen places against what the noise allows: one case
 TYPICAL = 1.3  # the median of a kind
 FLOOR_UM = 0.25
 RARE = 1e-3
-
-
-def run(vpost, folder, arguments):
-    done = subprocess.run([*vpost, *arguments], cwd=folder, capture_output=True, timeout=300)
-    return done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
+SECONDS = 300  # for one answer
 
 
 def files(folder):
@@ -60,8 +51,8 @@ def predicted(vpost, folder, profile, places):
     """(n, 3): the errors of a profile at places, um, as the command says them."""
     q, rot, tool, case = places
     head, rows = case.table(q, rot, tool, np.zeros(len(q), int))
-    generate.save(f"{folder}/places.csv", head[1:], [row[1:] for row in rows])
-    status, out, error = run(vpost, folder, ["predict", "places.csv", "-m", profile])
+    folders.table(f"{folder}/places.csv", head[1:], [row[1:] for row in rows])
+    status, out, error = run(vpost, "predict", "places.csv", "-m", profile, folder=folder, seconds=SECONDS)
     if status:
         raise ValueError(f"predict: {error[:300]}")
     return np.array([[float(row[k]) for k in ("dx_um", "dy_um", "dz_um")] for row in csv.DictReader(io.StringIO(out))])
@@ -73,26 +64,23 @@ def examine(case, folder, vpost):
     case.write(folder)
     sphere = ["--sphere"] if case.kind == "sphere" else []
     arguments = ["calibrate", "rtest", "rows.csv", *sphere, "-m", "base.toml", "-o", "out.toml", "--json", "found.json", "--holdout", "held.csv", "--date", "2026-01-02", "--temperature", "20", "--instrument", "R-test"]
-    with open(f"{folder}/command.txt", "w", encoding="utf-8") as file:
-        file.write(shlex.join(["vpost", *arguments]) + "\n")
-    status, out, error = run(vpost, folder, arguments)
+    folders.put(folder, "command.txt", shlex.join(["vpost", *arguments]) + "\n")
+    status, out, error = run(vpost, *arguments, folder=folder, seconds=SECONDS)
     figures["status"] = status
-    with open(f"{folder}/report.txt", "w", encoding="utf-8") as file:
-        file.write(out + error)
+    folders.put(folder, "report.txt", out + error)
     if status not in (0, 1, 2) or "panicked" in error:
         return [("crash", f"exit status {status}: {error[-300:]}")], figures
     if status:
-        code = re.search(r"VP\d+", error)
-        figures["refused"] = code[0] if code else "?"
+        figures["refused"] = code(error, "?")
         if os.path.exists(f"{folder}/out.toml"):
             wrong.append(("wrote", "refused and yet written"))
         if case.kind == "one-ball" and case.truth.head and "beside one line" in error:
             return wrong, figures
-        return wrong + [("refused", error[:300].replace("\n", " | "))], figures
+        return wrong + [("refused", short(error))], figures
     if case.kind == "one-ball" and case.truth.head:
         wrong.append(("answered", "a head read with one ball"))
     first = files(folder)
-    if run(vpost, folder, arguments) != (status, out, error) or files(folder) != first:
+    if run(vpost, *arguments, folder=folder, seconds=SECONDS) != (status, out, error) or files(folder) != first:
         wrong.append(("bytes", "the second run gives other bytes"))
     for name, content in [("report", out.encode()), *first.items()]:
         if re.search(rb"\bNaN\b|\binf(inity)?\b|Infinity", content, re.I):
@@ -177,13 +165,7 @@ def examine(case, folder, vpost):
 def one(arguments):
     vpost, seed, number, chain, kind, folder = arguments
     case = generate.Case(seed, number, chain, kind)
-    try:
-        wrong, figures = examine(case, folder, vpost)
-    except subprocess.TimeoutExpired:
-        wrong, figures = [("slow", "more than 300 s")], {"covered": []}
-    with open(f"{folder}/found.txt", "w", encoding="utf-8") as file:
-        file.write("".join(f"{name}: {words}\n" for name, words in wrong))
-    return case.name, chain, kind, wrong, figures
+    return case.name, chain, kind, *cases.examined(folder, lambda: examine(case, folder, vpost))
 
 
 def report(results):
@@ -196,7 +178,7 @@ def report(results):
     every = []
     for (chain, kind), many in kinds.items():
         good = [f for f in many if "after" in f]
-        inside = [c for f in many for c in f["covered"]]
+        inside = [c for f in many for c in f.get("covered", ())]
         text = f"{chain:11} {kind:10} {len(many):5} {sum('refused' in f for f in many):7} |"
         if good:
             ratio = [f["after"] / max(f["allowed"], 1e-3) for f in good]
@@ -226,32 +208,20 @@ def report(results):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--vpost", default="vpost", help="the command, with words in front of its own where needed")
-    parser.add_argument("--count", type=int, default=72)
-    parser.add_argument("--seed", default="1")
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--chain", choices=list(generate.CHAINS), action="append")
-    parser.add_argument("--kind", choices=list(generate.KINDS), action="append")
-    parser.add_argument("--keep", metavar="DIR", help="all cases go here; a temporary folder if not given")
-    parser.add_argument("--refusals", action="store_true", help="bad input instead")
-    parser.add_argument("--self-test", action="store_true")
-    arguments = parser.parse_args()
-    if arguments.self_test:
+    words = options.parser(__doc__, 72, "first", "jobs", "refusals", vpost="vpost", seed="1")
+    words.add_argument("--chain", choices=list(generate.CHAINS), action="append")
+    words.add_argument("--kind", choices=list(generate.KINDS), action="append")
+    given = words.parse_args()
+    if given.self_test:
         import self_test
 
         return self_test.main()
-    vpost = shlex.split(arguments.vpost)
-    if not shutil.which(vpost[0]):
-        parser.error(f"no command {vpost[0]}")
-    vpost[0] = os.path.abspath(shutil.which(vpost[0]))
-    keep = os.path.abspath(arguments.keep or tempfile.mkdtemp(prefix="rtest-"))
-    if arguments.refusals:
+    vpost, keep = options.command(words, given.vpost), folders.of_findings(given.keep, "rtest-")
+    if given.refusals:
         import refusals
 
-        return refusals.main(vpost, keep, arguments.seed)
-    return judge(vpost, keep, arguments.seed, arguments.first, arguments.count, arguments.chain, arguments.kind, arguments.jobs)
+        return refusals.main(vpost, keep, given.seed)
+    return judge(vpost, keep, given.seed, given.first, given.count, given.chain, given.kind, given.jobs)
 
 
 def judge(vpost, keep, seed, first, count, chains=None, kinds=None, jobs=1):
@@ -262,13 +232,8 @@ def judge(vpost, keep, seed, first, count, chains=None, kinds=None, jobs=1):
         folder = os.path.join(keep, f"{chain}-{kind}-{n}")
         os.makedirs(folder, exist_ok=True)
         work.append((vpost, seed, n, chain, kind, folder))
-    results, found = [], collections.Counter()
-    with concurrent.futures.ProcessPoolExecutor(jobs) as pool:
-        for result in pool.map(one, work):
-            results.append(result)
-            for name, words in result[3]:
-                found[name] += 1
-                print(f"{result[0]} {name}: {words}", flush=True)
+    results = cases.shown(cases.in_order(one, work, jobs), lambda result: (result[0], result[3]))
+    found = collections.Counter(name for result in results for name, _ in result[3])
     for name, words in report(results):
         found[name] += 1
         print(f"!! {name}: {words}")

@@ -11,12 +11,14 @@ import json
 import os
 import sys
 
-import numpy as np
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-import generate
-import machine
-import reference
-from machine import LOCATIONS, SCALE, place, unit
+import numpy as np  # noqa: E402
+
+import generate  # noqa: E402
+import machine  # noqa: E402
+import reference  # noqa: E402
+from machine import SCALE, place, unit  # noqa: E402
 
 
 class Seen:

@@ -1,12 +1,10 @@
 """Bad input: each is refused, or where a measurement is right but poor said, in words about that very mistake, with nothing written."""
 
-import os
-import re
-
 import numpy as np
 
+from common import folders, refusals
+
 import generate
-import judge
 from machine import Machine
 
 # name -> (words, whether it may also be answered and said)
@@ -101,7 +99,7 @@ def prepare(name, folder, seed):
         generate.write_profile(Machine(spec), f"{folder}/base.toml")
         if name == "no-rotary-axis":
             head, rows = drop("a_deg", "c_deg")
-    generate.save(f"{folder}/rows.csv", head, rows)
+    folders.table(f"{folder}/rows.csv", head, rows)
     arguments = ["calibrate", "rtest", "rows.csv", "-m", "base.toml", "-o", "out.toml", "--json", "found.json", "--date", "2026-01-02", "--temperature", "20", "--instrument", "R-test"]
     if name == "sphere-with-deviations":
         arguments.insert(3, "--sphere")
@@ -111,33 +109,6 @@ def prepare(name, folder, seed):
 
 
 def main(vpost, keep, seed="1"):
-    bad, said = 0, {}
-    for name, (words, poor) in CASES.items():
-        folder = os.path.join(keep, name)
-        os.makedirs(folder, exist_ok=True)
-        for file in ("out.toml", "found.json"):
-            if os.path.exists(f"{folder}/{file}"):
-                os.remove(f"{folder}/{file}")
-        status, out, error = judge.run(vpost, folder, prepare(name, folder, seed))
-        first = next((line for line in error.splitlines() if line.startswith("error")), (error or out).strip()[:200])
-        wrong = []
-        if status not in (0, 1, 2) or "panicked" in error:
-            wrong.append(f"exit status {status}")
-        if status == 0 and not poor:
-            wrong.append("taken")
-        if status and not re.search(r"error\[VP\d{4}\]", error) and name != "no-profile":
-            wrong.append("no code")
-        if status and any(os.path.exists(f"{folder}/{f}") for f in ("out.toml", "found.json")):
-            wrong.append("refused and yet written: " + ", ".join(f for f in ("out.toml", "found.json") if os.path.exists(f"{folder}/{f}")))
-        text = error if status else out + error
-        if not re.search(words, text):
-            wrong.append("not a word of it")
-        code = re.search(r"VP\d{4}", error)
-        if status and code and name not in ("no-dz", "no-angle-column", "no-x", "no-deviations", "magnitude-only", "sphere-with-deviations"):
-            said.setdefault((code[0], re.sub(r"[\d.:]+", "#", first)), []).append(name)
-        bad += bool(wrong)
-        print(f"{'WRONG' if wrong else 'ok   '} {name:27} {status} {', '.join(wrong)}{': ' if wrong else ''}{first[:170]}", flush=True)
-    for (code, _), many in said.items():
-        if len(many) > 1:
-            print(f"      one message for {', '.join(many)}: {code}")
-    return int(bool(bad))
+    alike = ("no-dz", "no-angle-column", "no-x", "no-deviations", "magnitude-only", "sphere-with-deviations")
+    files = ["out.toml", "found.json"]
+    return refusals.asked(vpost, keep, CASES, lambda name, folder: prepare(name, folder, seed), files, bare=["no-profile"], alike=alike)

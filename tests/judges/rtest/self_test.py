@@ -68,7 +68,3 @@ def main():
         if wrong:
             print("      " + "\n      ".join(x for x in said.getvalue().splitlines() if " " in x)[:3000])
     return int(bool(bad))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

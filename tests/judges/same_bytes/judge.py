@@ -38,7 +38,9 @@ import tempfile
 import threading
 import time
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+from common import folders  # noqa: E402
 
 import programs  # noqa: E402
 
@@ -316,7 +318,7 @@ def report(comparison, seconds):
 
 def run(arguments):
     before, after = Command("before", arguments.before), Command("after", arguments.after)
-    keep = arguments.keep or tempfile.mkdtemp(prefix="same-bytes-kept-")
+    keep = folders.of_findings(arguments.keep, "same-bytes-kept-")
     comparison, begun = Comparison(before, after, keep, arguments.leave_out, arguments.compare_check), time.time()
     parent = tempfile.mkdtemp(prefix="same-bytes-machines-")
     try:

@@ -9,14 +9,18 @@ Exit status 1 where something is found. What is asked stands in README.md.
 """
 
 import itertools
+import os
 import sys
 
-import numpy as np
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-import plumbing
-import program
-from along import farthest, lengths, without_start
-from reader import Reader, Unreadable, stretches
+from common import cases, command, options  # noqa: E402  before numpy
+
+import numpy as np  # noqa: E402
+
+import program  # noqa: E402
+from along import farthest, lengths, without_start  # noqa: E402
+from reader import Reader, Unreadable, stretches  # noqa: E402
 
 SLACK = 0.06e-3  # of sampling, and of the order of small rotations, mm
 APPROACH, LATE = 1.0, 0.05
@@ -104,51 +108,43 @@ def uncorrected(case):
     return max(float(np.linalg.norm(m.real - case.datums[m.offset].real(case.machine)[0] - m.wanted, axis=1).max()) for m in feeds)
 
 
-def one(task):
-    options, n = task
-    case = program.Case(options.seed, n, options.only)
-    result, text, largest = plumbing.in_folder(options, n, lambda folder: judged(options, case, folder))
-    kinds = {d.kind + (" (%s)" % d.plain if d.plain else "") for d in case.datums.values()} | (
-        {"tip control"} if case.tip_control else set()
-    )
-    figures = {"uncorrected, largest of a program": uncorrected(case) * 1e3}
-    if result == "right":
-        figures["corrected and right, largest of a program"] = largest * 1e3
-    return n, result, text, figures, ["rotary"] * case.rotary + ["play"] * bool(case.spec["play"]) + sorted(kinds)
-
-
-def judged(options, case, folder):
-    flags = program.write(case, folder)
-    (folder / "words.txt").write_text(" ".join(map(str, flags)) + "\n")
-    output, errors = plumbing.corrected(options, folder, flags)
-    if output is None:
-        return *errors, 0.0
-    wrong, largest = compare(case, output, plumbing.microns(errors, "VP0509") or 0.0)
+def one(case):
+    job = program.Case(case.options.seed, case.number, case.options.only)
+    kinds = {d.kind + (" (%s)" % d.plain if d.plain else "") for d in job.datums.values()} | ({"tip control"} if job.tip_control else set())
+    kinds |= {name for name, has in (("rotary", job.rotary), ("play", job.spec["play"])) if has}
+    flags = program.write(job, case.folder)
+    case.write("words.txt", " ".join(map(str, flags)) + "\n")
+    done = case.correct(*flags)
+    if not done:
+        return
+    output, errors = done
+    wrong, largest = compare(job, output, command.microns(errors, "VP0509") or 0.0)
     if wrong:
-        return wrong.split(":")[0], wrong, largest
-    if case.number % 3 == 0:
-        status, _, errors = plumbing.run(options.vpost, "check", folder / "in.nc", folder / "out.nc", *flags)
-        if status:
-            return "check-alarm", plumbing.short(errors), largest
-    return "right", "", largest
+        case.find(wrong.split(":")[0], wrong)
+    elif job.number % 3 == 0:
+        case.check(False, *flags)
+    case.figures["uncorrected, largest of a program, um"] = uncorrected(job) * 1e3
+    if not case.found:
+        case.figures["corrected and right, largest of a program, um"] = largest * 1e3
+    case.tally.update(["right"] * (not case.found) + ["%s, %s" % (w, "wrong" if case.found else "right") for w in kinds])
 
 
 def main():
-    words = plumbing.arguments(__doc__.splitlines()[0])
+    words = options.parser(__doc__, 300, "first", "jobs", "refusals", vpost="target/release/vpost")
+    words.set_defaults(jobs=2)
     words.add_argument(
         "--only", choices=("before",), help="every zero true and nothing said of it, as commands took it that know no touched ones"
     )
-    words.add_argument("--refusals", action="store_true")
-    options = words.parse_args()
-    if options.self_test:
+    given = words.parse_args()
+    if given.self_test:
         import self_test
 
         return self_test.main()
-    if options.refusals:
+    if given.refusals:
         import refusals
 
-        return refusals.main(options.vpost)
-    return plumbing.everything(options, one)
+        return refusals.main(given.vpost)
+    return cases.campaign(given, one)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,8 @@ Conventions are those of docs/equations.md (5) to (9). Places are (n, 3), angles
 
 import numpy as np
 
+from common.profile import Profile, column
+
 LETTER = {"A": (1.0, 0.0, 0.0), "B": (0.0, 1.0, 0.0), "C": (0.0, 0.0, 1.0)}
 LOCATION = {"A": ("EY0A", "EZ0A", "EB0A", "EC0A"), "B": ("EX0B", "EZ0B", "EA0B", "EC0B"), "C": ("EX0C", "EY0C", "EA0C", "EB0C")}
 TRAVEL = 450.0
@@ -151,34 +153,20 @@ def random_machine(rng, rotary, play):
 
 
 def profile(spec, control, folder, offsets, zero=None):
-    """Writes profile and tables. `offsets`: text behind each name; `zero`: of [program], not said if None."""
-    lines = ["format = 1", 'name = "shop"', 'control = "%s"' % control, 'chain = "%s"' % spec["chain"]]
-    for k in "XYZ" + "".join(spec["rotary"]):
-        if k in "XYZ":
-            lines += ["[axis.%s]" % k, "travel_mm = [%r, %r]" % (-TRAVEL, TRAVEL), "resolution_mm = %r" % spec["resolution"]]
-            lines += ["backlash_um = %r" % spec["play"][k]] if k in spec["play"] else []
-        else:
-            r = spec["rotary"][k]
-            lines += ["[rotary.%s]" % k, "centre_mm = %r" % r["centre"], "travel_deg = %r" % r["travel"], 'tilt = "body"']
-            lines += ["%s_%s = %r" % (n, "um" if n[1] in "XYZ" else "urad", v) for n, v in r["location"].items()]
-        if k in spec["tables"]:
-            data = spec["tables"][k]
-            head = (
-                ["position_%s" % ("mm" if k in "XYZ" else "deg")]
-                + ["E%s%s_um" % (x, k) for x in "XYZ"]
-                + ["E%s%s_urad" % (x, k) for x in "ABC"]
-            )
-            rows = [",".join(head)] + [",".join(map(repr, [at] + row)) for at, row in zip(data["at"], data["rows"])]
-            (folder / ("errors_%s.csv" % k)).write_text("\n".join(rows) + "\n")
-            lines.append('errors = "errors_%s.csv"' % k)
-    lines += ["[squareness]"] + ["%s_urad = %r" % x for x in spec["squareness"].items()]
-    lines += ["[tool]", "lengths_mm = { %s }" % ", ".join("%s = %r" % x for x in spec["lengths"].items())]
-    lines += ["radii_mm = { D1 = %r }" % spec["radius"]] if spec.get("radius_known") else []
-    lines += ["[work_offsets_mm]"] + ["%s = %s" % x for x in offsets.items()]
-    lines += ["[correction]", "tolerance_um = %r" % spec["tolerance"]]
-    lines += ["[program]", 'zero = "%s"' % zero] if zero else []
+    """Writes profile and tables. `offsets`: of each name; `zero`: of [program], not said if None."""
+    p = Profile("shop", control, spec["chain"])
+    for k in "XYZ":
+        p.axis(k).update(travel_mm=[-TRAVEL, TRAVEL], resolution_mm=spec["resolution"], backlash_um=spec["play"].get(k))
+    for k, r in spec["rotary"].items():
+        p.axis(k).update(centre_mm=r["centre"], travel_deg=r["travel"], tilt="body")
+        p.located(k, r["location"])
+    for k, data in spec["tables"].items():
+        p.errors(k, data["at"], data["rows"])
+    p["squareness"].update({column(k): v for k, v in spec["squareness"].items()})
+    p["tool"].update(lengths_mm=spec["lengths"], radii_mm={"D1": spec["radius"]} if spec.get("radius_known") else None)
+    p["work_offsets_mm"].update(offsets)
+    p["correction"]["tolerance_um"] = spec["tolerance"]
+    p["program"]["zero"] = zero
     if spec["rotary"]:
-        centres = ", ".join("%s = %r" % (k, r["centre"]) for k, r in spec["rotary"].items())
-        lines += ["[kinematics]", 'straight = "tip"', "centres_mm = { %s }" % centres]
-    (folder / "profile.toml").write_text("\n".join(lines) + "\n")
-    return folder / "profile.toml"
+        p["kinematics"].update(straight="tip", centres_mm={k: r["centre"] for k, r in spec["rotary"].items()})
+    return p.write(folder)

@@ -1,17 +1,13 @@
 """Random jobs of a shop, by seed and number: machine, zeros as they were found, program, and how all that is said."""
 
-import math
 import random
+
+from common.words import number
 
 import machine as machines
 import touch
 
 DIALECTS = ("linuxcnc", "fanuc", "haas", "linuxcnc", "fanuc")
-
-
-def number(v):
-    text = ("%.3f" % v).rstrip("0")
-    return "0." if text == "-0." else text
 
 
 def words(**places):

@@ -32,15 +32,8 @@ class Datum:
     def said(self, plain):
         """What stands in the profile."""
         if plain:
-            return repr(self.at)
-        parts = ["at = %r" % self.at, 'zero = "%s"' % self.zero]
-        return "{ %s }" % ", ".join(parts + (["touched_at = %s" % inline(self.touched_at)] if self.touched_at else []))
-
-
-def inline(value):
-    if isinstance(value, dict):
-        return "{ %s }" % ", ".join("%s = %s" % (k, inline(v)) for k, v in value.items())
-    return '"%s"' % value if isinstance(value, str) else repr(value)
+            return self.at
+        return {"at": self.at, "zero": self.zero} | ({"touched_at": self.touched_at} if self.touched_at else {})
 
 
 def probe(rng, spec):

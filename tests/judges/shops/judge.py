@@ -9,14 +9,16 @@ judge finds another meaning, not a micron, which `vpost check` proves and is ask
     python3 judge.py --vpost target/release/vpost --count 200 --seed 1 [--keep DIR] [--self-test]
 """
 
-import argparse
 import math
 import os
 import random
 import re
-import subprocess
 import sys
-import tempfile
+
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+from common import cases, interpreter, options, profile  # noqa: E402
+from common.words import number as word  # noqa: E402
 
 # Ten times what the machine of the profile is crooked by.
 NEAR_MM = 0.25
@@ -26,25 +28,6 @@ OFFSETS = {1: (100.0, 80.0, 40.0), 2: (110.0, 75.0, 41.0), 3: (-60.0, 33.0, 12.0
 LENGTHS = {1: 120.0, 2: 80.5}
 # A length that the program itself writes, in two parts.
 WRITTEN = {7: (95.5, -0.25)}
-PROFILE = """format = 1
-name = "Judge's machine (invented)"
-control = "{dialect}"
-chain = "[w X Y b Z t]"
-[axis.X]
-travel_mm = [-2000, 2000]
-[axis.Y]
-travel_mm = [-2000, 2000]
-[axis.Z]
-travel_mm = [-2000, 2000]
-[squareness]
-EC0Y_urad = 60.0
-EB0Z_urad = -50.0
-EA0Z_urad = 40.0
-[tool]
-lengths_mm = {{ H1 = 120.0, H2 = 80.5 }}
-[work_offsets_mm]
-{offsets}
-"""
 
 
 class Unreadable(Exception):
@@ -75,30 +58,17 @@ def rs274(text):
 
 
 def once(text):
-    with tempfile.TemporaryDirectory() as folder:
-        name = lambda file: os.path.join(folder, file)
-        with open(name("in.ngc"), "w", encoding="ascii", errors="replace") as file:
-            file.write(text)
-        with open(name("tool.tbl"), "w", encoding="ascii") as file:
-            # The interpreter alone, without a machine, takes lengths and zeros for inches.
-            for number, length in {**LENGTHS, **{k: sum(v) for k, v in WRITTEN.items()}}.items():
-                file.write(f"T{number} P{number} Z{length / 25.4:.9f} D1\n")
-        with open(name("var"), "w", encoding="ascii") as file:
-            zeros = {5220: 1.0}
-            for system, zero in {1: OFFSETS[1], 2: OFFSETS[2], 7: OFFSETS[3]}.items():
-                for axis in range(3):
-                    zeros[5221 + 20 * (system - 1) + axis] = zero[axis] / 25.4
-            for number in list(range(5161, 5170)) + list(range(5181, 5190)) + list(range(5210, 5390)):
-                file.write(f"{number}\t{zeros.get(number, 0.0):.9f}\n")
-        done = subprocess.run(["rs274", "-g", "-t", name("tool.tbl"), "-v", name("var"), name("in.ngc")],
-                              capture_output=True, text=True, timeout=120, cwd=folder, check=False,
-                              # Its tools lie in a file of the home folder, which every interpreter shares.
-                              env={**os.environ, "HOME": folder})
-    if "PROGRAM_END" not in done.stdout:
-        raise Unreadable("rs274: " + (done.stdout[-200:] + done.stderr).strip()[-300:])
+    # The interpreter alone, without a machine, takes lengths and zeros for inches.
+    lengths = {**LENGTHS, **{k: sum(v) for k, v in WRITTEN.items()}}
+    tools = "".join(f"T{number} P{number} Z{length / 25.4:.9f} D1\n" for number, length in lengths.items())
+    systems = {1: OFFSETS[1], 2: OFFSETS[2], 7: OFFSETS[3]}
+    zeros = {5221 + 20 * (n - 1) + axis: zero[axis] / 25.4 for n, zero in systems.items() for axis in range(3)}
+    said = interpreter.interpret(text, tools, interpreter.parameters(zeros))
+    if not said.whole:
+        raise Unreadable("rs274: " + said.trouble(300))
     path, dwells, zero, length, plane, unit = [], [], OFFSETS[1], 0.0, 1, 1.0
     at = None
-    for line in done.stdout.splitlines():
+    for line in said.calls.splitlines():
         match = CALL.search(line)
         if not match:
             continue
@@ -242,8 +212,7 @@ class Part:
         self.other.append(line)
 
     def num(self, low, high):
-        text = f"{self.rng.uniform(low, high):.3f}".rstrip("0")
-        return text if "." in text else text + "."
+        return word(self.rng.uniform(low, high))
 
     def point(self, z=None):
         return f"X{self.num(5, 70)} Y{self.num(5, 70)}" + (f" Z{self.num(*z)}" if z else "")
@@ -436,59 +405,35 @@ def self_test():
     return bad
 
 
-def ask(vpost, folder, control, own, other):
-    source, profile, out = (os.path.join(folder, name) for name in ("in.nc", "machine.toml", "out.nc"))
-    names = {1: "G15H1", 2: "G15H2"} if control == "okuma" else {1: "G54", 2: "G55", 3: '"G54.1P1"'}
-    offsets = "\n".join(f"{names[k]} = {list(OFFSETS[k])}" for k in names)
-    for path, text in ((source, own), (profile, PROFILE.format(dialect=control, offsets=offsets))):
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(text)
-    if os.path.exists(out):
-        os.remove(out)
-    decimal = [] if control == "mach" else ["--decimal", "increments"]
-    done = subprocess.run([vpost, source, "-m", profile, "--zero", "true", "-d", control, "-o", out, "-q", *decimal], capture_output=True, text=True, check=False)
-    if done.returncode:
-        code = re.search(r"VP\d{4}", done.stderr)
-        return "refused " + (code.group(0) if code else "?"), done.stderr
-    with open(out, encoding="utf-8") as file:
-        corrected = file.read()
+def one(case):
+    control, number = case.number.split("-")
+    own, other = Part(random.Random(f"{case.options.seed}/{control}/{number}"), control).write()
+    names = {1: "G15H1", 2: "G15H2"} if control == "okuma" else {1: "G54", 2: "G55", 3: "G54.1P1"}
+    mill = profile.crooked_mill(control)
+    mill["tool"]["lengths_mm"] = {"H1": 120.0, "H2": 80.5}
+    mill["work_offsets_mm"].update({name: OFFSETS[k] for k, name in names.items()})
+    case.write("in.nc", own)
+    case.write("in.ngc", other)
+    flags = ["-m", mill.write(case.folder), "--zero", "true", "-d", control]
+    flags += [] if control == "mach" else ["--decimal", "increments"]
+    done = case.correct(*flags, about=control + " ")
+    if not done:
+        return
     try:
-        problems = compare(other, in_linuxcnc(corrected, control))
+        for problem in compare(other, in_linuxcnc(done[0], control)):
+            case.find("wrong", problem)
     except (Unreadable, IndexError) as error:
-        return "unreadable", repr(error)
-    check = subprocess.run([vpost, "check", source, out, "-m", profile, "--zero", "true", "-d", control, "-q", *decimal], capture_output=True, text=True, check=False)
-    if check.returncode:
-        problems.append("check: " + check.stderr[:300])
-    return ("wrong", "; ".join(problems)) if problems else ("within", "")
+        case.find("unreadable", repr(error))
+        return
+    case.check(bool(case.found), *flags)
+    case.tally[f"{control} within"] += not case.found
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--vpost", required=True)
-    parser.add_argument("--count", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--keep")
-    parser.add_argument("--self-test", action="store_true")
-    args = parser.parse_args()
-    bad = self_test() if args.self_test else 0
-    verdicts = {}
-    with tempfile.TemporaryDirectory() as folder:
-        for control in CONTROLS:
-            for number in range(args.count):
-                own, other = Part(random.Random(f"{args.seed}/{control}/{number}"), control).write()
-                verdict, why = ask(args.vpost, folder, control, own, other)
-                verdicts[control, verdict] = verdicts.get((control, verdict), 0) + 1
-                if verdict != "within":
-                    print(control, number, verdict, why.strip()[:300])
-                    if args.keep:
-                        os.makedirs(args.keep, exist_ok=True)
-                        for ending, text in (("nc", own), ("ngc", other)):
-                            with open(os.path.join(args.keep, f"{control}-{number}.{ending}"), "w", encoding="utf-8") as file:
-                                file.write(text)
-    for (control, verdict), count in sorted(verdicts.items()):
-        print(f"{count:5} {control} {verdict}")
-    sys.exit(1 if bad or any(verdict in ("wrong", "unreadable") for _, verdict in verdicts) else 0)
+    given = options.parser(__doc__, 100, "first").parse_args()
+    bad = self_test() if given.self_test else 0
+    return int(bool(bad)) | cases.campaign(given, one, [f"{control}-{n}" for control in CONTROLS for n in cases.asked(given)])
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

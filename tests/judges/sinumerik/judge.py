@@ -9,39 +9,17 @@ micron (that is `vpost check`'s business, which is asked as well).
     python3 judge.py --vpost target/release/vpost --count 400 --seed 1 [--keep DIR] [--self-test] [--unseen DIR]
 """
 
-import argparse
 import math
 import os
 import random
 import re
-import subprocess
 import sys
-import tempfile
+
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+from common import cases, options, profile  # noqa: E402
 
 NEAR_MM = 0.25
-PROFILE = """format = 1
-name = "Judge's machine (invented)"
-control = "sinumerik"
-chain = "[w X Y b Z t]"
-[axis.X]
-travel_mm = [-2000, 2000]
-[axis.Y]
-travel_mm = [-2000, 2000]
-[axis.Z]
-travel_mm = [-2000, 2000]
-[squareness]
-EC0Y_urad = 60.0
-EB0Z_urad = -50.0
-EA0Z_urad = 40.0
-[tool]
-lengths_mm = { H1 = 120.0, H2 = 80.5, H7 = 95.25 }
-names = { "MILL 12" = 7 }
-[work_offsets_mm]
-G54 = [100, 80, 40]
-G55 = [110, 75, 41]
-G505 = [12, -14, 16]
-G599 = [-30, 22, 5]
-"""
 LENGTHS = {1: 120.0, 2: 80.5, 7: 95.25}
 NAMES = {"MILL 12": 7}
 OFFSETS = {54: (100, 80, 40), 55: (110, 75, 41), 505: (12, -14, 16), 599: (-30, 22, 5)}
@@ -1044,62 +1022,38 @@ def self_test():
     return bad
 
 
-def ask(vpost, folder, program):
-    source, profile, out = (os.path.join(folder, name) for name in ("in.mpf", "machine.toml", "out.mpf"))
-    for path, text in ((source, program), (profile, PROFILE)):
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(text)
-    if os.path.exists(out):
-        os.remove(out)
-    done = subprocess.run([vpost, source, "-m", profile, "--zero", "true", "-d", "sinumerik", "-o", out, "-q"], capture_output=True, text=True, check=False)
-    if done.returncode:
-        code = re.search(r"VP\d{4}", done.stderr)
-        return "refused " + (code.group(0) if code else "?"), done.stderr
-    with open(out, encoding="utf-8") as file:
-        corrected = file.read()
-    try:
-        problems = compare(program, corrected)
-    except (Unreadable, KeyError, IndexError, TypeError) as error:
-        return "unreadable", repr(error)
-    check = subprocess.run([vpost, "check", source, out, "-m", profile, "--zero", "true", "-d", "sinumerik", "-q"], capture_output=True, text=True, check=False)
-    if check.returncode:
-        problems.append("check: " + check.stderr[:200])
-    return ("wrong", "; ".join(problems)) if problems else ("within", "")
+def one(case):
+    unseen = case.options.unseen
+    if unseen:
+        with open(os.path.join(unseen, case.number), encoding="latin-1") as file:
+            program = file.read()
+    else:
+        program = generate(random.Random(f"{case.options.seed}/{case.number}"))
+    case.write("in.nc", program)
+    mill = profile.crooked_mill("sinumerik")
+    mill["tool"].update(lengths_mm={f"H{n}": length for n, length in LENGTHS.items()}, names=NAMES)
+    mill["work_offsets_mm"].update({f"G{n}": offset for n, offset in OFFSETS.items()})
+    flags = ["-m", mill.write(case.folder), "--zero", "true", "-d", "sinumerik"]
+    done = case.correct(*flags)
+    if done:
+        try:
+            for problem in compare(program, done[0]):
+                case.find("wrong", problem)
+            case.check(bool(case.found), *flags)
+        except (Unreadable, KeyError, IndexError, TypeError) as error:
+            case.find("unreadable", repr(error))
+    if unseen:
+        print(case.number, "refused: " + " ".join(case.refused[1]) if case.refused else case.found or "within")
+    case.tally["within"] += not (case.found or case.refused)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--vpost", required=True)
-    parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--keep")
-    parser.add_argument("--unseen")
-    parser.add_argument("--self-test", action="store_true")
-    args = parser.parse_args()
-    bad = self_test() if args.self_test else 0
-    verdicts = {}
-    programs = []
-    if args.unseen:
-        for name in sorted(os.listdir(args.unseen)):
-            with open(os.path.join(args.unseen, name), encoding="latin-1") as file:
-                programs.append((name, file.read()))
-    else:
-        for number in range(args.count):
-            programs.append((str(number), generate(random.Random(f"{args.seed}/{number}"))))
-    with tempfile.TemporaryDirectory() as folder:
-        for name, program in programs:
-            verdict, why = ask(args.vpost, folder, program)
-            verdicts[verdict] = verdicts.get(verdict, 0) + 1
-            if verdict in ("wrong", "unreadable") or args.unseen:
-                print(name, verdict, why.strip()[:300])
-            if args.keep and verdict != "within":
-                os.makedirs(args.keep, exist_ok=True)
-                with open(os.path.join(args.keep, f"{name}.mpf"), "w", encoding="utf-8") as file:
-                    file.write(f"; {verdict} {why}\n".replace("\n", "\n; ").rstrip("; ") + program)
-    for verdict in sorted(verdicts):
-        print(f"{verdicts[verdict]:5} {verdict}")
-    sys.exit(1 if bad or verdicts.get("wrong") or verdicts.get("unreadable") else 0)
+    words = options.parser(__doc__, 200, "first")
+    words.add_argument("--unseen", metavar="DIR", help="judge the programs of this folder instead")
+    given = words.parse_args()
+    bad = self_test() if given.self_test else 0
+    return int(bool(bad)) | cases.campaign(given, one, sorted(os.listdir(given.unseen)) if given.unseen else None)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

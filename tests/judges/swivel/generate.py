@@ -1,13 +1,14 @@
 """Random five-axis machines as profiles, and random programs with swivelled planes, by seed and number."""
 
-import json
 import math
 import random
 
 import numpy as np
 
+from common.profile import Profile, column
+
 import cycle
-from machine import AXES, Machine
+from machine import Machine
 
 CHAINS = {
     "tt": ("[w C A Y b X Z t]", "[w C B X b Y Z t]", "[w C A X Y b Z t]"),
@@ -74,36 +75,23 @@ def machine(rng, kind, state):
 
 def profile(spec, folder, known=None, sign="+"):
     """Writes the profile with its tables. `known`: keys of [kinematics] that the command's schema has."""
-    lines = ["format = 1", 'name = "Swivel (invented)"', 'control = "sinumerik"', 'chain = "%s"' % spec["chain"]]
-
-    def errors(k, data, unit):
-        head = "position_%s," % unit + ",".join(["E%s%s_um" % (x, k) for x in "XYZ"] + ["E%s%s_urad" % (x, k) for x in "ABC"])
-        rows = [",".join(repr(x) for x in [at] + row) for at, row in zip(data["at"], data["rows"])]
-        (folder / ("e_%s.csv" % k)).write_text("\n".join([head] + rows) + "\n")
-        return 'errors = "e_%s.csv"' % k
-
+    p = Profile("Swivel (invented)", "sinumerik", spec["chain"])
     for k, one in spec["linear"].items():
-        lines += ["[axis.%s]" % k, "travel_mm = [-700, 700]", "resolution_mm = %r" % one["resolution"]]
-        if "table" in one:
-            lines.append(errors(k, one["table"], "mm"))
-    lines += ["[squareness]"] + ["%s_urad = %r" % x for x in spec["squareness"].items()]
+        p.axis(k).update(travel_mm=[-700, 700], resolution_mm=one["resolution"])
+    p["squareness"].update({column(k): v for k, v in spec["squareness"].items()})
     for k, one in spec["rotary"].items():
-        lines += ["[rotary.%s]" % k, "centre_mm = %r" % one["centre"], "travel_deg = %r" % one["travel"]]
         # A tilt is not told without what leans by it (VP0314); where nothing is chosen the machine is one of `body`.
-        lines.append('tilt = "%s"' % one.get("tilt", "body"))
-        lines += ["%s_%s = %r" % (e, "um" if e[1] in "XYZ" else "urad", v) for e, v in one.get("location", {}).items()]
+        p.axis(k).update(centre_mm=one["centre"], travel_deg=one["travel"], tilt=one.get("tilt", "body"))
+        p.located(k, one.get("location", {}))
+    for k, one in {**spec["linear"], **spec["rotary"]}.items():
         if "table" in one:
-            lines.append(errors(k, one["table"], "deg"))
-    lines += ["[tool]", "lengths_mm = { %s }" % ", ".join("%s = %r" % x for x in spec["lengths"].items())]
-    lines += ["[work_offsets_mm]"] + ["%s = %r" % x for x in spec["offsets"].items()]
-    lines += ["[correction]", "tolerance_um = %r" % spec["tolerance"], "[kinematics]", 'straight = "tip"']
-    lines += ["centres_mm = { %s }" % ", ".join("%s = %r" % x for x in spec["control"].items())]
-    lines += ['direction_reference = "%s"' % spec["reference"], 'branch = "%s%s"' % (spec["reference"], sign), 'turn = "%s"' % spec["turn"]]
-    for key, value in spec.get("extra_kinematics", {}).items():
-        if known is None or key in known:
-            lines.append("%s = %s" % (key, json.dumps(value)))
-    (folder / "profile.toml").write_text("\n".join(lines) + "\n")
-    return folder / "profile.toml"
+            p.errors(k, one["table"]["at"], one["table"]["rows"])
+    p["tool"]["lengths_mm"] = spec["lengths"]
+    p["work_offsets_mm"].update(spec["offsets"])
+    p["correction"]["tolerance_um"] = spec["tolerance"]
+    p["kinematics"].update(straight="tip", centres_mm=spec["control"], direction_reference=spec["reference"], branch=spec["reference"] + sign, turn=spec["turn"])
+    p["kinematics"].update({k: v for k, v in spec.get("extra_kinematics", {}).items() if known is None or k in known})
+    return p.write(folder)
 
 
 class Writer:

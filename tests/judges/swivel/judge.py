@@ -7,29 +7,24 @@
 Exit status 1 where something is found. What is asked stands in README.md.
 """
 
-import argparse
-import collections
 import json
-import pathlib
+import os
 import re
-import subprocess
 import sys
-import tempfile
 
-import numpy as np
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-import generate
-import reader
-from machine import Machine, put
+from common import cases, command, options  # noqa: E402  before numpy
+
+import numpy as np  # noqa: E402
+
+import generate  # noqa: E402
+import reader  # noqa: E402
+from machine import Machine, put  # noqa: E402
 
 UPRIGHT = 5e-6  # rad, VP0232
 SLACK = 0.1e-3  # sampling of arcs, mm
 LEAD = 1.0  # a feed to a corrected start is shorter, mm
-
-
-def run(vpost, *words):
-    done = subprocess.run([str(vpost), *map(str, words)], capture_output=True, text=True, timeout=180)
-    return done.returncode, done.stdout, done.stderr
 
 
 def limit(spec):
@@ -174,93 +169,40 @@ def same_words(a, b):
     return all(abs(x - y) <= 0.0006 for x, y in zip(*numbers))
 
 
-class Judge:
-    def __init__(self, options):
-        self.o, self.tally, self.refused, self.first = options, collections.Counter(), collections.Counter(), {}
-        self.found, self.before, self.known = 0, 0.0, kinematics_keys(options.vpost)
-
-    def report(self, what, n, folder, text):
-        self.found += 1
-        self.tally["found " + what] += 1
-        print("%-10s %4d  %s" % (what, n, text), flush=True)
-        if self.o.keep:
-            keep = pathlib.Path(self.o.keep) / ("%d-%d-%s" % (self.o.seed, n, what))
-            keep.mkdir(parents=True, exist_ok=True)
-            for f in folder.iterdir():
-                (keep / f.name).write_bytes(f.read_bytes())
-            (keep / "found.txt").write_text(text + "\n")
-
-    def one(self, n, folder):
-        spec, text, has = generate.case(self.o.seed, n)
-        m = Machine(spec)
-        # The way that CYCLE800 says is the profile's own, so that neither contradicts the other.
-        where = generate.profile(spec, folder, self.known, "-" if ",-1" in text and "DIR 1" not in has else "+")
-        (folder / "in.nc").write_text(text)
-        (folder / "spec.json").write_text(json.dumps(spec))
-        self.tally["programs"] += 1
-        status, output, errors = run(self.o.vpost, "correct", folder / "in.nc", "-m", where, "--zero", "true")
-        if status == 2:
-            self.report("profile", n, folder, errors.strip().replace("\n", " | ")[:300])
-            return
-        if status:
-            code = (re.search(r"error\[(VP\d+)\]", errors) or [None, "none"])[1]
-            self.refused[code] += 1
-            self.first.setdefault(code, (n, errors.strip().splitlines()[:4]))
-            return
-        (folder / "out.nc").write_text(output)
-        self.tally["corrected"] += 1
-        self.tally.update("%s: %s" % (spec["kind"], x) for x in ["corrected"])
-        self.tally.update(has)
-        if spec["state"] == "perfect":
-            self.tally["perfect"] += 1
-            if output != text:
-                self.report("perfect", n, folder, "not the same bytes")
-        elif n % 5 == 0:
-            self.tally["of every fifth, off the way before"] += any(what == "path" for what, _, _ in compare(m, text, text))
-        found = compare(m, text, output)
-        for what, block, why in found[:2]:
-            self.report(what, n, folder, "N%s %s (%s)" % (block, why, spec["kind"]))
-        status, _, errors = run(self.o.vpost, "check", folder / "in.nc", folder / "out.nc", "-m", where, "--zero", "true")
-        if (status != 0) != bool(found):
-            self.report("check-blind" if found else "check-alarm", n, folder, errors.strip().replace("\n", " | ")[:200])
-
-    def all(self):
-        for n in range(self.o.first, self.o.first + self.o.count):
-            with tempfile.TemporaryDirectory() as folder:
-                try:
-                    self.one(n, pathlib.Path(folder))
-                except subprocess.TimeoutExpired:
-                    self.report("slow", n, pathlib.Path(folder), "180 s")
-        for name, count in sorted(self.tally.items()):
-            print("%6d  %s" % (count, name))
-        for code, count in self.refused.most_common():
-            print("%6d  refused by %s, as number %d: %s" % (count, code, *self.first[code]))
-        return 1 if self.found else 0
-
-
-def kinematics_keys(vpost):
-    """Names of [kinematics] that the command knows."""
-    try:
-        schema = json.loads(run(vpost, "profile", "schema")[1])
-    except (OSError, ValueError):
-        return set()
-    return set(schema.get("$defs", {}).get("Kinematics", schema).get("properties", {}))
+def one(case):
+    spec, text, has = generate.case(case.options.seed, case.number)
+    m = Machine(spec)
+    # The way that CYCLE800 says is the profile's own, so that neither contradicts the other.
+    where = generate.profile(spec, case.folder, case.options.known, "-" if ",-1" in text and "DIR 1" not in has else "+")
+    case.write("in.nc", text)
+    case.write("spec.json", json.dumps(spec))
+    case.tally["programs"] += 1
+    done = case.correct("-m", where, "--zero", "true")
+    if not done:
+        return
+    output, _ = done
+    case.tally.update(["corrected", "%s: corrected" % spec["kind"], *has])
+    if spec["state"] == "perfect":
+        case.tally["perfect"] += 1
+        if output != text:
+            case.find("perfect", "not the same bytes")
+    elif case.number % 5 == 0:
+        case.tally["of every fifth, off the way before"] += any(what == "path" for what, _, _ in compare(m, text, text))
+    found = compare(m, text, output)
+    for what, block, why in found[:2]:
+        case.find(what, "N%s %s (%s)" % (block, why, spec["kind"]))
+    case.check(bool(found), "-m", where, "--zero", "true")
 
 
 def main():
-    words = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    words.add_argument("--vpost", default="target/release/vpost")
-    words.add_argument("--count", type=int, default=100)
-    words.add_argument("--seed", type=int, default=1)
-    words.add_argument("--first", type=int, default=0)
-    words.add_argument("--keep")
-    words.add_argument("--self-test", action="store_true")
-    options = words.parse_args()
-    if options.self_test:
+    words = options.parser(__doc__, 100, "first", vpost="target/release/vpost")
+    given = words.parse_args()
+    if given.self_test:
         import self_test
 
-        return self_test.main(options.vpost)
-    return Judge(options).all()
+        return self_test.main(given.vpost)
+    given.known = set(command.schema(given.vpost, "Kinematics"))
+    return cases.campaign(given, one)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,5 @@
 """Shows that the judge finds what is wrong and passes what is right, with outputs of a corrector of its own."""
 
-import contextlib
 import math
 import pathlib
 import re
@@ -8,20 +7,15 @@ import tempfile
 
 import numpy as np
 
+from common.command import run
+from common.trial import Trial, belief
+
 import cycle
 import generate
 import judge
 import machine
 import reader
 from machine import Machine, put, shift, turn
-
-
-class Test:
-    failed = 0
-
-    def ask(self, good, text):
-        self.failed += not good
-        print("%s %s" % ("ok  " if good else "FAIL", text), flush=True)
 
 
 def solved(m, move, u):
@@ -62,16 +56,6 @@ def corrected(text, m, decimals=4):
             words = " ".join(a + generate.number(v, decimals) for a, v in zip("XYZ", row))
             out.append("%s G1 %s%s" % (found.group(0).strip() if k == 0 else "", words, feed if k == 0 else ""))
     return "\n".join(x.strip() for x in out) + "\n"
-
-
-@contextlib.contextmanager
-def belief(module, name, value):
-    kept = getattr(module, name)
-    setattr(module, name, value)
-    try:
-        yield
-    finally:
-        setattr(module, name, kept)
 
 
 def wrong_frame(change):
@@ -129,7 +113,7 @@ def found(m, text, output):
 
 
 def main(vpost):
-    t = Test()
+    t = Trial()
     figures(t)
     predicted(t, vpost)
     plain = lambda spec, text, has: "G91" not in text and "IC(" not in text
@@ -174,8 +158,7 @@ def main(vpost):
         good[k] = re.sub(r"X(-?[\d.]+)", lambda x: "X" + generate.number(float(x.group(1)) + 0.03, 4), good[k])
         shifted += bool(judge.compare(m, text, "\n".join(good)))
     t.ask(shifted >= len(right) - 1, "30 um on one X: found %d of %d" % (shifted, len(right)))
-    print("self-test: %s" % ("%d failed" % t.failed if t.failed else "all as it must be"))
-    return 1 if t.failed else 0
+    return t.status()
 
 
 def other_way(right):
@@ -217,7 +200,7 @@ def predicted(t, vpost):
             head = "x_mm,y_mm,z_mm," + ",".join(k.lower() + "_deg" for k in theta) + ",tool_x_mm,tool_y_mm,tool_z_mm"
             row = ",".join(map(repr, [*map(float, q[0]), *theta.values(), 0.0, 0.0, -length]))
             (folder / "p.csv").write_text(head + "\n" + row + "\n")
-            status, text, errors = judge.run(vpost, "predict", folder / "p.csv", "-m", where)
+            status, text, errors = run(vpost, "predict", folder / "p.csv", "-m", where)
         if status:
             t.ask(False, "predict: " + errors.strip()[:200])
             continue

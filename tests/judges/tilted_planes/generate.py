@@ -5,6 +5,9 @@ import random
 
 import numpy as np
 
+from common.profile import Profile
+from common.words import number
+
 import machine
 import planes
 import reader
@@ -18,13 +21,6 @@ CHAINS = {
 }
 LOCATIONS = {"A": ("EY0A", "EZ0A", "EB0A", "EC0A"), "B": ("EX0B", "EZ0B", "EA0B", "EC0B"), "C": ("EX0C", "EY0C", "EA0C", "EB0C")}
 TRAVEL = (-1000, 1000)
-
-
-def number(v, decimals=3):
-    text = "%.*f" % (decimals, v)
-    whole, _, part = text.partition(".")
-    text = whole + "." + part.rstrip("0")
-    return "0." if text in ("-0.", "0.") else text
 
 
 def table(rng, axis, nodes, size):
@@ -78,40 +74,23 @@ def make_machine(rng, kind, state):
 
 def write_profile(spec, folder, name="profile.toml"):
     """The profile, with its tables beside it; all keys by docs/reference.md."""
-    out = ["format = 1", 'name = "Random %s"' % spec["kind"], 'control = "fanuc"', 'chain = "%s"' % spec["chain"]]
-
-    def tables(k, data, unit):
-        with open(folder / ("table_%s.csv" % k), "w") as f:
-            f.write("position_%s,%s\n" % (unit, ",".join(["E%s%s_um" % (a, k) for a in "XYZ"] + ["E%s%s_urad" % (a, k) for a in "ABC"])))
-            for at, row in zip(*data):
-                f.write(",".join(repr(x) for x in [at] + row) + "\n")
-
+    p = Profile("Random " + spec["kind"], "fanuc", spec["chain"])
     for k in "XYZ":
-        one = spec["axes"][k]
-        out += ["[axis.%s]" % k, "travel_mm = [%d, %d]" % TRAVEL, "resolution_mm = %r" % one["resolution"]]
-        if "table" in one:
-            out.append('errors = "table_%s.csv"' % k)
-            tables(k, one["table"], "mm")
-    out += ["[squareness]"] + ["%s_urad = %r" % x for x in zip(("EC0Y", "EB0Z", "EA0Z"), spec["squareness_urad"])]
+        p.axis(k).update(travel_mm=TRAVEL, resolution_mm=spec["axes"][k]["resolution"])
+    p["squareness"].update(zip(("EC0Y_urad", "EB0Z_urad", "EA0Z_urad"), spec["squareness_urad"]))
     for k, one in spec["rotary"].items():
-        out += ["[rotary.%s]" % k, "centre_mm = %r" % one["centre"], "travel_deg = %r" % one["travel"]]
-        if "direction" in one:
-            out.append("direction = %r" % one["direction"])
         # A tilt is not told without what leans by it (VP0314); where nothing is chosen the machine is one of `body`.
-        out.append('tilt = "%s"' % one.get("tilt", "body"))
-        out += ["%s_%s = %r" % (e, "um" if e[1] in "XYZ" else "urad", v) for e, v in one.get("location", {}).items()]
+        p.axis(k).update(centre_mm=one["centre"], travel_deg=one["travel"], direction=one.get("direction"), tilt=one.get("tilt", "body"))
+        p.located(k, one.get("location", {}))
+    for k, one in {**spec["axes"], **spec["rotary"]}.items():
         if "table" in one:
-            out.append('errors = "table_%s.csv"' % k)
-            tables(k, one["table"], "deg")
-    out += ["[tool]", "lengths_mm = { %s }" % ", ".join("%s = %r" % x for x in spec["lengths"].items())]
-    out += ["[work_offsets_mm]"] + ['"%s" = %r' % x for x in spec["offsets"].items()]
-    out += ["[correction]", "tolerance_um = %r" % spec["tolerance"]]
+            p.errors(k, *one["table"])
+    p["tool"]["lengths_mm"] = spec["lengths"]
+    p["work_offsets_mm"].update(spec["offsets"])
+    p["correction"]["tolerance_um"] = spec["tolerance"]
     if spec.get("kinematics", True):
-        out += ["[kinematics]", 'straight = "tip"']
-        out.append("centres_mm = { %s }" % ", ".join("%s = %r" % x for x in spec["control_centres"].items()))
-        out += ['%s = "%s"' % (k, spec[k]) for k in ("branch", "turn") if spec.get(k)]
-    (folder / name).write_text("\n".join(out) + "\n")
-    return folder / name
+        p["kinematics"].update(straight="tip", centres_mm=spec["control_centres"], branch=spec.get("branch"), turn=spec.get("turn"))
+    return p.write(folder, name)
 
 
 class Writer:

@@ -7,38 +7,29 @@
 Exit status 1 where something is found. What is asked stands in README.md.
 """
 
-import argparse
 import collections
 import json
 import math
-import pathlib
+import os
 import random
 import re
-import subprocess
 import sys
-import tempfile
 
-import numpy as np
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-import damages
-import generate
-import machine
-import reader
-import refusals
+from common import cases, options  # noqa: E402  before numpy
+
+import numpy as np  # noqa: E402
+
+import damages  # noqa: E402
+import generate  # noqa: E402
+import machine  # noqa: E402
+import reader  # noqa: E402
+import refusals  # noqa: E402
 
 WHOLE = {68.2, 53.1, 53.6, 69.0, 53.0, 28.0, 4.0, 10.0, 49.0, 80.0}
 
 UPRIGHT = 5e-6  # rad; VP0232
-
-
-def run(vpost, *words):
-    done = subprocess.run([str(vpost), *map(str, words)], capture_output=True, text=True, timeout=120)
-    return done.returncode, done.stdout, done.stderr
-
-
-def code_of(stderr):
-    found = re.search(r"error\[(VP\d+)\]", stderr)
-    return found.group(1) if found else "none"
 
 
 def limit_mm(spec, inch):
@@ -243,114 +234,67 @@ def seen_from(m, inp, motion):
     return motion
 
 
-class Judge:
-    def __init__(self, options):
-        self.o = options
-        self.tally = collections.Counter()
-        self.refused = collections.Counter()
-        self.reasons = {}
-        self.found = []
-        self.worst = collections.defaultdict(float)
+def one(case):
+    if isinstance(case.number, str):
+        refusals.asked(case)
+        return
+    spec, text, align = generate.case(case.options.seed, case.number, case.options.kind)
+    m = machine.Machine(spec)
+    flags = "-m", generate.write_profile(spec, case.folder), "--zero", "true"
+    case.write("in.nc", text)
+    case.write("spec.json", json.dumps(spec))
+    case.tally.update(["programs", "chain " + spec["kind"], "angles " + align])
+    done = case.correct(*flags)
+    if not done:
+        if spec["state"] == "perfect" and case.refused:
+            case.find("perfect", "refused by " + " | ".join([case.refused[0], *case.refused[1]]))
+        return
+    output, _ = done
+    if spec["state"] == "perfect":
+        case.tally["perfect"] += 1
+        if output != text:
+            case.find("perfect", "not the same bytes")
+    found, worst = compare(m, text, output)
+    case.figures["share of the limit, " + spec["kind"]] = worst
+    for what, block, why in found[:3]:
+        case.find(what, "N%s %s (%s, %s)" % (block, why, spec["kind"], align))
+    before = [float(re.search(r"([\d.]+) um", w).group(1)) for k, _, w in compare(m, text, text)[0] if k == "path" and " um" in w]
+    case.figures["before, um"] = max(before, default=0.0)
+    case.tally["checked"] += 1
+    case.check(bool(found), *flags)
+    if not found and spec["state"] != "perfect":
+        damaged(case, m, text, output, flags)
 
-    def report(self, name, n, folder, text):
-        self.found.append((name, n, text))
-        self.tally["found " + name] += 1
-        print("%-14s %5s  %s" % (name, n, text), flush=True)
-        if self.o.keep:
-            keep = pathlib.Path(self.o.keep) / ("%s-%s" % (n, name))
-            keep.mkdir(parents=True, exist_ok=True)
-            for f in folder.iterdir():
-                (keep / f.name).write_bytes(f.read_bytes())
-            with open(keep / "found.txt", "a") as f:
-                f.write(text + "\n")
 
-    def one(self, n, folder):
-        spec, text, align = generate.case(self.o.seed, n, self.o.kind)
-        m = machine.Machine(spec)
-        profile = generate.write_profile(spec, folder)
-        source, target = folder / "in.nc", folder / "out.nc"
-        source.write_text(text)
-        (folder / "spec.json").write_text(json.dumps(spec))
-        self.tally["programs"] += 1
-        self.tally["chain " + spec["kind"]] += 1
-        self.tally["angles " + align] += 1
-        status, output, errors = run(self.o.vpost, "correct", source, "-m", profile, "--zero", "true")
-        if status:
-            self.refused[code_of(errors)] += 1
-            self.reasons.setdefault(code_of(errors), (n, errors.strip().splitlines()[:3]))
-            self.tally["refused"] += 1
-            if status == 2 or spec["state"] == "perfect":
-                self.report("profile" if status == 2 else "perfect", n, folder, errors.strip().replace("\n", " | ")[:300])
-            return
-        target.write_text(output)
-        if spec["state"] == "perfect":
-            self.tally["perfect"] += 1
-            if output != text:
-                self.report("perfect", n, folder, "not the same bytes")
-        found, worst = compare(m, text, output)
-        self.worst[spec["kind"]] = max(self.worst[spec["kind"]], worst)
-        for what, block, why in found[:3]:
-            self.report(what, n, folder, "N%s %s (%s, %s)" % (block, why, spec["kind"], align))
-        before = max([0.0] + [float(re.search(r"([\d.]+) um", w).group(1)) for k, _, w in compare(m, text, text)[0] if k == "path" and " um" in w])
-        self.worst["um before"] = max(self.worst["um before"], before)
-        status, _, errors = run(self.o.vpost, "check", source, target, "-m", profile, "--zero", "true")
-        self.tally["checked"] += 1
-        if (status != 0) != bool(found):
-            self.report("check-blind" if found else "check-alarm", n, folder, errors.strip().replace("\n", " | ")[:300])
-        if found or spec["state"] == "perfect":
-            return
-        rng = random.Random("damage %d-%d" % (self.o.seed, n))
-        if rng.random() > self.o.damage:
-            return
-        for name, bad in damages.all_of(rng, m, text, output):
-            found, _ = compare(m, text, bad)
-            if not found:
-                self.tally["damage without harm: " + name] += 1
-                continue
-            (folder / "bad.nc").write_text(bad)
-            status, _, errors = run(self.o.vpost, "check", source, folder / "bad.nc", "-m", profile, "--zero", "true")
-            self.tally["damage: " + name] += 1
-            if status == 0:
-                self.report("damage-missed", n, folder, "%s (%s)" % (name, found[0][0]))
-            (folder / "bad.nc").unlink()
-
-    def all(self):
-        for n in range(self.o.first, self.o.first + self.o.count):
-            with tempfile.TemporaryDirectory() as folder:
-                try:
-                    self.one(n, pathlib.Path(folder))
-                except subprocess.TimeoutExpired:
-                    self.report("slow", n, pathlib.Path(folder), "120 s")
-        if self.o.refusals:
-            refusals.all_of(self)
-        for key in sorted(self.tally):
-            print("%-40s %d" % (key, self.tally[key]))
-        for key, count in sorted(self.refused.items()):
-            print("refused %s: %d, first %s: %s" % (key, count, self.reasons[key][0], " | ".join(self.reasons[key][1])))
-        for key in sorted(self.worst):
-            print("largest %-32s %.3f" % (key if key == "um before" else "share of the limit, " + key, self.worst[key]))
-        return 1 if self.found else 0
+def damaged(case, m, text, output, flags):
+    """Of a share of the outputs, damages: those that do harm `check` has to find."""
+    rng = random.Random("damage %d-%d" % (case.options.seed, case.number))
+    if rng.random() > case.options.damage:
+        return
+    for name, bad in damages.all_of(rng, m, text, output):
+        found, _ = compare(m, text, bad)
+        if not found:
+            case.tally["damage without harm: " + name] += 1
+            continue
+        path = case.write("bad.nc", bad)
+        case.tally["damage: " + name] += 1
+        if case.run("check", case.folder / "in.nc", path, *flags).status == 0:
+            case.find("damage-missed", "%s (%s)" % (name, found[0][0]))
+        path.unlink()
 
 
 def main():
-    p = argparse.ArgumentParser()
-    p.add_argument("--vpost", required=True, type=pathlib.Path)
-    p.add_argument("--count", type=int, default=200)
-    p.add_argument("--first", type=int, default=0)
-    p.add_argument("--seed", type=int, default=1)
-    p.add_argument("--kind", choices=list(generate.CHAINS))
-    p.add_argument("--damage", type=float, default=0.5, help="share of the programs whose outputs are damaged")
-    p.add_argument("--refusals", action="store_true")
-    p.add_argument("--say", action="store_true", help="print the message of every refusal")
-    p.add_argument("--keep")
-    p.add_argument("--self-test", action="store_true")
-    options = p.parse_args()
-    if options.self_test:
+    words = options.parser(__doc__, 200, "first", "refusals")
+    words.add_argument("--kind", choices=list(generate.CHAINS))
+    words.add_argument("--damage", type=float, default=0.5, help="share of the programs whose outputs are damaged")
+    words.add_argument("--say", action="store_true", help="print the message of every refusal")
+    given = words.parse_args()
+    if given.self_test:
         import self_test
 
-        sys.exit(self_test.main(options.vpost))
-    sys.exit(Judge(options).all())
+        return self_test.main(given.vpost)
+    return cases.campaign(given, one, [*cases.asked(given), *(refusals.ROWS if given.refusals else ())])
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

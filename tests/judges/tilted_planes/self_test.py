@@ -6,16 +6,17 @@ Machine: `vpost predict` and five_axis/machine.py. Planes: figures by hand. Judg
 same of a corrector that believes something wrong.
 """
 
-import contextlib
 import importlib.util
 import math
 import pathlib
 import random
 import re
-import subprocess
 import tempfile
 
 import numpy as np
+
+from common.command import run
+from common.trial import Trial, belief
 
 import damages
 import generate
@@ -26,25 +27,6 @@ import planes
 import reader
 
 HERE = pathlib.Path(__file__).resolve().parent
-
-
-@contextlib.contextmanager
-def belief(module, name, value):
-    was = getattr(module, name)
-    setattr(module, name, value)
-    try:
-        yield
-    finally:
-        setattr(module, name, was)
-
-
-class Test:
-    def __init__(self):
-        self.failed = 0
-
-    def ask(self, right, text):
-        print("%-4s %s" % ("ok" if right else "NO", text), flush=True)
-        self.failed += not right
 
 
 def other_machine():
@@ -81,10 +63,10 @@ def machines(t, vpost):
             head = "x_mm,y_mm,z_mm,%s,tool_x_mm,tool_y_mm,tool_z_mm\n" % ",".join(k.lower() + "_deg" for k in sorted(m.rotary))
             text = ["%r,%r,%r,%s,0,0,%r" % (*map(float, q), ",".join(repr(a[k]) for k in sorted(a)), -tool) for q, a, tool in rows]
             (folder / "points.csv").write_text(head + "\n".join(text) + "\n")
-            done = subprocess.run([str(vpost), "predict", str(folder / "points.csv"), "-m", str(profile)], capture_output=True, text=True)
-            lines = done.stdout.splitlines()
-            if done.returncode or len(lines) != len(rows) + 1:
-                t.ask(False, "predict: " + done.stderr.strip())
+            status, said, errors = run(vpost, "predict", folder / "points.csv", "-m", profile)
+            lines = said.splitlines()
+            if status or len(lines) != len(rows) + 1:
+                t.ask(False, "predict: " + errors.strip())
                 continue
         names = lines[0].split(",")
         for line, (q, theta, tool) in zip(lines[1:], rows):
@@ -274,9 +256,8 @@ def wrongly(context, m, text):
 
 
 def main(vpost):
-    t = Test()
+    t = Trial()
     machines(t, vpost)
     figures(t)
     outputs(t)
-    print("self-test: %s" % ("%d failed" % t.failed if t.failed else "all as it must be"))
-    return 1 if t.failed else 0
+    return t.status()

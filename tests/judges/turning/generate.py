@@ -1,8 +1,10 @@
 """Random lathes (as profiles in the form of README.md) and random turning programs for them. Decided by seed and number."""
 
 import math
-import os
 import random
+
+from common.profile import Profile
+from common.words import number
 
 KINDS = ("shaft", "face", "groove", "canned", "multiple", "bore", "nose-od", "nose-bore", "thread", "corners", "increments", "sinumerik",
          "linuxcnc-g7", "linuxcnc-g8", "linuxcnc-cycle", "linuxcnc-nose", "face-multiple", "pattern", "hole", "linuxcnc-thread")
@@ -63,54 +65,22 @@ def lathe(rng, kind, number):
     return spec
 
 
-def table_text(table, axis):
-    columns = list(table)
-    return "\n".join([",".join(columns), *(",".join(f"{table[c][k]:.6g}" for c in columns) for k in range(len(table["position_mm"])))]) + "\n"
-
-
-def value(v):
-    if isinstance(v, bool):
-        return "true" if v else "false"
-    if isinstance(v, str):
-        return f'"{v}"'
-    if isinstance(v, dict):
-        return "{ " + ", ".join(f"{k} = {value(x)}" for k, x in v.items()) + " }"
-    if isinstance(v, (list, tuple)):
-        return "[" + ", ".join(value(x) for x in v) + "]"
-    return repr(v)
-
-
 def write(spec, folder):
     """Writes the profile and its tables; returns the path."""
-    lines = ["format = 1", f'name = "{spec["name"]}"', f'control = "{spec["control"]}"', f'chain = "{spec["chain"]}"']
+    p = Profile(spec["name"], spec["control"], spec["chain"])
     for axis in "XZ":
         one = spec["axes"][axis]
-        lines += [f"[axis.{axis}]", f"travel_mm = {value(one['travel_mm'])}", f"resolution_mm = {one['resolution_mm']}"]
+        p.axis(axis).update(travel_mm=one["travel_mm"], resolution_mm=one["resolution_mm"])
         if "table" in one:
-            with open(os.path.join(folder, f"errors_{axis.lower()}.csv"), "w", encoding="ascii") as out:
-                out.write(table_text(one["table"], axis))
-            lines.append(f'errors = "errors_{axis.lower()}.csv"')
+            names = [name for name in one["table"] if name != "position_mm"]
+            p.errors(axis, one["table"]["position_mm"], zip(*(one["table"][name] for name in names)), digits=".6g", columns=names)
     for name in ("squareness", "spindle", "headstock", "tailstock", "workpiece"):
-        if spec.get(name):
-            lines += [f"[{name}]", *(f"{k} = {value(v)}" for k, v in spec[name].items())]
-    lines += ["[tool]", "default_mm = [0, 0, 0]", f"lengths_mm = {value(spec['tool']['lengths_mm'])}"]
-    if spec["tool"].get("noses"):
-        lines.append(f"noses = {value(spec['tool']['noses'])}")
-    lines += ["[work_offsets_mm]", *(f"{k} = {value(v)}" for k, v in spec["work_offsets_mm"].items())]
-    lines += ["[correction]", f"tolerance_um = {spec['tolerance_um']}", "[program]", f'x = "{spec["x"]}"', f'decimal = "{spec["decimal"]}"']
-    if "g_code_system" in spec:
-        lines.append(f'g_code_system = "{spec["g_code_system"]}"')
-    lines += [f"{k} = {v}" for k, v in spec.get("parameters", {}).items()]
-    path = os.path.join(folder, "lathe.toml")
-    with open(path, "w", encoding="utf-8") as out:
-        out.write("\n".join(lines) + "\n")
-    return path
-
-
-def num(v):
-    """A word's number: three decimals, a point always."""
-    text = f"{v:.3f}".rstrip("0")
-    return "0." if text in ("-0.", "0.") else text
+        p[name].update(spec.get(name) or {})
+    p["tool"].update(default_mm=[0, 0, 0], lengths_mm=spec["tool"]["lengths_mm"], noses=spec["tool"].get("noses") or None)
+    p["work_offsets_mm"].update(spec["work_offsets_mm"])
+    p["correction"]["tolerance_um"] = spec["tolerance_um"]
+    p["program"].update(x=spec["x"], decimal=spec["decimal"], g_code_system=spec.get("g_code_system"), **spec.get("parameters", {}))
+    return str(p.write(folder, "lathe.toml"))
 
 
 class Words:
@@ -132,25 +102,25 @@ class Words:
         if x is not None:
             x = round(self.factor * x, 3) / self.factor
             if self.x is not None and self.rng.random() < self.share:
-                words += " U" + num(self.factor * (x - self.x))
+                words += " U" + number(self.factor * (x - self.x))
             else:
-                words += " X" + num(self.factor * x)
+                words += " X" + number(self.factor * x)
             self.x = x
         if z is not None:
             z = round(z, 3)
-            words += " W" + num(z - self.z) if self.z is not None and self.rng.random() < self.share else " Z" + num(z)
+            words += " W" + number(z - self.z) if self.z is not None and self.rng.random() < self.share else " Z" + number(z)
             self.z = z
         self.say((words + more).strip())
 
     def arc(self, clockwise, x, z, radius, by_radius):
         x, z = round(self.factor * x, 3) / self.factor, round(z, 3)
         if by_radius:
-            more = (" CR=" if self.spec["control"] == "sinumerik-turn" else " R") + num(radius)
+            more = (" CR=" if self.spec["control"] == "sinumerik-turn" else " R") + number(radius)
         else:
             import reader
 
             cx, cz, _ = reader.arc_by_radius((self.x, self.z), (x, z), radius, clockwise)
-            more = f" I{num(cx - self.x)} K{num(cz - self.z)}"
+            more = f" I{number(cx - self.x)} K{number(cz - self.z)}"
             # the centre is rounded: the end is set on the arc's own circle along Z by nobody, and controls allow 0.01 mm
         self.to("G2" if clockwise else "G3", x, z, more)
 
@@ -277,13 +247,13 @@ def program(rng, spec, kind):
         w.to("G0", 32, 2)
         if rng.random() < 0.6:
             taper = rng.choice((0, 0, -1.5))
-            w.to(c["turn"], 28, -rng.uniform(20, 0.6 * length), (f" R{num(taper)}" if taper else "") + " F0.25")
+            w.to(c["turn"], 28, -rng.uniform(20, 0.6 * length), (f" R{number(taper)}" if taper else "") + " F0.25")
             for x in (26.5, 25.2, 24.125):
-                w.say("X" + num(w.factor * x))
+                w.say("X" + number(w.factor * x))
         else:
             w.to(c["face"], 4, -1.0, " F0.2")
             for z in (-2.0, -3.25):
-                w.say("Z" + num(z))
+                w.say("Z" + number(z))
         w.x, w.z = 32, 2
         w.to("G0", 40, 5)
     elif kind == "multiple":
@@ -347,7 +317,7 @@ def program(rng, spec, kind):
             # outside, or inside a bore; spring passes, degression and angle
             inside = rng.random() < 0.3
             w.to("G0", 20 if inside else 32, 6)
-            w.say(f"G76 P1.5 Z{num(-rng.uniform(15, 40))} I{'' if inside else '-'}{rng.choice((2, 3))}. J{rng.choice((0.4, 0.6))} K1.84 R{rng.choice((1, 1.5, 2))} Q{rng.choice((0, 29, 29.5))} H{rng.choice((0, 2))}")
+            w.say(f"G76 P1.5 Z{number(-rng.uniform(15, 40))} I{'' if inside else '-'}{rng.choice((2, 3))}. J{rng.choice((0.4, 0.6))} K1.84 R{rng.choice((1, 1.5, 2))} Q{rng.choice((0, 29, 29.5))} H{rng.choice((0, 2))}")
             w.x = w.z = None
         for x in () if w.x is None else (29.6, 29.3, 29.1):
             w.to("G0", x)
@@ -386,7 +356,7 @@ def program(rng, spec, kind):
         elif way == "canned":
             w.to(c["threads"], 29.6, end, " F1.5")
             for x in (29.3, 29.1):
-                w.say("X" + num(w.factor * x))
+                w.say("X" + number(w.factor * x))
         else:
             w.say(f"{c['76']} P{rng.choice(('0200', '0110', '0305'))}{'00' if spec.get('perfect') else rng.choice(('00', '00', '00', '60'))} Q100 R0.05")
             w.to(c["76"], 29.08, end, " P920 Q300 F1.5")

@@ -10,11 +10,9 @@ For each pair (generate.py) the program is corrected (`vpost IN -m PROFILE -d DI
 input, in (r, z). README.md says what is asked. Exit status: 0 nothing found, 1 something, 2 usage.
 """
 
-import argparse
 import collections
 import json
 import math
-import multiprocessing
 import os
 import re
 import subprocess
@@ -22,9 +20,13 @@ import sys
 import tempfile
 import time
 
-import numpy as np
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from common import cases, folders, options  # noqa: E402  before numpy
+from common.command import run  # noqa: E402
+from common.folders import put  # noqa: E402
+
+import numpy as np  # noqa: E402
 
 import generate  # noqa: E402
 import match  # noqa: E402
@@ -41,6 +43,7 @@ LONGEST_WAY = 1.0
 SHORT_WAY = 0.06
 # A drill stands on the axis: what is written of it is off by what the lathe is off, tens of micrometres.
 ON_AXIS = 0.1
+SECONDS = 120  # for one answer
 MILLS = {"fanuc-lathe": "fanuc", "sinumerik-turn": "sinumerik", "linuxcnc-lathe": "linuxcnc"}
 CYCLES = {"g71", "g72", "g73", "g74", "g75", "g76", "turn", "threads", "face", "hole"}
 PROBLEMS = ("profile", "status", "passed-as-mill", "unreadable", "interference", "structure", "path", "surface", "rapid", "process", "perfect", "check-blind", "check-alarm", "damage-missed")
@@ -258,13 +261,10 @@ def lathe_codes(message):
     return re.findall(r"VP\d{4}", message)
 
 
-def command(vpost, spec, folder, name="in.nc", out="out.nc", extra=()):
-    options = ["-m", os.path.join(folder, "lathe.toml"), "-d", spec["control"], *extra]
-    return [vpost, os.path.join(folder, name), *options, "-o", os.path.join(folder, out), "--summary", os.path.join(folder, "summary.json")]
-
-
-def run(arguments):
-    return subprocess.run(arguments, capture_output=True, text=True, timeout=120, errors="replace")
+def correct(vpost, spec, folder, extra=()):
+    """Status, output and messages of the command on `in.nc`, which writes `out.nc`."""
+    path = lambda name: os.path.join(folder, name)  # noqa: E731
+    return run(vpost, path("in.nc"), "-m", path("lathe.toml"), "-d", spec["control"], *extra, "-o", path("out.nc"), "--summary", path("summary.json"), seconds=SECONDS)
 
 
 def assess(spec, text, out, angles=5):
@@ -355,20 +355,9 @@ def judge_pair(task):
     try:
         (judge_mill if mill else judge_lathe)(vpost, spec, text, folder, angles, verdict, number)
     except subprocess.TimeoutExpired:
-        verdict["problems"].append(("status", "no end within 120 s"))
-    if verdict["problems"]:
-        with open(os.path.join(folder, "found.txt"), "w", encoding="utf-8") as out:
-            out.write(json.dumps(verdict, indent=1) + "\n")
-    else:
-        for name in os.listdir(folder):
-            os.remove(os.path.join(folder, name))
-        os.rmdir(folder)
+        verdict["problems"].append(("status", f"no end within {SECONDS} s"))
+    folders.settle(folder, json.dumps(verdict, indent=1) if verdict["problems"] else "")
     return verdict
-
-
-def put(folder, name, text, encoding="utf-8"):
-    with open(os.path.join(folder, name), "w", encoding=encoding, newline="") as out:
-        out.write(text)
 
 
 def judge_mill(vpost, spec, text, folder, _angles, verdict, _number):
@@ -380,41 +369,41 @@ def judge_mill(vpost, spec, text, folder, _angles, verdict, _number):
         + "".join(f"[axis.{a}]\ntravel_mm = [-1000, 1000]\n" for a in "XYZ")
         + f"[squareness]\nEB0Z_urad = -80.0\n[tool]\nlengths_mm = {{ H1 = 0.0 }}\n[work_offsets_mm]\nG54 = [0, 0, {z}]\n[program]\ndecimal = \"millimetres\"\n")
     extra = ["--start-at", "100,0,100"]
-    done = run(command(vpost, {**spec, "control": dialect}, folder, extra=extra))
-    put(folder, "stderr.txt", done.stderr)
-    if done.returncode == 0:
+    status, _, errors = correct(vpost, {**spec, "control": dialect}, folder, extra)
+    put(folder, "stderr.txt", errors)
+    if status == 0:
         with open(os.path.join(folder, "out.nc"), encoding="latin-1", newline="") as file:
             if file.read() == text:
                 verdict["refused"] = "unchanged"
                 return
         verdict["problems"].append(("passed-as-mill", f"exit 0 under -d {dialect}"))
-    elif done.returncode != 1:
-        verdict["problems"].append(("status", f"exit {done.returncode}: {done.stderr[:200]}"))
+    elif status != 1:
+        verdict["problems"].append(("status", f"exit {status}: {errors[:200]}"))
     else:
-        verdict["refused"] = (lathe_codes(done.stderr) or ["?"])[0] + (" names it" if spec["control"] in done.stderr else "")
+        verdict["refused"] = (lathe_codes(errors) or ["?"])[0] + (" names it" if spec["control"] in errors else "")
 
 
 def judge_lathe(vpost, spec, text, folder, angles, verdict, number):
     put(folder, "in.nc", text)
     put(folder, "spec.json", json.dumps(spec, indent=1))
     generate.write(spec, folder)
-    done = run(command(vpost, spec, folder))
-    put(folder, "stderr.txt", done.stderr)
-    if done.returncode == 2:
-        verdict["problems"].append(("profile", " ".join(done.stderr.split())[:200]))
+    status, _, errors = correct(vpost, spec, folder)
+    put(folder, "stderr.txt", errors)
+    if status == 2:
+        verdict["problems"].append(("profile", " ".join(errors.split())[:200]))
         return
-    if done.returncode == 1:
-        verdict["refused"] = (lathe_codes(done.stderr) or ["?"])[0]
-        verdict["message"] = done.stderr[:300]
+    if status == 1:
+        verdict["refused"] = (lathe_codes(errors) or ["?"])[0]
+        verdict["message"] = errors[:300]
         if spec.get("perfect"):
             verdict["problems"].append(("perfect", f"a perfect lathe's program is refused: {verdict['refused']}"))
         return
-    if done.returncode:
-        verdict["problems"].append(("status", f"exit {done.returncode}: {done.stderr[:200]}"))
+    if status:
+        verdict["problems"].append(("status", f"exit {status}: {errors[:200]}"))
         return
     with open(os.path.join(folder, "out.nc"), encoding="utf-8", newline="") as file:
         out = file.read()
-    verdict["warned"] = sorted(set(lathe_codes(done.stderr)))
+    verdict["warned"] = sorted(set(lathe_codes(errors)))
     if spec.get("perfect"):
         if out != text:
             verdict["problems"].append(("perfect", "a perfect lathe's program is changed"))
@@ -447,7 +436,7 @@ def judge_lathe(vpost, spec, text, folder, angles, verdict, number):
         with tempfile.TemporaryDirectory() as second:
             put(second, "in.nc", text)
             generate.write(other, second)
-            if run(command(vpost, other, second)).returncode:
+            if correct(vpost, other, second).status:
                 continue
             with open(os.path.join(second, "out.nc"), encoding="utf-8", newline="") as file:
                 damaged = file.read()
@@ -461,9 +450,10 @@ def judge_lathe(vpost, spec, text, folder, angles, verdict, number):
 
 def check(vpost, spec, folder, name):
     """True, False, or None where `check` says nothing."""
-    done = run([vpost, "check", os.path.join(folder, "in.nc"), os.path.join(folder, name), "-m", os.path.join(folder, "lathe.toml"), "-d", spec["control"], "--json"])
+    path = lambda name: os.path.join(folder, name)  # noqa: E731
+    said = run(vpost, "check", path("in.nc"), path(name), "-m", path("lathe.toml"), "-d", spec["control"], "--json", seconds=SECONDS).output
     try:
-        return json.loads(done.stdout)["passed"]
+        return json.loads(said)["passed"]
     except (ValueError, KeyError):
         return None
 
@@ -494,39 +484,24 @@ def report(verdicts, keep, seconds):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--vpost", default="vpost")
-    parser.add_argument("--count", type=int, default=320)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--kind", choices=generate.KINDS, help="only this kind of program")
-    parser.add_argument("--seed", default="1")
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--angles", type=int, default=5, help="spindle angles of a surface under spindle error motion (harmonics 1 and 2 have no mean over 5); 720 for the record")
-    parser.add_argument("--mill", action="store_true", help="ask the mill's dialects instead: they must refuse and name the lathe's")
-    parser.add_argument("--keep", metavar="DIR", help="reproducers of failures go here; a temporary folder if not given")
-    parser.add_argument("--json", metavar="FILE", help="write all verdicts")
-    parser.add_argument("--self-test", action="store_true")
-    arguments = parser.parse_args()
-    if arguments.self_test:
+    words = options.parser(__doc__, 320, "first", "jobs", "json", vpost="vpost", seed="1")
+    words.add_argument("--kind", choices=generate.KINDS, help="only this kind of program")
+    words.add_argument("--angles", type=int, default=5, help="spindle angles of a surface under spindle error motion (harmonics 1 and 2 have no mean over 5); 720 for the record")
+    words.add_argument("--mill", action="store_true", help="ask the mill's dialects instead: they must refuse and name the lathe's")
+    given = words.parse_args()
+    if given.self_test:
         import self_test
 
         return self_test.run()
-    keep = arguments.keep or tempfile.mkdtemp(prefix="turning-")
-    os.makedirs(keep, exist_ok=True)
-    numbers = range(arguments.first, arguments.first + arguments.count)
-    if arguments.kind:
+    keep = folders.of_findings(given.keep, "turning-")
+    numbers, begun = cases.asked(given), time.time()
+    if given.kind:
         step = len(generate.KINDS)
-        numbers = [(arguments.first + k) * step + generate.KINDS.index(arguments.kind) for k in range(arguments.count)]
-    tasks = [(arguments.vpost, arguments.seed, n, keep, arguments.angles, arguments.mill) for n in numbers]
-    begun, verdicts = time.time(), []
-    with multiprocessing.Pool(arguments.jobs) as pool:
-        for verdict in pool.imap(judge_pair, tasks):
-            verdicts.append(verdict)
-            for name, message in verdict["problems"]:
-                print(f"{verdict['kind']} {verdict['number']} {name}: {message}", flush=True)
-    if arguments.json:
-        with open(arguments.json, "w", encoding="utf-8") as out:
-            json.dump(verdicts, out, indent=1)
+        numbers = [(given.first + k) * step + generate.KINDS.index(given.kind) for k in range(given.count)]
+    verdicts = cases.in_order(judge_pair, [(given.vpost, given.seed, n, keep, given.angles, given.mill) for n in numbers], given.jobs)
+    verdicts = cases.shown(verdicts, lambda v: (f"{v['kind']} {v['number']}", v["problems"]))
+    if given.json:
+        folders.put(".", given.json, json.dumps(verdicts, indent=1))
     return report(verdicts, keep, time.time() - begun)
 
 

@@ -17,12 +17,12 @@ LinuxCNC: tip numbers are those of X pointing down: 2 is Fanuc's 3 (tool orienta
 """
 
 import math
-import os
 import re
 import subprocess
-import tempfile
 
 import numpy as np
+
+from common.interpreter import interpret
 
 # Way from the nose's centre to the imaginary tip, (x, z) in radii: Fanuc's and Sinumerik's numbers, and LinuxCNC's.
 TIPS = {0: (0, 0), 1: (1, 1), 2: (1, -1), 3: (-1, -1), 4: (-1, 1), 5: (0, 1), 6: (1, 0), 7: (0, -1), 8: (-1, 0), 9: (0, 0)}
@@ -706,75 +706,67 @@ class Sinumerik(Player):
 
 def play_linuxcnc(text, spec):
     """LinuxCNC's interpreter plays it: motions of the tip in program coordinates (four decimals)."""
-    with tempfile.TemporaryDirectory() as folder:
-        table = os.path.join(folder, "tool.tbl")
-        with open(table, "w", encoding="ascii") as out:
-            for name, length in (spec.get("tool", {}).get("lengths_mm") or {"H1": [0, 0, 0]}).items():
-                nose = spec.get("tool", {}).get("noses", {}).get(name, {})
-                # the stand-alone interpreter reads its table in inches
-                out.write(f"T{name[1:]} P{name[1:]} X{length[0] / 25.4:.9f} Z{length[2] / 25.4:.9f} D{2 * nose.get('radius_mm', 0) / 25.4:.9f} Q{nose.get('direction', 0)}\n")
-        var = os.path.join(folder, "v.var")
-        open(var, "w", encoding="ascii").close()
-        source = os.path.join(folder, "in.ngc")
-        if not re.search(r"(?i)\bG0*[78]\b", re.sub(r"\([^)]*\)|;.*", "", text)) and spec.get("x", "radius") == "diameter":
-            text = "G7\n" + text
-        with open(source, "w", encoding="latin-1") as out:
-            out.write(text)
-        # the interpreter keeps the tool table in $HOME/.tool.mmap: with one HOME, runs at the same time mix their tools
-        try:
-            done = subprocess.run(["rs274", "-g", "-t", table, "-v", var, source], capture_output=True, text=True, timeout=20, cwd=folder, env={**os.environ, "HOME": folder})
-        except subprocess.TimeoutExpired:
-            raise Unreadable("rs274 does not end") from None
-        if "PROGRAM_END" not in done.stdout and "PROGRAM_STOP" not in done.stdout:
-            raise Unreadable("rs274: " + " ".join((done.stdout + done.stderr).split("\n")[-5:])[:200])
-        player = Player(spec)
-        sync, pos, scale = None, [0.0, 0.0], 1.0
-        known = False
-        for line in done.stdout.splitlines():
-            m = re.match(r"\s*(\d+)\s+N\S*\s+(\w+)\((.*)\)", line)
-            if not m:
-                continue
-            name, arguments = m.group(2), m.group(3)
-            numbers = [float(v) for v in re.findall(r"[-+]?\d+\.?\d*", arguments)] if not name.startswith(("COMMENT", "MESSAGE")) else []
-            player.line = int(m.group(1))
-            if name == "USE_LENGTH_UNITS":
-                scale = 25.4 if "INCH" in arguments else 1.0
-                if scale != 1.0:
-                    # 2.5 um a step: coarser than the tolerance
-                    raise Unreadable("rs274 prints four decimals of an inch")
-            elif name == "SET_FEED_RATE":
-                player.feed = numbers[0]
-            elif name == "SET_FEED_MODE":
-                player.feed_mode = "rev" if numbers[-1] else "min"
-            elif name == "SET_SPINDLE_SPEED":
-                player.spindle = numbers[-1]
-            elif name == "SET_SPINDLE_MODE":
-                player.speed_mode = 96 if numbers[-1] else 97
-            elif name in ("START_SPINDLE_CLOCKWISE", "START_SPINDLE_COUNTERCLOCKWISE", "STOP_SPINDLE_TURNING", "MIST_ON", "MIST_OFF", "FLOOD_ON", "FLOOD_OFF"):
-                player.m = (*[k for k in player.m if k[:4] != name[:4]], name)
-                player.events.append(("M", name))
-            elif name == "CHANGE_TOOL":
-                player.tool = int(numbers[0])
-                player.events.append(("T", player.tool))
-            elif name == "USE_TOOL_LENGTH_OFFSET":
-                player.offset = player.tool
-            elif name.startswith("START_SPEED_FEED_SYNC"):
-                sync = numbers[0]
-            elif name.startswith("STOP_SPEED_FEED_SYNC"):
-                sync = None
-            elif name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED"):
-                b = (numbers[0] * scale, numbers[2] * scale)
-                kind = "rapid" if name == "STRAIGHT_TRAVERSE" else "thread" if sync else "feed"
-                keep, player.feed = player.feed, (sync if sync else player.feed)
-                if not known and kind == "feed":
-                    player.x, player.z = pos
-                player.add(kind, b)
-                player.feed = keep
-                known = True
-            elif name == "ARC_FEED":
-                z, x, cz, cx, turn = (v * scale for v in numbers[:5])
-                player.add("feed", (x, z), arc_by_centre((player.x, player.z), (x, z), (cx, cz), turn < 0))
-        return player
+    tools = ""
+    for name, length in (spec.get("tool", {}).get("lengths_mm") or {"H1": [0, 0, 0]}).items():
+        nose = spec.get("tool", {}).get("noses", {}).get(name, {})
+        # the stand-alone interpreter reads its table in inches
+        tools += f"T{name[1:]} P{name[1:]} X{length[0] / 25.4:.9f} Z{length[2] / 25.4:.9f} D{2 * nose.get('radius_mm', 0) / 25.4:.9f} Q{nose.get('direction', 0)}\n"
+    if not re.search(r"(?i)\bG0*[78]\b", re.sub(r"\([^)]*\)|;.*", "", text)) and spec.get("x", "radius") == "diameter":
+        text = "G7\n" + text
+    try:
+        said = interpret(text, tools, "", 20)
+    except subprocess.TimeoutExpired:
+        raise Unreadable("rs274 does not end") from None
+    if not said.whole and "PROGRAM_STOP" not in said.calls:
+        raise Unreadable("rs274: " + said.trouble(200))
+    player = Player(spec)
+    sync, pos, scale = None, [0.0, 0.0], 1.0
+    known = False
+    for line in said.calls.splitlines():
+        m = re.match(r"\s*(\d+)\s+N\S*\s+(\w+)\((.*)\)", line)
+        if not m:
+            continue
+        name, arguments = m.group(2), m.group(3)
+        numbers = [float(v) for v in re.findall(r"[-+]?\d+\.?\d*", arguments)] if not name.startswith(("COMMENT", "MESSAGE")) else []
+        player.line = int(m.group(1))
+        if name == "USE_LENGTH_UNITS":
+            scale = 25.4 if "INCH" in arguments else 1.0
+            if scale != 1.0:
+                # 2.5 um a step: coarser than the tolerance
+                raise Unreadable("rs274 prints four decimals of an inch")
+        elif name == "SET_FEED_RATE":
+            player.feed = numbers[0]
+        elif name == "SET_FEED_MODE":
+            player.feed_mode = "rev" if numbers[-1] else "min"
+        elif name == "SET_SPINDLE_SPEED":
+            player.spindle = numbers[-1]
+        elif name == "SET_SPINDLE_MODE":
+            player.speed_mode = 96 if numbers[-1] else 97
+        elif name in ("START_SPINDLE_CLOCKWISE", "START_SPINDLE_COUNTERCLOCKWISE", "STOP_SPINDLE_TURNING", "MIST_ON", "MIST_OFF", "FLOOD_ON", "FLOOD_OFF"):
+            player.m = (*[k for k in player.m if k[:4] != name[:4]], name)
+            player.events.append(("M", name))
+        elif name == "CHANGE_TOOL":
+            player.tool = int(numbers[0])
+            player.events.append(("T", player.tool))
+        elif name == "USE_TOOL_LENGTH_OFFSET":
+            player.offset = player.tool
+        elif name.startswith("START_SPEED_FEED_SYNC"):
+            sync = numbers[0]
+        elif name.startswith("STOP_SPEED_FEED_SYNC"):
+            sync = None
+        elif name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED"):
+            b = (numbers[0] * scale, numbers[2] * scale)
+            kind = "rapid" if name == "STRAIGHT_TRAVERSE" else "thread" if sync else "feed"
+            keep, player.feed = player.feed, (sync if sync else player.feed)
+            if not known and kind == "feed":
+                player.x, player.z = pos
+            player.add(kind, b)
+            player.feed = keep
+            known = True
+        elif name == "ARC_FEED":
+            z, x, cz, cx, turn = (v * scale for v in numbers[:5])
+            player.add("feed", (x, z), arc_by_centre((player.x, player.z), (x, z), (cx, cz), turn < 0))
+    return player
 
 
 def offset_path(motions, nose):

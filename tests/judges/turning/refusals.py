@@ -13,7 +13,7 @@ import re
 import sys
 import tempfile
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
 import generate  # noqa: E402
 import judge  # noqa: E402
@@ -67,8 +67,8 @@ def ask(vpost, spec, text):
             with open(path, encoding="utf-8") as file:
                 profile = file.read().replace('x = "?"\n', "")
             judge.put(folder, "lathe.toml", profile)
-        done = judge.run(judge.command(vpost, spec, folder))
-        return done.returncode, done.stderr
+        done = judge.correct(vpost, spec, folder)
+        return done.status, done.errors
 
 
 def main():

@@ -183,7 +183,3 @@ def run():
             print(f"WRONG {name}: {'found' if found else 'not found'} {problems[:2]}")
     print(f"mistakes and right outputs: {count}; wrong: {wrong}")
     return 1 if wrong else 0
-
-
-if __name__ == "__main__":
-    raise SystemExit(run())

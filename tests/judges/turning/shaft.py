@@ -12,14 +12,13 @@ the radius of the corrected shaft is further off than tolerance and half an outp
 import argparse
 import csv
 import os
-import subprocess
 import sys
 import tempfile
 import tomllib
 
 import numpy as np
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
 import judge  # noqa: E402
 import reader  # noqa: E402
@@ -69,14 +68,14 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         judge.put(folder, "in.nc", SHAFT)
         names = [os.path.join(folder, name) for name in ("in.nc", "out.nc")]
-        done = subprocess.run([arguments.vpost, names[0], "-m", arguments.profile, "-o", names[1]], capture_output=True, text=True)
-        if done.returncode:
-            print(done.stderr)
+        status, _, errors = judge.run(arguments.vpost, names[0], "-m", arguments.profile, "-o", names[1])
+        if status:
+            print(errors)
             return 1
-        checked = subprocess.run([arguments.vpost, "check", *names, "-m", arguments.profile], capture_output=True, text=True)
+        checked = judge.run(arguments.vpost, "check", *names, "-m", arguments.profile)
         with open(names[1], encoding="ascii") as file:
             out = file.read()
-    print(checked.stdout.strip() or checked.stderr.strip())
+    print(checked.output.strip() or checked.errors.strip())
     zero, face = spec["work_offsets_mm"]["G54"][2], spec["spindle"]["face_mm"]
     z = np.arange(zero + END + 1.0, zero - 0.5, GRID)
     before, after = (1e3 * (radius_along(spec, text, z) - RADIUS) for text in (SHAFT, out))
@@ -88,7 +87,7 @@ def main():
     worst = [float(np.nanmax(np.abs(v))) for v in (before, after)]
     blocks = sum(line.startswith(("G1", "X", "Z")) for line in out.splitlines())
     print(f"largest on the radius over {len(z)} places x {ANGLES} angles: {worst[0]:.2f} -> {worst[1]:.2f} um, limit {limit:.2f} um; {blocks} blocks")
-    return 1 if checked.returncode or not worst[1] <= limit else 0
+    return 1 if checked.status or not worst[1] <= limit else 0
 
 
 if __name__ == "__main__":

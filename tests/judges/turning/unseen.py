@@ -16,8 +16,9 @@ import os
 import re
 import sys
 import tempfile
+import tomllib
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
 import generate  # noqa: E402
 import judge  # noqa: E402
@@ -34,8 +35,8 @@ def lathe(linuxcnc, x, system, perfect=False, say=()):
     }
     if not linuxcnc:
         spec["g_code_system"] = system
-        spec["parameters"] = {"thread_chamfer_leads": 1.0, "thread_chamfer_deg": 45.0, "roughing_escape_mm": 0.5, "groove_return_mm": 0.2, "thread_finishing_passes": 1, "thread_least_mm": 0.05, "thread_allowance_mm": 0, "thread_flank_from": '"start"', "drill_pecks": '"full"', "drill_return_mm": 0.5, "contour_compensation": '"finishing"'}
-        spec["parameters"].update(pair.split("=", 1) for pair in say)
+        spec["parameters"] = {"thread_chamfer_leads": 1.0, "thread_chamfer_deg": 45.0, "roughing_escape_mm": 0.5, "groove_return_mm": 0.2, "thread_finishing_passes": 1, "thread_least_mm": 0.05, "thread_allowance_mm": 0, "thread_flank_from": "start", "drill_pecks": "full", "drill_return_mm": 0.5, "contour_compensation": "finishing"}
+        spec["parameters"].update(tomllib.loads("\n".join(say)))
     if not perfect:
         at = [-900 + 150 * k for k in range(13)]
         spec["axes"]["Z"]["table"] = {"position_mm": at, "EZZ_um": SINE, "EXZ_um": SINE[::-1], "EBZ_urad": [4 * v for v in SINE]}
@@ -67,14 +68,14 @@ def one(vpost, path, spec, folder, mill):
             return ("WRONG" if name == "passed-as-mill" else name), message
         return "refused " + verdict["refused"], ""
     generate.write(spec, folder)
-    done = judge.run(judge.command(vpost, spec, folder))
-    if done.returncode == 2:
-        return "profile", " ".join(done.stderr.split())[:120]
-    if done.returncode == 1:
-        code = (judge.lathe_codes(done.stderr) or ["?"])[0]
-        return f"refused {code}" + ("" if re.search(r"in\.nc:\d+", done.stderr) else " no line"), done.stderr.split("\n")[0][:160]
-    if done.returncode:
-        return "crash", f"exit {done.returncode}"
+    done = judge.correct(vpost, spec, folder)
+    if done.status == 2:
+        return "profile", " ".join(done.errors.split())[:120]
+    if done.status == 1:
+        code = (judge.lathe_codes(done.errors) or ["?"])[0]
+        return f"refused {code}" + ("" if re.search(r"in\.nc:\d+", done.errors) else " no line"), done.errors.split("\n")[0][:160]
+    if done.status:
+        return "crash", f"exit {done.status}"
     with open(os.path.join(folder, "out.nc"), "rb") as file:
         out = file.read()
     if spec.get("perfect"):
