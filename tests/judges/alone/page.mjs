@@ -2,94 +2,12 @@
 //
 //     node --experimental-websocket tests/judges/alone/page.mjs chromium vpost.html PROFILE_FOLDER
 //
-// Chromium is driven by DevTools, Firefox by BiDi. The page is used as a person uses it: files are given to it, fields
+// The page is used as a person uses it: files are given to it, fields
 // filled by their labels, buttons pressed by their names, what it says is read; none of its script is touched.
 
-import { spawn } from "node:child_process";
 import { createInterface } from "node:readline";
 
-/** Starts a browser and speaks with it over the WebSocket that it names: questions by number, what comes unasked. */
-async function started(command, words, listens, path = "") {
-  const child = spawn(command, words, { stdio: ["ignore", "ignore", "pipe"] });
-  const address = await new Promise((done, failed) => {
-    let said = "";
-    child.stderr.on("data", (bytes) => {
-      said += bytes;
-      const found = listens.exec(said);
-      if (found) done(found[1] + path);
-    });
-    child.on("error", failed).on("exit", () => failed(new Error(said)));
-  });
-  const line = new WebSocket(address);
-  await new Promise((done, failed) => Object.assign(line, { onopen: done, onerror: failed }));
-  const waiting = new Map();
-  const unasked = [];
-  let last = 0;
-  line.onmessage = ({ data }) => {
-    const told = JSON.parse(data);
-    const [done, failed] = waiting.get(told.id) ?? [() => unasked.push(told)];
-    waiting.delete(told.id);
-    if (told.error) failed(new Error(JSON.stringify(told)));
-    else done(told.result);
-  };
-  const ask = (method, params = {}, more = {}) =>
-    new Promise((...answer) => {
-      waiting.set(++last, answer);
-      line.send(JSON.stringify({ id: last, method, params, ...more }));
-    });
-  return { child, ask, unasked };
-}
-
-async function chromium(page, folder) {
-  const words = ["--headless", "--no-sandbox", "--disable-gpu", "--window-size=1400,1000", "--remote-debugging-port=0"];
-  words.push(`--user-data-dir=${folder}`, "about:blank");
-  const { child, ask, unasked } = await started("chromium", words, /DevTools listening on (ws:\S+)/);
-  const { targetId } = await ask("Target.createTarget", { url: "about:blank" });
-  const { sessionId } = await ask("Target.attachToTarget", { targetId, flatten: true });
-  const tell = (method, params) => ask(method, params, { sessionId });
-  for (const part of ["Page", "Runtime", "Log", "Network"]) await tell(`${part}.enable`);
-  await tell("Page.navigate", { url: `file://${page}` });
-  const evaluate = async (expression) => {
-    const how = { expression, awaitPromise: true, returnByValue: true };
-    const { result, exceptionDetails } = await tell("Runtime.evaluate", how);
-    if (exceptionDetails) throw new Error(JSON.stringify(exceptionDetails));
-    return result.value;
-  };
-  const into = async (selector, files) => {
-    const { root } = await tell("DOM.getDocument");
-    const { nodeId } = await tell("DOM.querySelector", { nodeId: root.nodeId, selector });
-    await tell("DOM.setFileInputFiles", { files, nodeId });
-  };
-  /** A drag of files and folders from the disk, as the system hands it over. */
-  const drag = async (files) => {
-    const [x, y] = await evaluate(`(() => { const place = document.getElementById("drop"); place.scrollIntoView();
-      const box = place.getBoundingClientRect(); return [box.x + 20, box.y + 20]; })()`);
-    const data = { items: [], files, dragOperationsMask: 1 };
-    for (const type of ["dragEnter", "dragOver", "drop"]) await tell("Input.dispatchDragEvent", { type, x, y, data });
-  };
-  return { child, unasked, evaluate, into, drag };
-}
-
-async function firefox(page, folder) {
-  const words = ["--headless", "--remote-debugging-port", "0", "--profile", folder, "--no-remote", "about:blank"];
-  const listens = /WebDriver BiDi listening on (ws:\S+)/;
-  const { child, ask, unasked } = await started("firefox-esr", words, listens, "/session");
-  await ask("session.new", { capabilities: {} });
-  const { context } = (await ask("browsingContext.getTree")).contexts[0];
-  await ask("session.subscribe", { events: ["log.entryAdded", "network.beforeRequestSent"] });
-  await ask("browsingContext.navigate", { context, url: `file://${page}`, wait: "complete" });
-  const evaluate = async (script) => {
-    const expression = `(async () => JSON.stringify(await (${script})))()`;
-    const answer = await ask("script.evaluate", { expression, target: { context }, awaitPromise: true });
-    if (answer.type === "exception") throw new Error(JSON.stringify(answer.exceptionDetails));
-    return answer.result.value === undefined ? undefined : JSON.parse(answer.result.value);
-  };
-  const into = async (selector, files) => {
-    const { nodes } = await ask("browsingContext.locateNodes", { context, locator: { type: "css", value: selector } });
-    await ask("input.setFiles", { context, element: { sharedId: nodes[0].sharedId }, files });
-  };
-  return { child, unasked, evaluate, into };
-}
+import { browsers } from "../../page/browsers.mjs";
 
 /** What stands on the page. */
 const STATE = `(() => {
@@ -151,7 +69,7 @@ const fill = (name, value) => `(() => {
 })()`;
 
 const [name, page, folder] = process.argv.slice(2);
-const { child, unasked, evaluate, into, drag } = await { chromium, firefox }[name](page, folder);
+const { evaluate, into, drag, told, end } = await browsers[name](page, folder);
 const until = (script, seconds) =>
   evaluate(`new Promise((done) => {
     const end = performance.now() + ${seconds * 1000};
@@ -184,14 +102,7 @@ const hands = {
       ? evaluate(SAVED)
       : null,
   /** Requests that leave the computer, messages of the console. */
-  told: async () =>
-    unasked
-      .filter(({ method, params }) =>
-        /request/i.test(method)
-          ? !/^(file|blob|data|about):/.test(params.request?.url ?? "file:")
-          : /consoleAPICalled|exceptionThrown|entryAdded/.test(method),
-      )
-      .map(({ method, params }) => `${method} ${JSON.stringify(params).slice(0, 300)}`),
+  told: async () => told().map(({ method, params }) => `${method} ${JSON.stringify(params).slice(0, 300)}`),
 };
 for await (const line of createInterface({ input: process.stdin })) {
   const { do: what, ...how } = JSON.parse(line);
@@ -201,5 +112,5 @@ for await (const line of createInterface({ input: process.stdin })) {
   );
   console.log(JSON.stringify(answer));
 }
-child.kill();
+end();
 process.exit(0);

@@ -9,6 +9,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 
 
@@ -100,6 +101,12 @@ def main(given: argparse.Namespace) -> int:
         with belief(page.Page, "ask", lie):
             for case in page.campaign(given, "chromium", 0, page_directed.ALL):
                 trial.ask(case.found, f"page: a page that says Done to everything is found by {case.number}")
+        with tempfile.TemporaryDirectory() as folder:
+            text = pathlib.Path(given.page).read_text(encoding="utf-8")
+            given.page = os.path.join(folder, "vpost.html")
+            pathlib.Path(given.page).write_text(text + '<img src="http://127.0.0.1:9/x.png" alt="">', encoding="utf-8")
+            case, = page.campaign(given, "chromium", 0, {"told": page_directed.bad_archives})
+            trial.ask("page told" in dict(case.found), "page: one that asks for a picture is found")
     else:
         print("page: not asked, it needs --page, chromium and node")
     return trial.status()
