@@ -141,7 +141,7 @@ def of_server(text: str, diagnostics: list[dict]) -> list[tuple]:
         line = lines[row] if row < len(lines) else ""
         column = len(line.encode("utf-16-le")[: 2 * at].decode("utf-16-le", "replace")) + 1
         kind = {1: "error", 2: "warning"}.get(one["severity"], "other")
-        out.append((kind, str(one.get("code")), one["message"].split("\n")[0], row + 1, column))
+        out.append((kind, str(one.get("code")), one["message"].split("\n")[0].replace("\t", "    "), row + 1, column))
     return sorted(out)
 
 

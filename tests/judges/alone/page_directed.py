@@ -54,7 +54,7 @@ def table_of_another(page: Page, case: Case, rng: random.Random) -> None:
 
 def changed(page: Page, case: Case, rng: random.Random) -> None:
     """A file changes between the choice and the run, and while it is read: refused, or of one text."""
-    body = "".join(f"G1 X{k % 90}.{k % 10} Y{k % 70}. F500.\n" for k in range(200_000))
+    body = "".join(f"G1 X{k % 90}.{k % 10} Y{k % 70}. F5000.\n" for k in range(200_000))
     text = jobs.program(rng).replace("M30\n", body + "M30\n")
     for pause in (-1, 0.0, 0.2, 0.5, 1.0):
         page.ask("press", label="Remove all")
@@ -65,9 +65,9 @@ def changed(page: Page, case: Case, rng: random.Random) -> None:
         if pause >= 0:
             page.ask("begin")
             time.sleep(pause)
-        path.write_text(text.replace("F500", "F300"), encoding="utf-8")
+        path.write_text(text.replace("F5000", "F3000"), encoding="utf-8")
         state = page.ended() if pause >= 0 else page.run()
-        feeds = [feed for feed in (b"F500.", b"F300.") if feed in page.take("part_corrected.nc")]
+        feeds = [feed for feed in (b"F5000.", b"F3000.") if feed in page.take("part_corrected.nc")]
         case.tally[f"page changed {'while read' if pause >= 0 else 'before'}: {'done' if feeds else 'refused'}"] += 1
         if len(feeds) == 2:
             case.find("page mixed", f"{page.browser}: another text {pause} s behind the start, the output has some of both")
