@@ -10,6 +10,7 @@ import shlex
 import shutil
 import subprocess
 import tempfile
+import threading
 import zipfile
 from collections.abc import Callable
 
@@ -18,7 +19,7 @@ from common.cases import Case
 from common.command import short
 
 SCRIPT = pathlib.Path(__file__).with_name("page.mjs")
-GOOD, LISTED_S, ENDED_S = "good", 20, 120
+GOOD, LISTED_S, ENDED_S, PATIENCE_S = "good", 20, 120, 180
 NAMES = ("part.nc", "Деталь 1.nc", "a=1.nc", "it's.nc", "O1000.nc", "part.v2.ngc")
 FIELDS = ("dialect", "tolerance", "accept", "work-offset", "zero", "tool", "path-control", "outside", "set", "decimal")
 FLAGS = ("strict", "guard")
@@ -38,7 +39,10 @@ class Page:
     def ask(self, what: str, **how: object) -> object:
         self.child.stdin.write(json.dumps({"do": what, **how}) + "\n")
         self.child.stdin.flush()
-        answer = json.loads(self.child.stdout.readline() or '{"error": "the browser ended"}')
+        patience = threading.Timer(PATIENCE_S, self.child.kill)
+        patience.start()
+        answer = json.loads(self.child.stdout.readline() or '{"error": "no answer, or the browser ended"}')
+        patience.cancel()
         if "error" in answer:
             raise RuntimeError(f"{self.browser}: {what}: {answer['error']}")
         return answer["value"]
