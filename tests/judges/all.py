@@ -26,6 +26,7 @@ from common import cases, command, folders, options
 HERE = pathlib.Path(__file__).resolve().parent
 # Numbers and seeds at which nothing is found; what a judge does find elsewhere is an open finding, for its own command.
 COUNTS = {
+    "alone": "--only settings --first 4 --count 26",
     "calibrate": "--count 1 --only identity --match own",
     "calibrate_turning": "--count 1",
     "compensation": "--count 8 --first 20",
@@ -51,7 +52,8 @@ COUNTS = {
     "tilted_planes": "--count 4",
     "turning": "--count 16",
 }
-WITHOUT_NUMPY = {"damage", "dialects", "files", "frames", "protocols", "reader", "same_bytes", "shops", "sinumerik"}
+WITHOUT_NUMPY = {"alone", "damage", "dialects", "files", "frames", "protocols", "reader", "same_bytes", "shops"}
+WITHOUT_NUMPY |= {"sinumerik"}
 INTERPRETER = {"compensation", "cutter_radius", "five_axis", "reader", "shops", "turning"}
 
 

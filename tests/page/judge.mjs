@@ -3,16 +3,17 @@
 //     node --experimental-websocket tests/page/judge.mjs --vpost target/release/vpost --page target/page/vpost.html \
 //         --machine machine-profiles/stan_s500.toml --dialect linuxcnc [--browser firefox] [--speed BIG.nc] PROGRAM…
 //
-// Browsers are driven by their own protocols over a WebSocket: DevTools (Chromium), BiDi (Firefox). The page is opened from
-// the disk and gets its files by its own input. Status, program and summary must be the command's; the page may ask the
-// network for nothing and say nothing to the console; no task on its own thread may last longer than 50 ms (Chromium tells).
-// Exit status 1 where one of these does not hold.
+// The page is opened from the disk and gets its files by its own input. Status, program and summary must be the command's;
+// the page may ask the network for nothing and say nothing to the console; no task on its own thread may last longer than
+// 50 ms (Chromium tells). Exit status 1 where one of these does not hold.
 
-import { execFileSync, spawn, spawnSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, dirname, join, resolve } from "node:path";
 import { parseArgs } from "node:util";
+
+import { browsers } from "./browsers.mjs";
 
 const LONGEST_MS = 50;
 /** A program that takes the command longer than this is none for a page, ms. */
@@ -29,128 +30,6 @@ const { values: given, positionals: programs } = parseArgs({
     speed: { type: "string", multiple: true, default: [] },
   },
 });
-
-/** Questions and answers by number over a WebSocket, and what is told between them. */
-async function socket(address) {
-  const line = new WebSocket(address);
-  await new Promise((done, failed) => Object.assign(line, { onopen: done, onerror: failed }));
-  const waiting = new Map(),
-    events = [];
-  let next = 1;
-  line.onmessage = ({ data }) => {
-    const told = JSON.parse(data);
-    const asked = waiting.get(told.id);
-    if (!asked) return events.push(told);
-    waiting.delete(told.id);
-    if (told.error) asked.failed(new Error(JSON.stringify(told)));
-    else asked.done(told.result);
-  };
-  const ask = (method, params = {}, more = {}) =>
-    new Promise((done, failed) => {
-      waiting.set(next, { done, failed });
-      line.send(JSON.stringify({ id: next++, method, params, ...more }));
-    });
-  return { ask, events };
-}
-
-/** Starts a program and waits for the address that it prints. */
-function address(command, args, pattern) {
-  const child = spawn(command, args, { stdio: ["ignore", "pipe", "pipe"] });
-  return new Promise((done, failed) => {
-    let said = "";
-    const read = (bytes) => {
-      said += bytes;
-      const found = pattern.exec(said);
-      if (found) done([child, found[1]]);
-    };
-    child.stdout.on("data", read);
-    child.stderr.on("data", read);
-    child.on("exit", () => failed(new Error(said)));
-    child.on("error", failed);
-  });
-}
-
-async function chromium(page, folder) {
-  const [child, at] = await address(
-    "chromium",
-    [
-      "--headless",
-      "--no-sandbox",
-      "--disable-gpu",
-      "--remote-debugging-port=0",
-      `--user-data-dir=${folder}`,
-      "about:blank",
-    ],
-    /DevTools listening on (ws:\S+)/,
-  );
-  const { ask, events } = await socket(at);
-  const { targetId } = await ask("Target.createTarget", { url: "about:blank" });
-  const { sessionId } = await ask("Target.attachToTarget", { targetId, flatten: true });
-  const tell = (method, params) => ask(method, params, { sessionId });
-  for (const part of ["Page", "Runtime", "Log", "Network"]) await tell(`${part}.enable`);
-  await tell("Page.navigate", { url: `file://${page}` });
-  return {
-    end: () => child.kill(),
-    evaluate: async (expression) => {
-      const { result, exceptionDetails } = await tell("Runtime.evaluate", {
-        expression,
-        awaitPromise: true,
-        returnByValue: true,
-      });
-      if (exceptionDetails) throw new Error(JSON.stringify(exceptionDetails));
-      return result.value;
-    },
-    choose: async (files) => {
-      const { root } = await tell("DOM.getDocument");
-      const { nodeId } = await tell("DOM.querySelector", { nodeId: root.nodeId, selector: "#picked" });
-      await tell("DOM.setFileInputFiles", { files, nodeId });
-    },
-    told: () =>
-      events.filter(
-        ({ method, params }) =>
-          /consoleAPICalled|exceptionThrown|entryAdded/.test(method) ||
-          (method === "Network.requestWillBeSent" && !/^(file|blob|data|about):/.test(params.request.url)),
-      ),
-  };
-}
-
-async function firefox(page, folder) {
-  const [child, at] = await address(
-    "firefox-esr",
-    ["--headless", "--remote-debugging-port", "0", "--profile", folder, "--no-remote", "about:blank"],
-    /WebDriver BiDi listening on (ws:\S+)/,
-  );
-  const { ask, events } = await socket(`${at}/session`);
-  await ask("session.new", { capabilities: {} });
-  const context = (await ask("browsingContext.getTree")).contexts[0].context;
-  await ask("session.subscribe", { events: ["log.entryAdded", "network.beforeRequestSent"] });
-  await ask("browsingContext.navigate", { context, url: `file://${page}`, wait: "complete" });
-  return {
-    end: () => child.kill(),
-    evaluate: async (expression) => {
-      const answer = await ask("script.evaluate", {
-        expression: `(async () => JSON.stringify(await (${expression})))()`,
-        target: { context },
-        awaitPromise: true,
-      });
-      if (answer.type === "exception") throw new Error(JSON.stringify(answer.exceptionDetails));
-      return answer.result.value === undefined ? undefined : JSON.parse(answer.result.value);
-    },
-    choose: async (files) => {
-      const { nodes } = await ask("browsingContext.locateNodes", {
-        context,
-        locator: { type: "css", value: "#picked" },
-      });
-      await ask("input.setFiles", { context, element: { sharedId: nodes[0].sharedId }, files });
-    },
-    told: () =>
-      events.filter(
-        ({ method, params }) =>
-          method === "log.entryAdded" ||
-          (method === "network.beforeRequestSent" && !/^(file|blob|data|about):/.test(params.request.url)),
-      ),
-  };
-}
 
 /** Waits in the page. */
 async function wait(browser, script, seconds = 120) {
@@ -174,7 +53,7 @@ function withTables(profile) {
 async function inPage(browser, program) {
   const files = [resolve(program), ...withTables(given.machine)];
   await browser.evaluate("(files.clear(), made.clear(), typed.clear(), job = JOBS[0], show(), 0)");
-  await browser.choose(files);
+  await browser.into("#picked", files);
   await wait(browser, `files.size === ${files.length}`);
   await browser.evaluate(
     `(typed.set("dialect", ${JSON.stringify(given.dialect)}), show(), by("status").textContent = "", window.begun = performance.now(), by("run").click(), 0)`,
@@ -225,7 +104,7 @@ let wrong = 0;
 const expected = new Map([...programs, ...given.speed].map((program) => [program, byCommand(program)]));
 for (const name of given.browser) {
   const folder = mkdtempSync(join(tmpdir(), "vpost-browser-"));
-  const browser = await { chromium, firefox }[name](resolve(given.page), folder);
+  const browser = await browsers[name](resolve(given.page), folder);
   try {
     await wait(browser, "described.size > 0");
     await browser.evaluate(`(window.tasks = [], PerformanceObserver.supportedEntryTypes.includes("longtask")
