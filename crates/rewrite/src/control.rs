@@ -9,7 +9,7 @@ use nc_program::{LastFeed, Modal, PathControl};
 use toolpath::{ArcChords, Feed, Motion, Shape};
 
 use crate::job::{CONTROL_LEAVES, Job, Warning};
-use crate::lag::{Lag, Turns, speed_mm_s};
+use crate::lag::{Lag, Turns, farther, speed_mm_s};
 use crate::path_mode::{self, PathMode};
 
 /// Where something is cut with the control farthest off the path.
@@ -50,36 +50,30 @@ fn chords(job: &Job<'_>) -> Option<ArcChords> {
     job.interpolator.arcs.or_else(|| job.dialect.output.arc_chord_tolerance_mm.map(ArcChords::Tolerance))
 }
 
-/// How far the control leaves the path in a state, mm; infinite where nobody knows.
-#[inline]
-pub(crate) fn leaves_mm(job: &Job<'_>, modal: &Modal) -> f64 {
-    let off_mm = modal.path_control.off_mm;
-    if off_mm.is_infinite() { job.interpolator.blending_mm.unwrap_or(off_mm) } else { off_mm }
-}
-
 impl ControlPart {
     /// A feed is made in this state; the corners of a hole lie in the air.
     #[inline]
     pub(crate) fn cut(&mut self, job: &Job<'_>, modal: &Modal, place: impl FnOnce() -> (Range<u64>, u64)) {
-        let off_mm = leaves_mm(job, modal);
+        let off_mm = job.leaves_mm(modal);
         if self.corner.as_ref().is_none_or(|known| off_mm > known.by.off_mm) {
             let (span, line) = place();
             self.corner = Some(Corner { by: PathControl { off_mm, ..modal.path_control }, span, line });
         }
     }
 
-    /// Axes that lag make a feed.
+    /// Axes that lag make feeds at these speeds.
     #[inline]
     pub(crate) fn lag(
         &mut self,
         job: &Job<'_>,
         modal: &Modal,
-        feed: (LastFeed, Turns),
-        place: impl FnOnce() -> (Range<u64>, u64),
+        turns: Turns,
+        feeds: impl IntoIterator<Item = LastFeed>,
+        place: impl Fn() -> (Range<u64>, u64),
     ) {
         if let Some(following) = &job.interpolator.following {
-            let waits_mm = following.in_position_mm.filter(|_| leaves_mm(job, modal) == 0.0);
-            self.lag.corner(job, waits_mm, feed, place);
+            let feeds = feeds.into_iter();
+            feeds.for_each(|feed| self.lag.corner(job, following, modal, (feed, turns), &place));
         }
     }
 
@@ -126,13 +120,8 @@ impl ControlPart {
     }
 
     pub(crate) fn add(&mut self, later: &Self) {
-        let (off, more) = (|corner: &Option<Corner>| corner.as_ref().map(|at| at.by.off_mm), &later.corner);
-        if off(more) > off(&self.corner) {
-            self.corner.clone_from(more);
-        }
-        if later.arc.as_ref().map(|at| at.off_mm) > self.arc.as_ref().map(|at| at.off_mm) {
-            self.arc.clone_from(&later.arc);
-        }
+        farther(&mut self.corner, &later.corner, |at| at.by.off_mm);
+        farther(&mut self.arc, &later.arc, |at| at.off_mm);
         self.lag.add(&later.lag);
         later.stops.into_iter().for_each(|more| self.add_stops(more));
     }
@@ -143,8 +132,8 @@ impl ControlPart {
         self.stops = Some(Stops { count: count + more.count, ns });
     }
 
-    /// By how much the control leaves the path at most, mm: at corners, on arcs and by lag together; infinite where nobody says, `None`
-    /// where nothing is cut.
+    /// By how much the control leaves the path at most, mm: at corners, on arcs and by lag together; infinite where nobody
+    /// says, `None` where nothing is cut.
     #[must_use]
     pub fn off_mm(&self) -> Option<f64> {
         let corner_mm = self.corner.as_ref()?.by.off_mm;

@@ -4,7 +4,7 @@ use correction::Options;
 use diagnostic::{Code, Diagnostic};
 use machine_model::{Models, PathModel};
 use nc_dialect::Dialect;
-use nc_program::Setup;
+use nc_program::{Modal, Setup};
 use toolpath::Interpolator;
 
 use crate::datum::Datums;
@@ -109,6 +109,13 @@ impl<'a> Job<'a> {
     /// What a datum is asked of.
     pub(crate) fn machine(&self) -> (&'a dyn PathModel, &'a Dialect) {
         (self.models.axes, self.dialect)
+    }
+
+    /// How far the control leaves the path in a state, mm; infinite where nobody knows.
+    #[inline]
+    pub(crate) fn leaves_mm(&self, modal: &Modal) -> f64 {
+        let off_mm = modal.path_control.off_mm;
+        if off_mm.is_infinite() { self.interpolator.blending_mm.unwrap_or(off_mm) } else { off_mm }
     }
 }
 

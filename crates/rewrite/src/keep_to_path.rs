@@ -5,14 +5,13 @@ use nc_program::{Compensation, PathControl};
 use nc_syntax::Block;
 use toolpath::Motion;
 
-use crate::control::leaves_mm;
 use crate::job::KEPT_NOWHERE;
 use crate::pass::Pass;
 
 impl Pass<'_> {
     /// A feed that came now would be made farther off the path than is asked for.
     pub(crate) fn strays(&self) -> bool {
-        leaves_mm(self.job, self.state.interpreter.modal()) > self.job.path_mode.most_mm()
+        self.job.leaves_mm(self.state.interpreter.modal()) > self.job.path_mode.most_mm()
     }
 
     /// Puts in front of a block that feeds what keeps the control to the path, where that is not in force; `before`: which

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use diagnostic::{Diagnostic, Text, both};
 use nc_program::{LastFeed, Modal};
-use toolpath::{Feed, Shape};
+use toolpath::{Feed, Following, Shape};
 
 use crate::job::{CONTROL_LEAVES, Job, Warning};
 
@@ -48,19 +48,18 @@ pub(crate) fn speed_mm_s(feed: LastFeed) -> f64 {
 
 impl Lag {
     /// A feed is made at the speed of an F; of rotary axes that turn meanwhile nothing is known.
-    ///
-    /// * `waits_mm` – how near the control lets the axes come at its end, where it waits for them
     pub(crate) fn corner(
         &mut self,
         job: &Job<'_>,
-        waits_mm: Option<f64>,
+        following: &Following,
+        modal: &Modal,
         (feed, turns): (LastFeed, Turns),
         place: impl FnOnce() -> (Range<u64>, u64),
     ) {
-        let Some(following) = &job.interpolator.following else { return };
         if turns == Turns::Too {
             return see(&mut self.corner, job, f64::INFINITY, |_| f64::INFINITY, place);
         }
+        let waits_mm = following.in_position_mm.filter(|_| job.leaves_mm(modal) == 0.0);
         let off_mm = |speed_mm_s: f64| {
             let off_mm = following.corner_mm(speed_mm_s, job.interpolator.acceleration_mm_s2);
             waits_mm.map_or(off_mm, |waits_mm| off_mm.min(waits_mm))
@@ -85,11 +84,8 @@ impl Lag {
     }
 
     pub(crate) fn add(&mut self, later: &Self) {
-        for (known, more) in [(&mut self.corner, &later.corner), (&mut self.arc, &later.arc)] {
-            if more.as_ref().map(|at| at.off_mm) > known.as_ref().map(|at| at.off_mm) {
-                known.clone_from(more);
-            }
-        }
+        farther(&mut self.corner, &later.corner, |at| at.off_mm);
+        farther(&mut self.arc, &later.arc, |at| at.off_mm);
     }
 
     /// At most, mm.
@@ -137,6 +133,13 @@ impl Lag {
         let tolerance_mm = job.options.tolerance_mm;
         let beyond = self.places().filter(move |at| at.off_mm > tolerance_mm);
         beyond.map(move |at| at.warning(1e3 * tolerance_mm))
+    }
+}
+
+/// Keeps the later place where it is farther off the path.
+pub(crate) fn farther<T: Clone>(known: &mut Option<T>, later: &Option<T>, off_mm: impl Fn(&T) -> f64) {
+    if later.as_ref().map(&off_mm) > known.as_ref().map(&off_mm) {
+        known.clone_from(later);
     }
 }
 

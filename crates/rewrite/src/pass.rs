@@ -391,7 +391,7 @@ impl Pass<'_> {
             let Motion::Feed(feed) = motion else { continue };
             let (control, modal) = (&mut self.tally.figures.control, self.state.interpreter.modal());
             control.cut(self.job, modal, || (span.clone(), line));
-            control.lag(self.job, modal, (modal.last_feed, Turns::of(feed)), || (span.clone(), line));
+            control.lag(self.job, modal, Turns::of(feed), [modal.last_feed], || (span.clone(), line));
             control.stop(self.job, modal, blocks_out, || Way::of(feed).length_mm());
         }
         let Tally { figures, notices, .. } = &mut self.tally;

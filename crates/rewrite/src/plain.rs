@@ -132,9 +132,8 @@ impl Pass<'_> {
             (feed, LastFeed::PerMinute(_, units)) => Some(LastFeed::PerMinute(feed, units)),
             (_, unknown) => Some(unknown),
         };
-        for feed in ends[..run.count].iter().filter_map(said).chain([before]) {
-            control.lag(self.job, modal, (feed, Turns::Not), place);
-        }
+        let feeds = ends[..run.count].iter().filter_map(said).chain([before]);
+        control.lag(self.job, modal, Turns::Not, feeds, place);
         for ((line, end), counts) in lines.iter().zip(ends).zip(run.counts).take(run.count) {
             if counts == [None; 3] {
                 self.state.emitter.pass_line(line, &mut self.out);

@@ -276,7 +276,7 @@ impl<'a, 'n> Program<'a, 'n> {
                 let modal = self.interpreter.modal();
                 let place = || (block.file_range(), line);
                 self.control.cut(self.job, modal, place);
-                self.control.lag(self.job, modal, (modal.last_feed, Turns::of(feed)), place);
+                self.control.lag(self.job, modal, Turns::of(feed), [modal.last_feed], place);
                 let apart = radii_apart(motion).unwrap_or_default();
                 self.control.arc(self.job, modal, (feed, apart), (&block.file_range(), line));
             }
