@@ -260,8 +260,16 @@ fn axes_that_lag_are_the_controls_part() {
     assert!(unknown.is_none() && said.contains("is not known"), "{said}");
     let lines: String = (1..40).map(|k| format!("X{k}.5{}\n", if k == 20 { " F600." } else { "" })).collect();
     let lines = format!("G21 G90 G54\nG0 X0. Y0. Z0.\nG1 F60.\n{lines}X50. F60.\nM30\n");
-    let (um, said) = shop.said(&format!("{{ {exact}, following = {{ gain_1_s = 50 }} }}"), &lines);
-    near((um.as_f64(), said), 73.576);
+    let slow = |program: &str| {
+        let (um, said) = shop.said(&format!("{{ {exact}, following = {{ gain_1_s = 50 }} }}"), program);
+        (um.as_f64(), said)
+    };
+    near(slow(&lines), 73.576);
+    // An F that nothing is fed at does not.
+    let unused = lines.replace("X20.5 F600.\n", "F600.\nX20.5 F60.\n");
+    near(slow(&unused), 7.358);
+    let (_, said) = um("following = { gain_1_s = 0.1 }", "F600.");
+    assert!(said.contains("no F is known") && !said.contains("F0 mm/min"), "{said}");
     for (wrong, expected) in [
         ("{ gain_1_s = 0 }", "gain_1_s above 0, up to 1000"),
         ("{ gain_1_s = [50, 5000, 50] }", "gain_1_s above 0, up to 1000"),

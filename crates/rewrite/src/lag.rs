@@ -185,11 +185,18 @@ impl Lagging {
             )
         };
         let label = both!("nowhere is it more", "больше — нигде");
-        let help = both!(
-            "F{:.0} mm/min and slower keeps within it; so does more feed forward, `feed_forward` under `following`, where the control has it",
-            "F{:.0} мм/мин и медленнее удержит допуск; так же — большее упреждение на стойке (`feed_forward` в `following`)",
-            kept_mm_min.floor()
-        );
+        let help = if *kept_mm_min >= 1.0 {
+            both!(
+                "F{:.0} mm/min and slower keeps within it; so does more feed forward, `feed_forward` under `following`, where the control has it",
+                "F{:.0} мм/мин и медленнее удержит допуск; так же — большее упреждение на стойке (`feed_forward` в `following`)",
+                kept_mm_min.floor()
+            )
+        } else {
+            both!(
+                "no F is known to keep within it: rotary axes turn, or the loops are too slow",
+                "F, которая удержит допуск, неизвестна: вращаются оси, или контуры слишком медленны"
+            )
+        };
         (Diagnostic::doubt(CONTROL_LEAVES, message).at(span.clone(), label).help(help), *line)
     }
 }

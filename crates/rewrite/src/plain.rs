@@ -132,7 +132,8 @@ impl Pass<'_> {
             (feed, LastFeed::PerMinute(_, units)) => Some(LastFeed::PerMinute(feed, units)),
             (_, unknown) => Some(unknown),
         };
-        let feeds = ends[..run.count].iter().filter_map(said).chain([before]);
+        let first = ends[0].feed.is_none().then_some(before);
+        let feeds = ends[..run.count].iter().filter_map(said).chain(first);
         control.lag(self.job, modal, Turns::Not, feeds, place);
         for ((line, end), counts) in lines.iter().zip(ends).zip(run.counts).take(run.count) {
             if counts == [None; 3] {
