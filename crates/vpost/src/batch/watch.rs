@@ -90,18 +90,7 @@ pub(crate) fn run(arguments: &Watch, shared: &Shared, messages: &Messages) -> Re
         interrupt: Interrupt::listen(),
     };
     passed_over(&inputs::search(&order.programs, &arguments.output)?, messages);
-    let ended = loop {
-        let folder = OutputFolder::open(&arguments.output, Company::Alone)?;
-        match order.watch(&folder) {
-            Ok(Ended::Done) => break Ok(()),
-            Ok(Ended::FolderWent) => drop(folder),
-            Err(failure) => break Err(failure),
-        }
-        if let Err(failure) = order.wait_for(&arguments.output) {
-            break Err(failure);
-        }
-    };
-    ended.map_err(|failure| interrupted(failure, messages))
+    order.run(&arguments.output).map_err(|failure| interrupted(failure, messages))
 }
 
 /// A program as it was last seen.
@@ -125,6 +114,7 @@ enum Until {
 }
 
 /// Why the watch of one output folder ended.
+#[derive(PartialEq, Eq)]
 enum Ended {
     /// Nothing is left to do.
     Done,
@@ -143,8 +133,17 @@ struct Order<'a> {
 }
 
 impl Order<'_> {
+    /// Watches, in one output folder after the other where somebody takes them away.
+    fn run(&self, output: &Path) -> Result<(), Failure> {
+        while self.watch(output)? == Ended::FolderWent {
+            self.wait_for(output)?;
+        }
+        Ok(())
+    }
+
     /// Watches until there is nothing more to do here.
-    fn watch(&self, folder: &OutputFolder) -> Result<Ended, Failure> {
+    fn watch(&self, output: &Path) -> Result<Ended, Failure> {
+        let folder = &OutputFolder::open(output, Company::Alone)?;
         let pages = Pages { folder, messages: self.messages };
         let (job, read) =
             loaded(self.shared, self.messages).inspect_err(|failure| pages.nothing_is(failure))?;
@@ -152,7 +151,7 @@ impl Order<'_> {
         let records = journal::read(&folder.journal(), None)?;
         let mut journal = Journal::begin(folder, journal::WHOLE)?;
         let (changed, seen, said) = (None, BTreeMap::new(), RefCell::default());
-        let mut watched = Watched { order: self, pages, folder, job, read, changed, seen, records, said };
+        let mut watched = Watched { order: self, pages, job, read, changed, seen, records, said };
         let ended = watched.watch(&mut journal);
         if !matches!(ended, Ok(Ended::FolderWent)) {
             journal.end(&watched.records, &[])?;
@@ -178,7 +177,6 @@ impl Order<'_> {
 struct Watched<'a> {
     order: &'a Order<'a>,
     pages: Pages<'a>,
-    folder: &'a OutputFolder,
     job: Job,
     read: Read,
     /// How those files lie since when, where they are others.
@@ -209,7 +207,7 @@ impl<'a> Watched<'a> {
         let Order { until, settle, interrupt, .. } = self.order;
         loop {
             interrupt.check()?;
-            if *until == Until::Told && !self.folder.is_there() {
+            if *until == Until::Told && !self.pages.folder.is_there() {
                 return Ok(Ended::FolderWent);
             }
             match self.round(journal) {
@@ -230,14 +228,14 @@ impl<'a> Watched<'a> {
         if !self.is_job_settled()? {
             return Ok(1);
         }
-        let found = inputs::search(&self.order.programs, &self.folder.place(""))?;
+        let found = inputs::search(&self.order.programs, &self.pages.folder.place(""))?;
         self.order.shared.held.is_of_all(found.items.iter().map(|item| item.input.as_path()))?;
         self.forget(&found.items);
         let (ready, mut left) = self.ready(found.items);
         if ready.is_empty() {
             return Ok(left);
         }
-        let Self { order: Order { interrupt, .. }, job, folder, records, .. } = &*self;
+        let Self { order: Order { interrupt, .. }, pages: Pages { folder, .. }, job, records, .. } = &*self;
         let threads = work::threads(None);
         let batch = Batch { job, folder, earlier: records, force: false, threads, interrupt };
         let results = batch.run(&ready, journal, &Progress::hidden(), &mut |outcome| self.tell(outcome))?;
@@ -309,7 +307,7 @@ impl<'a> Watched<'a> {
             self.seen.keys().filter(|output| !there.contains(output.as_str())).cloned().collect();
         for output in gone {
             self.seen.remove(&output);
-            if !self.folder.place(&output).exists() {
+            if !self.pages.folder.place(&output).exists() {
                 self.pages.mend(&output);
                 continue;
             }
@@ -330,7 +328,7 @@ impl<'a> Watched<'a> {
             if seen.stamp != stamp {
                 *seen = new();
             }
-            if seen.status.is_some_and(Status::is_done) && !self.folder.place(&item.output).exists() {
+            if seen.status.is_some_and(Status::is_done) && !self.pages.folder.place(&item.output).exists() {
                 seen.status = None;
             }
             // What was only just made is empty.
@@ -369,7 +367,7 @@ impl<'a> Watched<'a> {
                     "{output} was refused: it is not corrected.\n",
                     "Программа {output} не принята: она не исправлена.\n"
                 )];
-                if self.folder.place(output).exists() {
+                if self.pages.folder.place(output).exists() {
                     lines.push(both!(
                         "The file {output} in this folder is the correction of an EARLIER program.\n",
                         "Файл {output} в этой папке — исправление ПРЕЖНЕЙ программы.\n"
