@@ -108,8 +108,7 @@ pub(crate) fn told(settings: &Value, folder: Option<&Path>) -> Told {
             "its keys are those of docs/how-to/editor.md", "её ключи перечислены в docs/how-to/editor.ru.md"
         )));
     };
-    let read = |one: &Value| serde_json::from_value::<JobOptions>(one.clone());
-    let mut good = serde_json::Map::new();
+    let mut options = JobOptions::default();
     for (key, value) in settings.as_object().into_iter().flatten().filter(|(_, value)| !value.is_null()) {
         if key == "language" {
             told.language = value.as_str().and_then(Language::from_name);
@@ -118,15 +117,14 @@ pub(crate) fn told(settings: &Value, folder: Option<&Path>) -> Told {
             }
             continue;
         }
-        match read(&serde_json::json!({ key: value })) {
-            Ok(_) => drop(good.insert(key.clone(), value.clone())),
+        match serde_json::from_value::<JobOptions>(serde_json::json!({ key: value })) {
+            Ok(one) => options = one.over(&options),
             Err(error) => {
                 let why = of_toml(&error.to_string());
                 wrong(both!("`{key}`: {why}", "`{key}`: {why:#}"));
             }
         }
     }
-    let mut options = read(&Value::Object(good)).expect("each of them is one");
     if let Some(folder) = folder {
         let from = |path: &mut PathBuf| *path = folder.join(&*path);
         let single = [&mut options.machine, &mut options.tool_table, &mut options.linuxcnc_ini];
