@@ -62,9 +62,8 @@ pub(crate) fn find(arguments: &[OsString]) -> Result<Held, Failure> {
         // What stands in the command's own table goes before what holds for all.
         kept.sort_by_key(|kept| std::cmp::Reverse(kept.command.len()));
         let mut said = BTreeSet::new();
-        kept.retain(|kept| said.insert(kept.id.clone()));
         // A flag that is off decides nothing but that.
-        kept.retain(|kept| kept.values != ["false"]);
+        kept.retain(|kept| said.insert(kept.id.clone()) && kept.values != ["false"]);
     }
     held.kept = kept;
     Ok(held)
