@@ -435,3 +435,21 @@ fn a_number_of_an_example_is_left_to_be_said() {
     assert_eq!(browser.evaluate("document.activeElement.value"), "H7=…");
     browser.end();
 }
+
+/// What is dropped is taken; what the browser gives no page from the disk is said, with the way to it.
+#[test]
+fn a_page_takes_what_is_dropped_on_it() {
+    let Some(mut browser) = opened() else { return };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let program = folder.path().join("part.nc");
+    std::fs::write(&program, "G21 G90\nM30\n").expect("writable");
+    let profile = root().join("machine-profiles/perfect.toml");
+    browser.drag("#drop", &[&program, &profile]);
+    browser.wait("[...files.keys()].join() === 'part.nc,perfect.toml'");
+    assert_eq!(held(&mut browser, "part.nc"), b"G21 G90\nM30\n");
+    assert_eq!(browser.evaluate("by('list-said').textContent"), "");
+    browser.drag("#drop", &[folder.path()]);
+    browser.wait("by('list-said').textContent.includes('Choose a folder')");
+    browser.was_quiet();
+    browser.end();
+}

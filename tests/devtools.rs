@@ -215,6 +215,19 @@ impl Browser {
         self.ask("DOM.setFileInputFiles", &json!({ "nodeId": node, "files": files }));
     }
 
+    /// Files and folders from the disk, dragged onto an element and dropped there.
+    pub(crate) fn drag(&mut self, onto: &str, files: &[&Path]) {
+        let place = self.evaluate(&format!(
+            "(() => {{ const place = document.querySelector({onto:?}); place.scrollIntoView(); \
+             const box = place.getBoundingClientRect(); return [box.x + 20, box.y + 20]; }})()"
+        ));
+        let data = json!({ "items": [], "files": files, "dragOperationsMask": 1 });
+        for kind in ["dragEnter", "dragOver", "drop"] {
+            let event = json!({ "type": kind, "x": place[0], "y": place[1], "data": data });
+            self.ask("Input.dispatchDragEvent", &event);
+        }
+    }
+
     /// A key of the keyboard: `Tab`, `Enter`, `ArrowDown`, ` `.
     pub(crate) fn press(&mut self, key: &str) {
         let (code, text) = match key {

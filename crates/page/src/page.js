@@ -193,10 +193,7 @@ async function dropped(transfer) {
   // Taken at once: behind the event nothing is left of it. A page from the disk may read files, but none of an entry.
   const given = [...transfer.items]
     .filter((item) => item.kind === "file")
-    .map((item) => ({
-      folder: [item.webkitGetAsEntry?.()].find((entry) => entry?.isDirectory),
-      file: item.getAsFile(),
-    }));
+    .map((item) => ({ entry: item.webkitGetAsEntry?.(), file: item.getAsFile() }));
   if (!given.length) return takeAll(transfer.files);
   tell("");
   const walk = async (entry, above) => {
@@ -212,8 +209,8 @@ async function dropped(transfer) {
     }
   };
   // A folder that is dropped alone is where its profile looks for tables from.
-  for (const { folder, file } of given) {
-    if (folder) await walk(folder, "").catch(() => tell(words().noFolder(folder.name)));
+  for (const { entry, file } of given) {
+    if (entry?.isDirectory) await walk(entry, "").catch(() => tell(words().noFolder(entry.name)));
     else if (file) await take(file.name, file);
   }
   show();
