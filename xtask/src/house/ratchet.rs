@@ -142,7 +142,7 @@ How large the code is, what in it is too long, and which files go in circles. Th
 Measured are the Rust files that git knows or would take, read by `syn`. Code is what is neither a test nor below
 `tests`, `benches` or `examples`. A file imports another when a path in it ends in an item that stands there; names that
 a `pub use` hands on are followed to where they stand. What only a macro imports is not seen. Of scripts, styles and
-judges lines are counted, whatever stands on them.
+judges lines are counted, whatever else stands on them.
 
 ";
 
