@@ -19,7 +19,6 @@ these does not hold. Rows that feed count; the rapid behind them, whose way is n
 There is a dwell between a rapid and the feed behind it, but in `hops` and in a quarter of the others (`no dwell`).
 """
 
-import argparse
 import collections
 import json
 import math
@@ -32,6 +31,7 @@ import tempfile
 
 import numpy as np
 
+import campaign
 import canon
 import judge
 import programs
@@ -449,13 +449,8 @@ def one_program(given, tally, number):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--vpost", required=True)
-    arguments.add_argument("--programs", type=int, default=len(ORDER))
-    arguments.add_argument("--first", type=int, default=0)
-    arguments.add_argument("--seed", type=int, default=1)
+    arguments = campaign.parser(__doc__, programs=len(ORDER), first=0)
     arguments.add_argument("--interpreter", action="store_true")
-    arguments.add_argument("--keep", type=pathlib.Path)
     given = arguments.parse_args()
     tally = Tally(given.keep)
     for number in range(given.first, given.first + given.programs):
