@@ -414,7 +414,7 @@ impl Pass<'_> {
             if correction.accepted {
                 notices.accepted.see(&span, line, correction.after_mm);
             }
-            if correction.accepted || unsure_mm > 0.0 {
+            if correction.accepted || correction.leaning_mm.is_some() || unsure_mm > 0.0 {
                 figures.accepted.push((line, correction.after_mm + unsure_mm));
             }
             if let Some(lean) = correction.leaning_mm {
