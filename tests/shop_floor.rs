@@ -119,13 +119,13 @@ fn a_tapped_hole_is_held_against_what_is_said_of_it() {
     let program = "G21 G17 G40 G49 G80 G90 G94 G54\nG0 X40. Y90. Z100.\nZ2.\nG1 Z-4. F200.\nX80.\nG0 Z10.\nG98 G84 X30. Y30. Z-40. R2. F400.\nG80\nG0 Z100.\nM30\n";
     let more = ["-m", machine.as_str()];
     let (out, said) = place.corrected(program, &more);
-    assert!(said.contains("warning[VP0506]: 1 hole(s) are off by up to 3.2 um"), "{said}");
+    assert!(said.contains("warning[VP0506]: 1 hole(s) are off by up to 3.3 um"), "{said}");
     let checked = place.check(program, &out, &more);
     assert_eq!((&checked["passed"], &checked["accepted_lines"]), (&true.into(), &1.into()), "{checked:#}");
     let deeper = out.replace("Z-40.", "Z-40.01");
     assert_ne!(deeper, out);
     assert_eq!(place.check(program, &deeper, &more)["passed"], false);
-    let beside = out.replace("X80.018", "X80.018 Y90.018");
+    let beside = out.replace("X80.009", "X80.009 Y90.019");
     assert_ne!(beside, out);
     let findings = place.check(program, &beside, &more)["findings"].to_string();
     assert!(findings.contains("line 5") && !findings.contains("line 4\""), "{findings}");

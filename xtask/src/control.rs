@@ -28,10 +28,11 @@ pub(crate) struct Options {
 pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
     let [machines, lines, seed] =
         [options.machines, options.lines, options.seed].map(|count| count.to_string());
-    let judges: [(&str, &[&str]); 6] = [
+    let judges: [(&str, &[&str]); 7] = [
         ("restart", &["--interpreter", "--lines", &lines]),
         ("judge", &["--machines", &machines]),
         ("modes", &["--machines", &machines]),
+        ("planner", &["--programs", &machines]),
         ("five_axis", &["--programs", &machines]),
         ("loop", &["--machines", &machines]),
         ("lag", &["--programs", &machines]),
