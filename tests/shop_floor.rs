@@ -116,7 +116,8 @@ fn what_cannot_be_held_is_written_and_said_or_refused() {
 fn a_tapped_hole_is_held_against_what_is_said_of_it() {
     let place = Place::new();
     let machine = place.write("square.toml", SQUARE);
-    let program = "G21 G17 G40 G49 G80 G90 G94 G54\nG0 X40. Y90. Z100.\nZ2.\nG1 Z-4. F200.\nX80.\nG0 Z10.\nG98 G84 X30. Y30. Z-40. R2. F400.\nG80\nG0 Z100.\nM30\n";
+    let program = "G21 G17 G40 G49 G80 G90 G94 G54\nG0 X40. Y90. Z100.\nZ2.\nG1 Z-4. F200.\nX80.\nG0 Z10.\n\
+        G98 G84 X30. Y30. Z-40. R2. F400.\nG80\nG0 Z100.\nM30\n";
     let more = ["-m", machine.as_str()];
     let (out, said) = place.corrected(program, &more);
     assert!(said.contains("warning[VP0506]: 1 hole(s) are off by up to 3.3 um"), "{said}");
