@@ -12,9 +12,9 @@ use crate::process::Process;
 use crate::stretch::{Place, Span, Stretch};
 
 /// A run begins no farther than this from where it should, mm: no machine that was measured is off by more.
-const MOST_APPROACH_MM: f64 = 1.0;
+pub(crate) const MOST_APPROACH_MM: f64 = 1.0;
 /// So many limits of its beginning a run may leave out, where it begins a little on.
-const LEFT_OUT_LIMITS: f64 = 4.0;
+pub(crate) const LEFT_OUT_LIMITS: f64 = 4.0;
 
 /// So many feeds that lead anywhere the programmed path may be ahead: motions of micrometres at one place by thousands
 /// all lie near it.

@@ -12,8 +12,7 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Takes a distance that is larger than those so far.
-    pub fn note(&mut self, distance_mm: f64, line: u64) {
+    pub(crate) fn note(&mut self, distance_mm: f64, line: u64) {
         if distance_mm > self.largest_mm {
             *self = Self { largest_mm: distance_mm, line };
         }

@@ -46,6 +46,9 @@ pub use stretch::LEVER_MM;
 pub use way::Way;
 
 /// Compares what the machine really does by `commanded` with what is programmed by `wanted`.
+///
+/// * `wider` – so many times the limits of the steps are taken, 1 or more: how far a path is off is known where all
+///   of it lies within
 #[must_use]
 pub fn compare(
     models: Models<'_>,
@@ -53,6 +56,9 @@ pub fn compare(
     commanded: impl Iterator<Item = Step>,
     retreats: PeckRetreats,
     traces: Traces,
+    wider: f64,
 ) -> Comparison {
-    matcher::Matcher::new(models, wanted, commanded, retreats, traces).compare()
+    let widened = |step: Step| Step { limit_mm: step.limit_mm * wider, ..step };
+    let (wanted, commanded) = (wanted.map(widened), commanded.map(widened));
+    matcher::Matcher::new(models, wanted, commanded, retreats, traces, wider).compare()
 }

@@ -3,7 +3,7 @@
 use machine_model::Models;
 use toolpath::PeckRetreats;
 
-use crate::alignment::{Alignment, Begins, Entry, Processes, Reached};
+use crate::alignment::{Alignment, Begins, Entry, LEFT_OUT_LIMITS, MOST_APPROACH_MM, Processes, Reached};
 use crate::difference::{self, Found};
 use crate::feeding::{Feeding, Off};
 use crate::items::{Counted, Item, Items, Role};
@@ -26,6 +26,8 @@ pub(crate) struct Matcher<'m, W, C> {
     alignment: Alignment<'m, W>,
     commanded: Items<'m, C>,
     traces: Traces,
+    /// So many times the limits are taken.
+    wider: f64,
     /// How the next run begins.
     begins: Begins,
     time: Time,
@@ -51,6 +53,7 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
         commanded: C,
         retreats: PeckRetreats,
         traces: Traces,
+        wider: f64,
     ) -> Self {
         let counted = Counted::default();
         let wanted = Items::new(models, wanted, Role::Wanted, retreats, counted.clone());
@@ -58,6 +61,7 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             alignment: Alignment::new(wanted),
             commanded: Items::new(models, commanded, Role::Commanded, retreats, counted),
             traces,
+            wider,
             begins: Begins::AtStart,
             time: Time::default(),
             reached: 0,
@@ -71,10 +75,12 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             let wanted = self.alignment.wanted.peek(0);
             let pair = match (wanted, self.commanded.peek(0)) {
                 (None, None) => break,
-                (Some(Item::Feed(_)), Some(Item::Feed(first))) => {
-                    let at = first.start();
+                (Some(Item::Feed(_)), Some(Item::Feed(_))) => {
                     let begins = std::mem::replace(&mut self.begins, Begins::AtStart);
-                    self.follow(&at, begins);
+                    if self.wider > 1.0 && begins != Begins::Anywhere {
+                        self.pass_approach();
+                    }
+                    self.follow(begins);
                     continue;
                 }
                 (Some(Item::Position(w)), Some(Item::Position(c))) if ends_alike(w, c) => {
@@ -125,13 +131,32 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
         self.result
     }
 
-    /// A run of feeds, until one of the programs does something else; the real path begins at a place.
-    fn follow(&mut self, at: &Place, begins: Begins) {
-        if let Some(distance_mm) = self.alignment.begin(at, begins) {
-            let line = self.commanded.feed(0).map_or(0, |feed| feed.line);
-            if self.apart(at, 0, line).is_none() {
-                self.note(0, distance_mm, line);
-            }
+    /// Passes over the moves to the corrected start of a run, which end there within the limits as they are: within
+    /// wider ones they would be taken for parts of its first feed.
+    fn pass_approach(&mut self) {
+        let (Some(first), Some(made)) = (self.alignment.wanted.feed(0), self.commanded.feed(0)) else {
+            return;
+        };
+        let (start, near_mm) = (first.start(), first.limit_mm / self.wider);
+        let away_mm = (made.start() - start).norm();
+        if away_mm <= near_mm || away_mm > MOST_APPROACH_MM {
+            return;
+        }
+        let left_mm = |ahead| self.commanded.feed(ahead).map(|made| (made.end() - start).norm());
+        let mut ways_mm =
+            (0..).map_while(left_mm).take_while(|mm| *mm <= away_mm + LEFT_OUT_LIMITS * near_mm);
+        let moves = ways_mm.position(|mm| mm <= near_mm).map_or(0, |last| last + 1);
+        (0..moves).for_each(|_| drop(self.commanded.pop()));
+        self.result.approaches += moves;
+    }
+
+    /// A run of feeds, until one of the programs does something else.
+    fn follow(&mut self, begins: Begins) {
+        if let Some((at, line)) = self.commanded.feed(0).map(|first| (first.start(), first.line))
+            && let Some(distance_mm) = self.alignment.begin(&at, begins)
+            && self.apart(&at, 0, line).is_none()
+        {
+            self.note(0, distance_mm, line);
         }
         self.time = if begins == Begins::Anywhere { Time::UNKNOWN } else { Time::default() };
         // The process of a piece of no length that was made last.

@@ -28,7 +28,7 @@ fn straight() -> RigidBody {
 fn found_on(machine: &RigidBody, [wanted, made]: [Vec<Step>; 2]) -> Comparison {
     let retreats = toolpath::PeckRetreats { clearance_mm: 0.25, chip_mm: 0.5 };
     let models = Models { axes: machine, tip: None };
-    compare(models, wanted.into_iter(), made.into_iter(), retreats, Traces::Kept)
+    compare(models, wanted.into_iter(), made.into_iter(), retreats, Traces::Kept, 1.0)
 }
 
 fn at(linear_mm: [f64; 3]) -> Position {

@@ -11,7 +11,7 @@ use diagnostic::{Diagnostic, Text, both};
 use machine_model::{Models, Placement};
 use nc_expand::Expanded;
 use nc_program::Context;
-use path_comparison::{Comparison, Course, Deviation, Mismatch, Trace, Traces, What, compare};
+use path_comparison::{Comparison, Course, Mismatch, Traces, What, compare};
 
 use crate::control::ControlPart;
 use crate::datum::Datum;
@@ -96,9 +96,8 @@ fn check_within(
             Program::new(commanded, job, optional, &numbers, progress),
         ];
         steps[0].accepted = Some(accepted);
-        steps.iter_mut().for_each(|steps| steps.wider = wider);
         let [w, c] = &mut steps;
-        let comparison = compare(job.models, &mut *w, &mut *c, retreats(job.dialect), traces);
+        let comparison = compare(job.models, &mut *w, &mut *c, retreats(job.dialect), traces, wider);
         // The one that the other was compared with may end early: what cannot be read is refused all the same.
         for (program, steps) in steps.iter_mut().enumerate() {
             steps.by_ref().for_each(drop);
@@ -113,15 +112,12 @@ fn check_within(
     };
     let compared = |optional: Optional, traces: Traces| {
         let (mut comparison, mut numbers, datums, control, may_skip, unsaid) = run(optional, traces, 1.0)?;
-        if strays(&comparison) {
+        for wider in WIDER.into_iter().take_while(|_| strays(&comparison)) {
             let kept = if traces == Traces::Forgotten { Traces::Kept } else { traces };
-            let near = if kept == traces { None } else { Some(run(optional, kept, 1.0)?.0) };
-            for wider in WIDER {
-                let (measured, named, ..) = run(optional, kept, wider)?;
-                if let Some(measured) = in_a_corridor(measured, near.as_ref().unwrap_or(&comparison), wider) {
-                    (comparison, numbers) = (measured, named);
-                    break;
-                }
+            let (measured, named, ..) = run(optional, kept, wider)?;
+            if let Some(measured) = in_a_corridor(measured, wider) {
+                (comparison, numbers) = (measured, named);
+                break;
             }
         }
         let mut findings = findings::of(&comparison, &numbers);
@@ -165,10 +161,7 @@ fn strays(comparison: &Comparison) -> bool {
 }
 
 /// What a comparison in a wider corridor says of motions that are off; `None` where that does not hold the path either.
-///
-/// * `near` – the comparison within the limits: a motion that it found made is as far off as it says, since in a wider
-///   corridor the moves to a corrected start are taken for parts of what they lead to
-fn in_a_corridor(mut comparison: Comparison, near: &Comparison, wider: f64) -> Option<Comparison> {
+fn in_a_corridor(mut comparison: Comparison, wider: f64) -> Option<Comparison> {
     let path = |mismatch: &Mismatch| {
         matches!(mismatch.what, What::TooFar(_) | What::Extra | What::Missing | What::Short(_))
     };
@@ -176,18 +169,6 @@ fn in_a_corridor(mut comparison: Comparison, near: &Comparison, wider: f64) -> O
         return None;
     }
     comparison.limit_mm /= wider;
-    if near.more_mismatches == 0 {
-        let named = |trace: &Trace| near.mismatches.iter().any(|mismatch| mismatch.wanted_line == trace.line);
-        for (trace, near) in comparison.traces.iter_mut().zip(&near.traces) {
-            if near.after_line.is_some() && near.after_mm <= near.limit_mm && !named(near) {
-                (trace.after_mm, trace.after_line) = (near.after_mm, near.after_line);
-                trace.made_mm.clone_from(&near.made_mm);
-            }
-        }
-        comparison.approaches = comparison.approaches.max(near.approaches);
-        comparison.after = Deviation::default();
-        comparison.traces.iter().for_each(|trace| comparison.after.note(trace.after_mm, trace.line));
-    }
     let beyond = comparison.traces.iter().filter(|trace| trace.after_mm > trace.limit_mm / wider);
     let beyond: Vec<Mismatch> = beyond
         .map(|trace| Mismatch {

@@ -96,8 +96,6 @@ pub(super) struct Program<'a, 'n> {
     pub(super) datums: Vec<Datum>,
     /// What the control adds to the path.
     pub(super) control: ControlPart,
-    /// So many times its limits are taken.
-    pub(super) wider: f64,
     /// Of lines that cannot be held within the tolerance, how far they may be off, mm.
     pub(super) accepted: Option<&'n BTreeMap<u64, f64>>,
     /// Where asked for: the error of each of them, and in which context it was used first.
@@ -176,7 +174,6 @@ impl<'a, 'n> Program<'a, 'n> {
             control: ControlPart::default(),
             touched: None,
             accepted: None,
-            wider: 1.0,
             unsaid: Unsaid::at_start(job.dialect),
             ready: SmallVec::new(),
             ended: false,
@@ -235,8 +232,7 @@ impl<'a, 'n> Program<'a, 'n> {
         let line = (self.line_name)(self.expanded.source_line(block.line));
         let stated_mm =
             self.accepted.and_then(|accepted| accepted.get(&block.line)).map_or(0.0, |mm| mm + ROOM_MM);
-        let limit_mm =
-            (self.job.options.tolerance_mm + rounding_mm(self.job, context)).max(stated_mm) * self.wider;
+        let limit_mm = (self.job.options.tolerance_mm + rounding_mm(self.job, context)).max(stated_mm);
         self.unsaid.say(block, self.job.dialect);
         says.before.into_iter().for_each(|said| self.say(said, line, limit_mm));
         if self.process.move_by(&context.kinematics) {
