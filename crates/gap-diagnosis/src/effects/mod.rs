@@ -51,3 +51,13 @@ pub(crate) fn is_straight(kind: EffectKind) -> bool {
 pub(crate) fn curve_axis(kind: EffectKind) -> Option<usize> {
     kind.axis().filter(|_| matches!(of(kind).search.along, Along::Curve | Along::Angle | Along::Droop))
 }
+
+/// True of what an angle of a carriage, or a droop, may stand for together with another such: an axis that leans or
+/// stretches, and a curve along the axis of the bent one.
+pub(crate) fn gives_way_to(bent: EffectKind, other: EffectKind) -> bool {
+    let axis = bent.axis().filter(|_| matches!(of(bent).search.along, Along::Angle | Along::Droop));
+    axis.is_some_and(|axis| {
+        is_straight(other)
+            || matches!(other, EffectKind::Positioning(own) | EffectKind::Straightness { axis: own, .. } if own == axis)
+    })
+}

@@ -12,7 +12,7 @@ use machine_model::effects::EffectKind;
 use machine_model::{Range, Vector, Volume};
 use nalgebra::{DMatrix, DVector};
 
-use crate::effects::curve_axis;
+use crate::effects::{curve_axis, gives_way_to};
 use crate::equations::align::{rms, row_lengths};
 use crate::equations::noise::tail_factor;
 use crate::equations::observation::{Row, Scalar};
@@ -21,7 +21,7 @@ use crate::judgement::assembly::Assembly;
 use crate::judgement::shrinkage::LEAST_WEIGHT;
 use crate::library::candidates::{Library, Part};
 use crate::search::explanation::Reason;
-use crate::search::moves::{by_effect, without};
+use crate::search::moves::{by_effect, with, without};
 use crate::search::space::{Asked, Fit};
 use crate::search::trial::unsupported;
 
@@ -129,35 +129,64 @@ impl Assembly<'_> {
     }
 
     /// Explanations beside the one named that the rows do not refute: another effect, or another form, for one cause or
-    /// for two.
+    /// for two, and two for one: a squareness and a curve for a droop, a plainer play and a drift for a play.
     fn not_refuted(&self) -> Vec<Explained> {
+        /// Effects that are not enough for a cause, the nearest, of which each is tried with a second one.
+        const FIRSTS: usize = 6;
         let model = self.model;
         let (library, parts) = (&model.library, &model.parts);
         let score = model.space.fit(library, parts).score;
         let own_prior = model.log_prior(parts);
+        let least = units::math::ln(LEAST_WEIGHT);
+        let others = |rest: &[Part], group: &[usize], limit: f64, plainer: bool| {
+            let is_other = |(part, _): &(Part, Fit)| {
+                let slopes = group.iter().any(|place| library.slopes_as(*part, library.kind(parts[*place])));
+                let is_plainer = |own: &Part| {
+                    own.candidate != part.candidate
+                        || library.form(*part).columns.len() < library.form(*own).columns.len()
+                };
+                !slopes
+                    && !parts.contains(part)
+                    && (!plainer || parts.iter().all(is_plainer))
+                    && unsupported(library, *part, &self.data.rows).is_none()
+            };
+            let scanned = model.space.scan(library, rest, Asked::WithRivals);
+            by_effect(scanned.into_iter().filter(is_other).collect(), limit)
+        };
+        // What the rows say and what machines usually have, together: an angle that no carriage has may fit better.
+        let is_likely =
+            |all: &[Part], fit: &Fit| model.log_prior(all) - own_prior - 0.5 * (fit.score - score) > least;
+        // Whatever machines usually have, no model is likelier by that than one without a price.
+        let limit = score - 2.0 * (own_prior + least);
         let pairs = (0..parts.len()).flat_map(|a| (0..a).map(move |b| vec![b, a]));
         let written =
             |group: &Vec<usize>| group.iter().all(|place| self.corrects(library.kind(parts[*place])));
         let groups = (0..parts.len()).map(|a| vec![a]).chain(pairs).filter(written);
         let mut found = Vec::new();
         for group in groups {
-            let mut rest = parts.clone();
-            group.iter().rev().for_each(|place| rest = without(&rest, *place));
-            // Whatever machines usually have, no model is likelier by that than one without a price.
-            let limit = score - 2.0 * (own_prior + units::math::ln(LEAST_WEIGHT));
-            let scanned = model.space.scan(library, &rest, Asked::WithRivals);
-            let is_other = |(part, _): &(Part, Fit)| {
-                let slopes = group.iter().any(|place| library.slopes_as(*part, library.kind(parts[*place])));
-                !slopes && !parts.contains(part) && unsupported(library, *part, &self.data.rows).is_none()
-            };
-            let others = scanned.into_iter().filter(is_other).collect();
-            for (part, fit) in by_effect(others, limit) {
-                let with: Vec<Part> = rest.iter().copied().chain([part]).collect();
-                // What the rows say and what machines usually have, together: an angle that no carriage has may fit
-                // better.
-                let likelier = model.log_prior(&with) - own_prior - 0.5 * (fit.score - score);
-                if likelier > units::math::ln(LEAST_WEIGHT) {
-                    found.push(self.explained(&with, Some((group[0], part))));
+            let rest = group.iter().rev().fold(parts.clone(), |rest, place| without(&rest, *place));
+            for (part, fit) in others(&rest, &group, limit, false) {
+                let all = with(&rest, part);
+                if is_likely(&all, &fit) {
+                    found.push(self.explained(&all, Some((group[0], part))));
+                }
+            }
+            let [place] = group[..] else { continue };
+            let own = library.kind(parts[place]);
+            let firsts = others(&rest, &group, f64::INFINITY, true).into_iter().filter(|(part, fit)| {
+                is_one_of_two(own, library.kind(*part)) && !is_likely(&with(&rest, *part), fit)
+            });
+            for (part, _) in firsts.take(FIRSTS) {
+                let first = with(&rest, part);
+                let seconds = others(&first, &group, limit, true).into_iter().filter(|(second, _)| {
+                    let [first, second] = [part, *second].map(|part| library.kind(part));
+                    if first == own { second.is_instrument() } else { gives_way_to(own, second) }
+                });
+                for (second, fit) in seconds {
+                    let all = with(&first, second);
+                    if is_likely(&all, &fit) {
+                        found.push(self.explained(&all, Some((place, part))));
+                    }
                 }
             }
         }
@@ -173,8 +202,7 @@ impl Assembly<'_> {
         let scanned = model.space.scan(&model.library, &model.parts, Asked::Nameable);
         let same = scanned.into_iter().filter(|(part, _)| model.library.kind(*part) == little.kind).collect();
         let (part, _) = *by_effect(same, f64::INFINITY).first()?;
-        let with: Vec<Part> = model.parts.iter().copied().chain([part]).collect();
-        Some(self.explained(&with, Some((self.ordered.first()?.place, part))))
+        Some(self.explained(&with(&model.parts, part), Some((self.ordered.first()?.place, part))))
     }
 
     /// False for faults of the instrument, and for causes that such a fault could have shown as well: nothing is
@@ -206,6 +234,12 @@ impl Assembly<'_> {
             covariance: DMatrix::from_fn(own.len(), own.len(), |i, j| covariance[(own[i], own[j])]),
         }
     }
+}
+
+/// True of what may stand for a cause beside a second effect: its own plainer form beside a fault of the instrument, and
+/// what a droop or an angle gives way to.
+fn is_one_of_two(cause: EffectKind, first: EffectKind) -> bool {
+    first == cause || gives_way_to(cause, first)
 }
 
 /// Places at which the risk is looked at, with conditions as they were measured.

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use crate::equations::linear::{Factor, Products, explained};
 use crate::library::candidates::Part;
 use crate::search::explanation::Explanation;
-use crate::search::moves::without;
+use crate::search::moves::{with, without};
 use crate::search::space::{Asked, Sweep, WITHIN};
 
 /// Two effects look alike where the correlation of what they do to this design, set-up and other causes
@@ -58,8 +58,7 @@ pub(crate) fn rivals(model: &Explanation, place: usize) -> Vec<Rival> {
         // a price.
         let mut behind = fit.score - own_score;
         if behind <= WITHIN {
-            let with: Vec<Part> = rest.iter().copied().chain([*part]).collect();
-            behind += 2.0 * (own_prior - model.log_prior(&with)).max(0.0);
+            behind += 2.0 * (own_prior - model.log_prior(&with(&rest, *part))).max(0.0);
         }
         // A rival that must be bent to look alike is judged by its score; one that looks alike as it stands
         // in textbooks is a rival whatever the score says: the true shape is neither.

@@ -82,6 +82,11 @@ pub(crate) fn without(parts: &[Part], place: usize) -> Vec<Part> {
     parts.iter().enumerate().filter(|(i, _)| *i != place).map(|(_, p)| *p).collect()
 }
 
+/// The model with one more part.
+pub(crate) fn with(parts: &[Part], part: Part) -> Vec<Part> {
+    parts.iter().copied().chain([part]).collect()
+}
+
 fn replaced(parts: &[Part], place: usize, new: Part) -> Vec<Part> {
     parts.iter().enumerate().map(|(i, p)| if i == place { new } else { *p }).collect()
 }

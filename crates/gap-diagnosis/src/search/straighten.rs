@@ -2,11 +2,11 @@
 
 use machine_model::effects::EffectKind;
 
-use crate::effects::{curve_axis, is_straight};
+use crate::effects::gives_way_to;
 use crate::library::candidates::Part;
 use crate::search::bounds::log_prior;
 use crate::search::climb::MOST_CAUSES;
-use crate::search::moves::without;
+use crate::search::moves::{with, without};
 use crate::search::space::Fit;
 use crate::search::state::State;
 
@@ -28,8 +28,7 @@ impl State<'_, '_> {
 
     /// What was taken from angles does not go back to them for a better fit alone: an angle must be likelier.
     pub(super) fn may_bend(&self, rest: &[Part], part: Part, fit: &Fit) -> bool {
-        let with = || rest.iter().copied().chain([part]).collect::<Vec<Part>>();
-        !self.bends(part) || self.unlikely(&with(), fit) <= self.unlikely(&self.parts, &self.fit)
+        !self.bends(part) || self.unlikely(&with(rest, part), fit) <= self.unlikely(&self.parts, &self.fit)
     }
 
     /// True of an angle of a carriage.
@@ -45,12 +44,9 @@ impl State<'_, '_> {
             angles.iter().flat_map(|b| angles.iter().filter(move |a| *a < b).map(move |a| vec![*a, *b]));
         let all = (angles.len() > 2).then(|| angles.clone());
         let groups = all.into_iter().chain(pairs).chain(angles.iter().map(|place| vec![*place]));
-        let axes = angles.iter().filter_map(|place| curve_axis(self.library.kind(self.parts[*place])));
-        let axes: Vec<usize> = axes.collect();
-        let straight = self.library.named(|kind| {
-            is_straight(kind)
-                || matches!(kind, EffectKind::Positioning(axis) | EffectKind::Straightness { axis, .. } if axes.contains(&axis))
-        });
+        let bent: Vec<EffectKind> =
+            angles.iter().map(|place| self.library.kind(self.parts[*place])).collect();
+        let straight = self.library.named(|kind| bent.iter().any(|bent| gives_way_to(*bent, kind)));
         let own = self.unlikely(&self.parts, &self.fit);
         let mut best: Option<(f64, Vec<Part>, Fit)> = None;
         for group in groups {
