@@ -160,37 +160,54 @@ pub(super) fn alive(sheet: &Sheet) -> Result<(), Box<Refusal>> {
 fn is_coarse(sheet: &Sheet) -> bool {
     /// Different readings, as a share of all.
     const FEW: f64 = 0.3;
-    readings(sheet).into_iter().all(|(read, all)| (read.len() as f64) < FEW * all as f64)
+    let rows: Vec<Row<'_>> = sheet.rows().collect();
+    read_in(sheet).all(|column| {
+        let read = numbers(&rows, column);
+        let all = read.len() as f64;
+        (different(read).len() as f64) < FEW * all
+    })
 }
 
-/// True where from the smallest reading to the largest a display has fewer steps than there are rows, so that some
-/// repeats coincide: most that have the same command do not. Of a part that was pasted twice all do.
+/// The columns of readings that there are.
+fn read_in(sheet: &Sheet) -> impl Iterator<Item = &'static str> {
+    READINGS.into_iter().filter(|column| sheet.has(column))
+}
+
+/// True where repeats of one command lie so few steps of the display apart that some coincide: most do not. Of a part that
+/// was pasted twice all do.
 fn coincide(sheet: &Sheet, copies: usize) -> bool {
-    const COMMAND: [&str; 7] = ["run", "x_mm", "y_mm", "z_mm", "dir_x", "dir_y", "dir_z"];
-    let mut commands: Vec<[Cow<'_, str>; 7]> =
-        sheet.rows().map(|row| COMMAND.map(|column| row.text(column))).collect();
-    let all = commands.len();
-    commands.sort_unstable();
-    commands.dedup();
-    let has_steps = |(read, all): (Vec<f64>, usize)| {
-        let step = read.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-        read.last().zip(read.first()).is_none_or(|(last, first)| last - first < step * all as f64)
+    /// So many steps apart one repeat in twenty coincides.
+    const STEPS: f64 = 20.0;
+    let rows: Vec<Row<'_>> = sheet.rows().collect();
+    let mut commands: BTreeMap<Vec<Cow<'_, str>>, Vec<Row<'_>>> = BTreeMap::new();
+    for row in &rows {
+        let cells = sheet.columns().zip(row.cells());
+        let said = cells.filter(|(column, _)| !READINGS.contains(&column.key.as_str()));
+        commands.entry(said.map(|(_, cell)| cell).collect()).or_default().push(*row);
+    }
+    let are_near = |column: &str| {
+        let all = different(numbers(&rows, column));
+        let step = all.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        let repeats =
+            commands.values().filter(|rows| rows.len() > 1).map(|rows| different(numbers(rows, column)));
+        let mut widths: Vec<f64> = repeats.filter_map(|read| Some(read.last()? - read.first()?)).collect();
+        widths.sort_by(f64::total_cmp);
+        widths.get(widths.len() / 2).is_none_or(|width| *width < STEPS * step)
     };
-    2 * copies <= all - commands.len() && readings(sheet).into_iter().all(has_steps)
+    2 * copies <= rows.len() - commands.len() && read_in(sheet).all(are_near)
 }
 
-/// The different readings of each column in ascending order, and how many there are in all.
-fn readings(sheet: &Sheet) -> Vec<(Vec<f64>, usize)> {
+/// Different readings of one column in ascending order.
+fn different(mut read: Vec<f64>) -> Vec<f64> {
     /// What is nearer is one reading, in the unit of its column.
     const SAME: f64 = 1e-9;
-    let of = |column: &str| {
-        let mut read: Vec<f64> = sheet.rows().filter_map(|row| row.number(column).ok()?).collect();
-        let all = read.len();
-        read.sort_by(f64::total_cmp);
-        read.dedup_by(|next, first| *next - *first < SAME);
-        (read, all)
-    };
-    READINGS.into_iter().filter(|column| sheet.has(column)).map(of).collect()
+    read.sort_by(f64::total_cmp);
+    read.dedup_by(|next, first| *next - *first < SAME);
+    read
+}
+
+fn numbers(rows: &[Row<'_>], column: &str) -> Vec<f64> {
+    rows.iter().filter_map(|row| row.number(column).ok()?).collect()
 }
 
 /// Rows that agree in every cell, reading included, were copied.

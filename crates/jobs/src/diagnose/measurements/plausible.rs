@@ -3,6 +3,9 @@
 //! Each limit lies far from anything a machine tool or an instrument does, so that what is refused is a slip of
 //! the file and never a bad machine.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+
 use diagnostic::{Code, Text, both};
 use gap_diagnosis::{Measurements, Reading};
 use machine_profile::Profile;
@@ -29,6 +32,9 @@ const LARGEST_SCATTER_UM: f64 = 100.0;
 const TOO_SMALL: f64 = 1.0 / 100.0;
 /// No machine is as good as that, µm.
 const PERFECT_UM: f64 = 0.05;
+/// Fewer differences tell no scatter.
+const FEW: usize = 8;
+
 /// The column that holds the first reading of a file.
 fn reading_column(sheet: &Sheet) -> &'static str {
     READINGS.into_iter().find(|c| sheet.has(c)).unwrap_or("run")
@@ -125,7 +131,8 @@ fn scatter(sheet: &Sheet, data: &Measurements) -> Result<(), Failure> {
         "deviations are micrometres: check the unit; if it is right, add --as-written",
         "отклонения — в микрометрах: проверьте единицу; если она верна, добавьте --as-written"
     );
-    let scatter = scatter_um(data);
+    // Where places were read again, what lies between them says nothing.
+    let scatter = repeated_um(data).unwrap_or_else(|| scatter_um(data));
     if scatter > LARGEST_SCATTER_UM {
         let message = both!(
             "neighbouring deviations differ by {:.2} mm and more: are they nanometres?",
@@ -248,8 +255,39 @@ fn scatter_um(data: &Measurements) -> f64 {
             (one_line && !beside).then(|| (b - line).abs() / spread)
         }));
     }
+    robust_um(differences)
+}
+
+/// Scatter of the steps between two places that were read more than once, µm: neither offsets of runs nor what lies between
+/// the places are in it. `None` where too few were.
+fn repeated_um(data: &Measurements) -> Option<f64> {
+    let mut steps: BTreeMap<_, [Option<f64>; 3]> = BTreeMap::new();
+    let mut differences = Vec::new();
+    for pair in data.rows.windows(2).filter(|pair| pair[0].run == pair[1].run) {
+        let [Reading::Displacement(from), Reading::Displacement(to)] = [pair[0].reading, pair[1].reading]
+        else {
+            continue;
+        };
+        let step = [0, 1, 2].map(|c| Some(to[c]? - from[c]?));
+        let command = |row: &gap_diagnosis::Row| {
+            let [x, y, z]: [f64; 3] = row.command.linear_mm.into();
+            ([x, y, z].map(f64::to_bits), row.command.direction)
+        };
+        match steps.entry((command(&pair[0]), command(&pair[1]))) {
+            Entry::Vacant(first) => drop(first.insert(step)),
+            // Four readings scatter twice as much as one.
+            Entry::Occupied(first) => {
+                differences.extend((0..3).filter_map(|c| Some(0.5 * (step[c]? - first.get()[c]?).abs())))
+            }
+        }
+    }
+    (differences.len() >= FEW).then(|| robust_um(differences))
+}
+
+/// Standard deviation by the median of absolute values, µm; 0 of few.
+fn robust_um(differences: Vec<f64>) -> f64 {
     let differences = sorted(differences.into_iter());
-    if differences.len() < 8 { 0.0 } else { 1.4826 * differences[differences.len() / 2] }
+    if differences.len() < FEW { 0.0 } else { 1.4826 * differences[differences.len() / 2] }
 }
 
 fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
