@@ -286,6 +286,26 @@ fn an_output_folder_that_went_is_made_again() {
 }
 
 #[test]
+fn an_output_folder_may_go_while_the_profile_is_broken() {
+    let mut shop = Shop::new();
+    shop.machine = shop.folder.path().join("mill.toml");
+    let good = std::fs::read_to_string(root().join("machine-profiles/perfect.toml")).expect("text");
+    std::fs::write(&shop.machine, &good).expect("writable");
+    shop.save("part.nc", &program(1, 20));
+    let watcher = shop.watching("0.1");
+    until("it is corrected", || shop.output("part.nc").exists());
+    std::fs::write(&shop.machine, "nonsense").expect("writable");
+    until("it is said", || shop.output("vpost.refused.txt").exists());
+    until("it is taken away", || std::fs::remove_dir_all(shop.output("")).is_ok());
+    until("it is said again", || shop.output("vpost.refused.txt").exists());
+    assert!(!shop.output("part.nc").exists());
+    std::fs::write(&shop.machine, &good).expect("writable");
+    until("it goes on", || shop.output("part.nc").exists() && !shop.output("vpost.refused.txt").exists());
+    let (status, said) = ended(watcher);
+    assert_eq!(status, Some(143), "{said}");
+}
+
+#[test]
 fn who_looks_into_the_folder_reads_that_the_machine_was_never_known() {
     let mut shop = Shop::new();
     shop.machine = shop.folder.path().join("mill.toml");

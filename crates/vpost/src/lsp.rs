@@ -136,12 +136,13 @@ fn read(sender: &SyncSender<Came>) {
 fn frame(input: &mut impl BufRead) -> io::Result<Came> {
     /// No line of a head is longer.
     const LONGEST: u64 = 4096;
-    let mut length = None;
+    let (mut begun, mut length) = (false, None);
     loop {
         let mut line = Vec::new();
         if input.by_ref().take(LONGEST).read_until(b'\n', &mut line)? == 0 {
-            return Ok(if length.is_some() { cut_off() } else { Came::End });
+            return Ok(if begun { cut_off() } else { Came::End });
         }
+        begun = true;
         let line = line.trim_ascii();
         if line.is_empty() {
             break;
@@ -192,4 +193,17 @@ fn unread(error: &io::Error) -> Failure {
 
 fn unwritten(error: &io::Error) -> Failure {
     Failure::place(&Text::pair("standard output", "стандартный вывод"), Deed::WriteTo, error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_ends_within_a_message_is_said() {
+        for cut in ["Content-Len", "Content-Length: 9\r\n", "Content-Length: 9\r\n\r\n{"] {
+            assert!(matches!(frame(&mut cut.as_bytes()), Ok(Came::Malformed(_))), "{cut:?}");
+        }
+        assert!(matches!(frame(&mut &b""[..]), Ok(Came::End)));
+    }
 }

@@ -135,18 +135,21 @@ struct Order<'a> {
 impl Order<'_> {
     /// Watches, in one output folder after the other where somebody takes them away.
     fn run(&self, output: &Path) -> Result<(), Failure> {
-        while self.watch(output)? == Ended::FolderWent {
+        let mut known = None;
+        while self.watch(output, &mut known)? == Ended::FolderWent {
             self.wait_for(output)?;
         }
         Ok(())
     }
 
     /// Watches until there is nothing more to do here.
-    fn watch(&self, output: &Path) -> Result<Ended, Failure> {
+    ///
+    /// * `known` – the job of the folder before, of files that may be broken by now
+    fn watch(&self, output: &Path, known: &mut Option<(Job, Read)>) -> Result<Ended, Failure> {
         let folder = &OutputFolder::open(output, Company::Alone)?;
         let pages = Pages { folder, messages: self.messages };
-        let (job, read) =
-            loaded(self.shared, self.messages).inspect_err(|failure| pages.nothing_is(failure))?;
+        let loaded = || loaded(self.shared, self.messages).inspect_err(|failure| pages.nothing_is(failure));
+        let (job, read) = known.take().map_or_else(loaded, Ok)?;
         pages.mend(WHOLE);
         let records = journal::read(&folder.journal(), None)?;
         let mut journal = Journal::begin(folder, journal::WHOLE)?;
@@ -156,6 +159,7 @@ impl Order<'_> {
         if !matches!(ended, Ok(Ended::FolderWent)) {
             journal.end(&watched.records, &[])?;
         }
+        *known = Some((watched.job, watched.read));
         ended
     }
 
