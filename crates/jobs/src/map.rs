@@ -12,13 +12,13 @@ pub mod study;
 
 pub use job::of;
 
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text, both, notice};
 use error_map::{ErrorMap, Grid, Nodes};
 use machine_model::{Command, Engine, PathModel, Range, SolveError, Vector, Volume};
 use machine_profile::Profile;
 use rayon::prelude::*;
 
-use crate::message::{Failure, OPTION, Report, notice};
+use crate::message::{Failure, OPTION, Report};
 use crate::options::{JobOptions, Outside};
 use crate::predict::{POINT_OUTSIDE, other_tool};
 use crate::values::{Given, Lattice, Rotary, ToolVector};

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Code, Diagnostic, both};
+use diagnostic::{Code, Diagnostic, both, notice};
 use machine_profile::{Profile, ProfileError};
 
 use crate::lines;
-use crate::message::{Failure, OPTION, Report, Source, notice};
+use crate::message::{Failure, OPTION, Report, Source};
 
 /// A profile and the bytes it was made from.
 pub struct Loaded {

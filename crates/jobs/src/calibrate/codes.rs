@@ -1,11 +1,11 @@
 //! Numbers of the messages of `calibrate`.
 
 use calibration::CalibrationError;
-use diagnostic::{Code, Speaks, Text};
+use diagnostic::{Code, Speaks, Text, notice};
 
 use machine_model::{Description, RigidBody};
 
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 
 pub use measurement_files::codes::{AXES, CELL, OPEN, QUESTION, RUNS};
 

@@ -2,10 +2,10 @@
 
 use calibration::functions::Function;
 use calibration::iso230_2::{self, Runs};
-use diagnostic::{Text, both};
+use diagnostic::{Text, both, notice};
 use machine_model::Component;
 
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 
 use measurement_files::series::{Origin, Series};
 use measurement_files::{OddSizes, micro};

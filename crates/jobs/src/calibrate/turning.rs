@@ -10,7 +10,7 @@ use calibration::turning::{
     Change, Feature, Stretch, TurnedReading, TurningBase, TurningCalibration, calibrate,
 };
 use clap::Args;
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text, both, notice};
 use machine_model::{Axis, Command, PathModel, Vector};
 use machine_profile::{LatheParts, Profile};
 use measurement_files::{Row, numbered};
@@ -20,7 +20,7 @@ use super::output::{Output, Target};
 use super::page::Shown;
 use super::sources;
 use crate::conditions::conditions;
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 use crate::options::JobOptions;
 
 use super::work::Work;

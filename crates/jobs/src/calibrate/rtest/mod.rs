@@ -5,9 +5,9 @@ mod rows;
 
 use calibration::Base;
 use calibration::rtest::{HeldOut, RotaryTables, Term, calibrate};
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text, both, notice};
 
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 use crate::profile::load_mill;
 
 use super::codes::{AXES, CONTRADICTED, DOUBTFUL, OPEN, OUTLIER, QUESTION, UNFIT, UNSAID, body, failure};
