@@ -3,6 +3,7 @@
 mod control_points;
 pub mod json;
 pub mod study;
+pub mod text;
 
 use std::path::PathBuf;
 

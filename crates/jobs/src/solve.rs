@@ -86,8 +86,7 @@ impl Solver {
                     "give tool_x_mm, tool_y_mm and tool_z_mm of the vectors, or measure a field with this tool",
                     "задайте tool_x_mm, tool_y_mm и tool_z_mm измеренных векторов или измерьте поле этим инструментом"
                 )),
-                _ => notice!(OUTSIDE;
-                    message;
+                _ => notice!(OUTSIDE; message;
                     "leave the point out, or choose another engine with `--engine`",
                     "исключите точку или выберите другой метод ключом `--engine`"
                 ),

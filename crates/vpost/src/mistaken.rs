@@ -133,11 +133,10 @@ pub(crate) fn profile(path: &Path) -> Result<(), Failure> {
         }
         _ => return Ok(()),
     };
-    Err(Failure::asks(
-        MISTAKEN,
-        both!("{name} is no profile but {what}", "{name} — не профиль, а {what:#}"),
-        way,
-    ))
+    Err(Failure::usage(notice!(MISTAKEN;
+        "{name} is no profile but {what}", "{name} — не профиль, а {what:#}";
+        way
+    )))
 }
 
 /// What a path is by its name.

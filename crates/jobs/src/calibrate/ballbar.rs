@@ -318,8 +318,7 @@ fn located(
     place: impl Fn(usize) -> (usize, usize),
 ) -> Failure {
     let CalibrationError::Outlier { point, message } = error else { return refusal(error) };
-    readings.at(place(*point))(notice!(OUTLIER;
-        message.clone();
+    readings.at(place(*point))(notice!(OUTLIER; message.clone();
         "measure it again, or leave it out; readings moved by a row look like this as well",
         "измерьте снова или исключите; так же выглядят показания со сдвигом на строку"
     ))

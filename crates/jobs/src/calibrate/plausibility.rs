@@ -89,8 +89,7 @@ pub(super) fn copies(
             "дайте проходы, каждый из которых измерен, или один проход"
         )));
     }
-    work.warning(notice!(MISSING;
-        message;
+    work.warning(notice!(MISSING; message;
         "then they say nothing of the repeatability; the uncertainty counts the instrument's alone",
         "о повторяемости они тогда ничего не говорят; в неопределённости учтена только приборная"
     ));

@@ -110,8 +110,7 @@ impl<T> Read<T> {
         row.map_or_else(
             || failure("", &[], error),
             |row| {
-                Failure::at_cell(&row, column)(notice!(OUTLIER;
-                    error.text();
+                Failure::at_cell(&row, column)(notice!(OUTLIER; error.text();
                     "measure it again, or take the row out", "измерьте снова или уберите строку"
                 ))
             },

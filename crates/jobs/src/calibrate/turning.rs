@@ -299,8 +299,7 @@ pub fn by_effects(
     let whole = profile.lathe(&conditions(options)?).map_err(|error| crate::conditions::failure(&error))?;
     let stretch = Stretch { low_mm: 0.0, high_mm: 1.0 };
     let bare = base.predicted_mm(&Change::default(), stretch, rows).map_err(|error| {
-        Failure::usage(notice!(QUESTION;
-            error.text();
+        Failure::usage(notice!(QUESTION; error.text();
             "run `vpost profile check` on it", "запустите для него `vpost profile check`"
         ))
     })?;

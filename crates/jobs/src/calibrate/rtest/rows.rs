@@ -354,8 +354,7 @@ fn stands_where_the_profile_knows(
         }
     }
     if let Err(error) = machine.rotary_inside(command) {
-        return Err(Failure::at_row(row)(notice!(AXES;
-            error.text();
+        return Err(Failure::at_row(row)(notice!(AXES; error.text();
             "angles are machine coordinates, degrees; `travel_deg` and the error tables of the profile say how far they go",
             "углы — координаты станка в градусах; их пределы — `travel_deg` и таблицы погрешностей профиля"
         )));
