@@ -133,3 +133,23 @@ impl fmt::Display for Diagnostic {
 }
 
 impl std::error::Error for Diagnostic {}
+
+/// An error without a place: its number; what is wrong; what to type.
+///
+/// Both are a [`Text`], or what [`both!`](crate::both) takes: English, Russian, the values of both.
+///
+/// ```
+/// use diagnostic::{Code, notice};
+///
+/// let refused = notice!(Code(2);
+///     "`--step {}` is none", "`--step {}` — не шаг", 0;
+///     "write `--step 50`", "напишите `--step 50`"
+/// );
+/// assert_eq!(refused.to_string(), "error[VP0002]: `--step 0` is none");
+/// ```
+#[macro_export]
+macro_rules! notice {
+    ($code:expr; $($message:expr),+; $($help:expr),+) => {
+        $crate::Diagnostic::error($code, $crate::text!($($message),+)).help($crate::text!($($help),+))
+    };
+}

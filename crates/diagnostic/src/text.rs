@@ -43,6 +43,15 @@ macro_rules! both {
     };
 }
 
+/// A [`Text`] as [`notice!`](crate::notice) and [`refusal!`](crate::refusal) take it: one that is made, or what
+/// [`both!`](crate::both) makes one of.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! text {
+    ($text:expr) => { $text };
+    ($english:literal, $russian:literal $(, $value:expr)*) => { $crate::both!($english, $russian, $($value),*) };
+}
+
 /// What [`both!`](crate::both) says, in one language: for running text that is made where it is printed.
 ///
 /// ```

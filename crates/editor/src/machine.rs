@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Language, Text, both, of_toml};
+use diagnostic::{Language, Text, both, notice, of_toml};
 use jobs::causes::Causes;
 use jobs::conditions::conditions;
-use jobs::message::{Failure, OPTION, notice};
+use jobs::message::{Failure, OPTION};
 use jobs::options::JobOptions;
 use jobs::settings::Settings;
 use nc_dialect::Dialect;

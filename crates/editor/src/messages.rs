@@ -1,8 +1,8 @@
 //! Messages where they belong: under the words that they speak of.
 
-use diagnostic::{Code, Diagnostic, Edit, Language, Severity, both};
+use diagnostic::{Code, Diagnostic, Edit, Language, Severity, both, notice};
 use jobs::correct;
-use jobs::message::{Failure, HELP, Report, Source, notice};
+use jobs::message::{Failure, HELP, Report, Source};
 use lsp_types::{
     Diagnostic as Squiggle, DiagnosticRelatedInformation, DiagnosticSeverity, Location, NumberOrString,
 };

@@ -3,11 +3,12 @@
 mod control_points;
 pub mod json;
 pub mod study;
+pub mod text;
 
 use std::path::PathBuf;
 
 use clap::Args;
-use diagnostic::{Code, both};
+use diagnostic::{Code, both, notice};
 use error_budget::Machine;
 use machine_model::EngineId;
 use machine_profile::Profile;
@@ -16,7 +17,7 @@ use crate::conditions::{conditions, failure};
 use crate::datums::FromZero;
 use crate::lines;
 use crate::map::tool;
-use crate::message::{Failure, OPTION, Report, notice};
+use crate::message::{Failure, OPTION, Report};
 use crate::options::{JobOptions, Read};
 use crate::settings::machine;
 use crate::values::{Ball, Given, Lattice, Rotary, ToolVector};

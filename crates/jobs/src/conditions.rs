@@ -1,11 +1,11 @@
 //! What the machine's effects depend on besides the command: `--at temp_c=24,load_kg=100`.
 
-use diagnostic::{Code, Diagnostic, Speaks, Text, both};
+use diagnostic::{Code, Diagnostic, Speaks, Text, both, notice};
 use machine_model::effects::Conditions;
 use machine_model::{Engine, EngineId};
 use machine_profile::{EngineError, Profile};
 
-use crate::message::{Failure, OPTION, Report, notice};
+use crate::message::{Failure, OPTION, Report};
 use crate::options::JobOptions;
 use crate::values::Condition;
 

@@ -1,13 +1,13 @@
 //! How a job's zeros came to be: what profile and command line say together.
 
-use diagnostic::{Text, both};
+use diagnostic::{Text, both, notice};
 use machine_model::{Engine, FromDatum, PathModel, Placement, Vector, Way};
 use machine_profile::{Found, Profile, TouchPlace, TouchedBy};
 use nc_program::{Setup, ToolLength};
 use rewrite::{Datum, Datums, Touch, TouchTool, Touches, Zero};
 
 use crate::map::study::WorkOffset;
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 use crate::options::{self, JobOptions};
 use crate::setup;
 use crate::stored::Stored;

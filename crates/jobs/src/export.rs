@@ -3,12 +3,12 @@
 use std::fmt::Write;
 
 use clap::ValueEnum;
-use diagnostic::{Text, both};
+use diagnostic::{Text, both, notice};
 use machine_model::{Axis, Command, EngineId, Interpolation, PathModel, Six, Vector};
 use machine_profile::Profile;
 
 use crate::figures::short;
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 
 /// Forms that controls take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

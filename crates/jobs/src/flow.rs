@@ -3,9 +3,10 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use diagnostic::notice;
 use nc_expand::{Limits, Preset};
 
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 use crate::options::JobOptions;
 
 /// A subprogram's file is no larger.

@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use diagnostic::{Code, Diagnostic, both};
+use diagnostic::{Code, refusal};
 
 use crate::message::{Deed, Failure};
 use crate::shown::shown;
@@ -72,14 +72,12 @@ fn check_line(bytes: &[u8], start: usize, name: &str) -> Result<(), Failure> {
         return Err(Failure::refused(name, bytes, vec![diagnostic]));
     }
     let span = start as u64..start as u64 + 120;
-    let diagnostic = Diagnostic::error(
-        TOO_LONG,
-        both!("a block of more than {LONGEST_LINE} bytes", "кадр длиннее {LONGEST_LINE} байт"),
-    )
-    .at(span, both!("no line end within a megabyte", "на протяжении мегабайта нет конца строки"))
-    .help(both!(
+    let diagnostic = refusal!(TOO_LONG;
+        "a block of more than {LONGEST_LINE} bytes", "кадр длиннее {LONGEST_LINE} байт";
+        "no line end within a megabyte", "на протяжении мегабайта нет конца строки";
         "check that this is a part program and that its line ends arrived with it",
         "проверьте, что это управляющая программа и что при передаче не пропали концы строк"
-    ));
+    )
+    .at(span);
     Err(Failure::refused(name, bytes, vec![diagnostic]))
 }

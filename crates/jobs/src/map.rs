@@ -5,20 +5,22 @@ pub mod curves;
 pub mod deformation;
 pub mod dominant;
 pub mod drawn;
+pub mod export;
 mod job;
 pub mod json;
 pub mod second_order;
 pub mod study;
+pub mod text;
 
 pub use job::of;
 
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text, both, notice};
 use error_map::{ErrorMap, Grid, Nodes};
 use machine_model::{Command, Engine, PathModel, Range, SolveError, Vector, Volume};
 use machine_profile::Profile;
 use rayon::prelude::*;
 
-use crate::message::{Failure, OPTION, Report, notice};
+use crate::message::{Failure, OPTION, Report};
 use crate::options::{JobOptions, Outside};
 use crate::predict::{POINT_OUTSIDE, other_tool};
 use crate::values::{Given, Lattice, Rotary, ToolVector};
@@ -75,14 +77,12 @@ pub(crate) fn outside(
                 known.high
             );
             if options.outside != Some(Outside::Clamp) {
-                return Err(Failure::usage(notice!(POINT_OUTSIDE;
-                    message;
+                return Err(Failure::usage(notice!(POINT_OUTSIDE; message;
                     "stay inside, or take the nearest point's error with `--outside clamp`",
                     "оставайтесь внутри или возьмите погрешность ближайшей точки: `--outside clamp`"
                 )));
             }
-            warnings.push(Report::warning(notice!(POINT_OUTSIDE;
-                message;
+            warnings.push(Report::warning(notice!(POINT_OUTSIDE; message;
                 "the nodes outside have the error of the volume's nearest point",
                 "у узлов снаружи погрешность ближайшей точки объёма"
             )));

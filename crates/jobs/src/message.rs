@@ -50,29 +50,6 @@ impl Source {
     }
 }
 
-/// An error without a place: its number, what is wrong, and what to type, both as [`both!`](diagnostic::both) has them.
-///
-/// ```
-/// use jobs::message::{OPTION, notice};
-///
-/// let refused = notice!(OPTION; "`--step {}` is none", "`--step {}` — не шаг", 0; "write `--step 50`", "напишите `--step 50`");
-/// assert_eq!(refused.to_string(), "error[VP0002]: `--step 0` is none");
-/// ```
-#[macro_export]
-macro_rules! notice {
-    ($code:expr; $english:literal, $russian:literal $(, $value:expr)*; $help:literal, $help_in_russian:literal $(, $help_value:expr)*) => {
-        $crate::notice!($code; $english, $russian $(, $value)*; ::diagnostic::both!($help, $help_in_russian $(, $help_value)*))
-    };
-    ($code:expr; $english:literal, $russian:literal $(, $value:expr)*; $help:expr) => {
-        ::diagnostic::Diagnostic::error($code, ::diagnostic::both!($english, $russian, $($value),*)).help($help)
-    };
-    ($code:expr; $message:expr; $help:literal, $help_in_russian:literal $(, $help_value:expr)*) => {
-        ::diagnostic::Diagnostic::error($code, $message)
-            .help(::diagnostic::both!($help, $help_in_russian, $($help_value),*))
-    };
-}
-pub use notice;
-
 /// Diagnostics and the text they are about.
 #[derive(Debug, Clone)]
 pub struct Report {

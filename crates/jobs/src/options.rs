@@ -4,12 +4,12 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use diagnostic::{Text, both};
+use diagnostic::{Text, both, notice};
 use machine_model::EngineId;
 use nc_expand::Preset;
 use serde::{Deserialize, Serialize};
 
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 use crate::values::{Conditions, Given, Start, ToolLength, Unread, WorkOffset};
 
 /// What decides the output of a job besides the program; a manifest keeps it.

@@ -1,6 +1,6 @@
 //! Forward: where the machine really goes.
 
-use diagnostic::{Code, Diagnostic, Speaks, Text, both};
+use diagnostic::{Code, Diagnostic, Speaks, Text, both, notice};
 use machine_model::{
     Command, Engine, EngineId, PathModel, Placement, SolveError, Vector, WithEffects, rotation,
 };
@@ -8,7 +8,7 @@ use machine_profile::Profile;
 use rewrite::OTHER_TOOL;
 
 use crate::conditions::{self, conditions, engine, failure};
-use crate::message::{Failure, OPTION, Report, notice};
+use crate::message::{Failure, OPTION, Report};
 use crate::options::{JobOptions, Outside};
 
 /// Points outside the calibrated volume.

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Code, Diagnostic, both};
+use diagnostic::{Code, notice, refusal};
 use machine_profile::{Profile, ProfileError};
 
 use crate::lines;
-use crate::message::{Failure, OPTION, Report, Source, notice};
+use crate::message::{Failure, OPTION, Report, Source};
 
 /// A profile and the bytes it was made from.
 pub struct Loaded {
@@ -53,13 +53,13 @@ pub fn loaded(path: &Path, bytes: &[u8]) -> Result<Loaded, Failure> {
     let name = lines::name(path);
     let Ok(text) = std::str::from_utf8(bytes) else {
         let at = std::str::from_utf8(bytes).err().map_or(0, |error| error.valid_up_to()) as u64;
-        let diagnostic =
-            Diagnostic::error(Code(301), both!("a profile is UTF-8 text", "профиль — текст в UTF-8"))
-                .at(at..at + 1, both!("this byte is not", "а этот байт — нет"))
-                .help(both!(
-                    "save it as UTF-8, or give the profile, not the program, to -m",
-                    "сохраните его в UTF-8 или дайте в -m профиль, а не программу"
-                ));
+        let diagnostic = refusal!(Code(301);
+            "a profile is UTF-8 text", "профиль — текст в UTF-8";
+            "this byte is not", "а этот байт — нет";
+            "save it as UTF-8, or give the profile, not the program, to -m",
+            "сохраните его в UTF-8 или дайте в -m профиль, а не программу"
+        )
+        .at(at..at + 1);
         return Err(Failure::Usage(vec![Report {
             source: source(&name, bytes),
             diagnostics: vec![diagnostic],

@@ -1,9 +1,9 @@
 //! A program from one of its lines on.
 
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Diagnostic, Text, both, notice};
 use rewrite::{NO_RESTART, Restarted};
 
-use crate::message::{Failure, OPTION, Report, Source, notice};
+use crate::message::{Failure, OPTION, Report, Source};
 use crate::settings::Settings;
 
 /// A program from a line on, and what is to be said.

@@ -7,7 +7,7 @@ pub use dialect::{check_control, load_dialect};
 use std::path::{Path, PathBuf};
 
 use correction::{Options, Orientation, Outside};
-use diagnostic::both;
+use diagnostic::{both, notice};
 use machine_model::{Command, Engine, EngineId, Models, PathModel, TipControl};
 use machine_profile::Profile;
 use nc_dialect::Dialect;
@@ -16,7 +16,7 @@ use nc_syntax::Macros;
 use rewrite::{Datums, Guards, Job, PathMode};
 
 use crate::flow::Flow;
-use crate::message::{Failure, OPTION, Report, notice};
+use crate::message::{Failure, OPTION, Report};
 use crate::options::{self, JobOptions};
 use crate::settings::dialect::{
     declare_calls, declare_cycles, declare_harmless, declare_switches, dialect, settle_lengths,

@@ -1,10 +1,11 @@
 //! Against what programs are read: zeros, tools, and where axes stand.
 
+use diagnostic::notice;
 use machine_model::Engine;
 use machine_profile::Profile;
 use nc_program::{AfterChange, BetweenVectors, Setup};
 
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 use crate::options::JobOptions;
 use crate::stored::Stored;
 

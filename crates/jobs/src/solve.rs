@@ -1,6 +1,6 @@
 //! Inverse: what to command so that the tool reaches points.
 
-use diagnostic::{Diagnostic, Speaks, both};
+use diagnostic::{Diagnostic, Speaks, both, notice};
 use machine_model::engines::EngineInputs;
 use machine_model::engines::published::KmtppPublished;
 use machine_model::{Command, Engine, EngineId, Solution, SolveError};
@@ -8,7 +8,7 @@ use machine_profile::{EngineError, Profile};
 use rewrite::OUTSIDE;
 
 use crate::conditions;
-use crate::message::{Failure, OPTION, Report, notice};
+use crate::message::{Failure, OPTION, Report};
 use crate::options::JobOptions;
 use crate::predict::other_tool;
 
@@ -86,8 +86,7 @@ impl Solver {
                     "give tool_x_mm, tool_y_mm and tool_z_mm of the vectors, or measure a field with this tool",
                     "задайте tool_x_mm, tool_y_mm и tool_z_mm измеренных векторов или измерьте поле этим инструментом"
                 )),
-                _ => notice!(OUTSIDE;
-                    message;
+                _ => notice!(OUTSIDE; message;
                     "leave the point out, or choose another engine with `--engine`",
                     "исключите точку или выберите другой метод ключом `--engine`"
                 ),

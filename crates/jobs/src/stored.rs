@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use control_files::{Ini, Length};
+use diagnostic::notice;
 use machine_profile::Profile;
 use nc_dialect::Dialect;
 use nc_syntax::Macros;
 
 use crate::lines;
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 use crate::options::JobOptions;
 
 /// What files say of lengths and zeros; where they do, the profile's do not count.

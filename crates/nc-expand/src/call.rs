@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::io::ErrorKind;
 use std::rc::Rc;
 
-use diagnostic::{Refusal, Text, both, of_system};
+use diagnostic::{Text, both, of_system, refusal};
 use nc_dialect::PointFree;
 use nc_syntax::Macros;
 
@@ -283,16 +283,12 @@ impl<'a> Run<'a, '_> {
                 }
                 Ok(text) => {
                     if let Err(diagnostic) = nc_syntax::looks_like_program(&text) {
-                        return Err(say(Refusal {
-                            code: codes::UNREADABLE_FILE,
-                            message: both!(
-                                "subprogram file {name}: {}",
-                                "файл подпрограммы {name}: {:#}",
-                                diagnostic.message
-                            ),
-                            label: both!("called here", "вызвана здесь"),
-                            help: diagnostic.help.unwrap_or_default(),
-                        }));
+                        return Err(say(refusal!(codes::UNREADABLE_FILE;
+                            "subprogram file {name}: {}",
+                            "файл подпрограммы {name}: {:#}", diagnostic.message;
+                            "called here", "вызвана здесь";
+                            diagnostic.help.unwrap_or_default()
+                        )));
                     }
                     let read = Source::read(name.clone(), Cow::Owned(text), self.dialect, &mut self.names);
                     let source =

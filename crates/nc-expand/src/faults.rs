@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Diagnostic, Refusal, Text, both};
+use diagnostic::{Diagnostic, Refusal, Text, both, refusal};
 use nc_syntax::Macros;
 
 use crate::call_stack::CallKind;
@@ -63,58 +63,45 @@ fn unknown(variable: Variable, span: Range<u64>, names: &Names, macros: Macros) 
             "эта программа до этого места переменной ничего не присваивает, а прежняя могла"
         )
     };
-    Diagnostic::error(
-        codes::UNKNOWN_VALUE,
-        both!(
-            "{shown} is known on the machine only: {why}",
-            "значение {shown} известно только на станке: {why:#}"
-        ),
-    )
-    .at(span, both!("needs the value of {shown}", "нужно значение {shown}"))
-    .help(both!(
+    refusal!(codes::UNKNOWN_VALUE;
+        "{shown} is known on the machine only: {why}", "значение {shown} известно только на станке: {why:#}";
+        "needs the value of {shown}", "нужно значение {shown}";
         "`--set \"{shown}=12.5\"` with the value that it has there",
         "`--set \"{shown}=12.5\"` с тем значением, какое у неё на станке"
-    ))
+    )
+    .at(span)
 }
 
 fn arithmetic(fault: &Fault, span: Range<u64>) -> Diagnostic {
     match fault {
-        Fault::Arithmetic(what) => Diagnostic::error(
-            codes::ARITHMETIC,
-            both!("{what}: this has no result", "{what:#}: результата нет"),
-        )
-        .at(span, both!("computed here", "вычисляется здесь"))
-        .help(both!(
+        Fault::Arithmetic(what) => refusal!(codes::ARITHMETIC;
+            "{what}: this has no result", "{what:#}: результата нет";
+            "computed here", "вычисляется здесь";
             "correct the expression, or the values given with `--set`",
             "исправьте выражение или значения, заданные ключом `--set`"
-        )),
-        Fault::TooClose(a, b) => Diagnostic::error(
-            codes::TOO_CLOSE,
-            both!(
-                "{a} and {b} differ by rounding only: the control's own rounding decides",
-                "{a} и {b} различаются только округлением: решит округление самой стойки"
-            ),
         )
-        .at(span, both!("decided here", "решается здесь"))
-        .help(both!(
+        .at(span),
+        Fault::TooClose(a, b) => refusal!(codes::TOO_CLOSE;
+            "{a} and {b} differ by rounding only: the control's own rounding decides",
+            "{a} и {b} различаются только округлением: решит округление самой стойки";
+            "decided here", "решается здесь";
             "compare with a margin, as in `IF[ABS[#1-#2]LT0.0005]`, or count turns with whole numbers",
             "сравнивайте с запасом, например `IF[ABS[#1-#2]LT0.0005]`, или считайте проходы целыми числами"
-        )),
-        Fault::NotWhole(what, value) => Diagnostic::error(
-            codes::BAD_VALUE,
-            both!("{what}: {value} is not a whole number", "{what:#}: {value} — не целое число"),
         )
-        .at(span, both!("a whole number was expected", "ожидалось целое число"))
-        .help(both!(
+        .at(span),
+        Fault::NotWhole(what, value) => refusal!(codes::BAD_VALUE;
+            "{what}: {value} is not a whole number", "{what:#}: {value} — не целое число";
+            "a whole number was expected", "ожидалось целое число";
             "round it where it is computed, as in `ROUND[#1]`",
             "округлите его там, где оно вычисляется, например `ROUND[#1]`"
-        )),
-        Fault::NoVariable(number) => Diagnostic::error(
-            codes::BAD_VALUE,
-            both!("the control has no variable #{number}", "переменной #{number} у стойки нет"),
         )
-        .at(span, both!("computed here", "вычисляется здесь"))
-        .help(both!("correct the number of the variable", "исправьте номер переменной")),
+        .at(span),
+        Fault::NoVariable(number) => refusal!(codes::BAD_VALUE;
+            "the control has no variable #{number}", "переменной #{number} у стойки нет";
+            "computed here", "вычисляется здесь";
+            "correct the number of the variable", "исправьте номер переменной"
+        )
+        .at(span),
     }
 }
 
@@ -128,82 +115,59 @@ pub(crate) fn whole(what: &Text, value: f64) -> Result<u64, Stop> {
 }
 
 pub(crate) fn too_many_steps(limit: u64) -> Stop {
-    say(Refusal {
-        code: codes::STEPS,
-        message: both!(
-            "the program is still running after {limit} repeated steps",
-            "после {limit} повторных шагов программа всё ещё не кончилась"
-        ),
-        label: both!("reached once more", "сюда попали ещё раз"),
-        help: both!(
-            "a loop that never ends? correct its condition, or split the program",
-            "цикл без конца? исправьте его условие или разделите программу"
-        ),
-    })
+    say(refusal!(codes::STEPS;
+        "the program is still running after {limit} repeated steps",
+        "после {limit} повторных шагов программа всё ещё не кончилась";
+        "reached once more", "сюда попали ещё раз";
+        "a loop that never ends? correct its condition, or split the program",
+        "цикл без конца? исправьте его условие или разделите программу"
+    ))
 }
 
 pub(crate) fn too_long(limit: u64) -> Stop {
-    say(Refusal {
-        code: codes::SIZE,
-        message: both!(
-            "the expanded program is longer than {limit} bytes",
-            "развёрнутая программа длиннее {limit} байт"
-        ),
-        label: both!("grows here", "растёт здесь"),
-        help: both!(
-            "calls or loops that multiply? correct the counts, or split the program",
-            "вызовы или циклы умножают друг друга? исправьте числа повторений или разделите программу"
-        ),
-    })
+    say(refusal!(codes::SIZE;
+        "the expanded program is longer than {limit} bytes", "развёрнутая программа длиннее {limit} байт";
+        "grows here", "растёт здесь";
+        "calls or loops that multiply? correct the counts, or split the program",
+        "вызовы или циклы умножают друг друга? исправьте числа повторений или разделите программу"
+    ))
 }
 
 pub(crate) fn too_deep(limit: usize) -> Stop {
-    say(Refusal {
-        code: codes::DEPTH,
-        message: both!("calls inside one another: more than {limit}", "вложенных вызовов больше {limit}"),
-        label: both!("one call too many", "лишний вызов"),
-        help: both!(
-            "a program that calls itself without end? controls refuse it too",
-            "программа без конца вызывает себя? стойки этого тоже не примут"
-        ),
-    })
+    say(refusal!(codes::DEPTH;
+        "calls inside one another: more than {limit}", "вложенных вызовов больше {limit}";
+        "one call too many", "лишний вызов";
+        "a program that calls itself without end? controls refuse it too",
+        "программа без конца вызывает себя? стойки этого тоже не примут"
+    ))
 }
 
 /// * `what` – block number or label, as it is corrected
 pub(crate) fn label(shown: &str, what: &Text, why: &Text) -> Stop {
-    say(Refusal {
-        code: codes::LABEL,
-        message: both!("{shown} cannot be gone to: {why}", "к {shown} не перейти: {why:#}"),
-        label: both!("leads there", "ведёт туда"),
-        help: both!("correct the {what}", "исправьте {what:#}"),
-    })
+    say(refusal!(codes::LABEL;
+        "{shown} cannot be gone to: {why}", "к {shown} не перейти: {why:#}";
+        "leads there", "ведёт туда";
+        "correct the {what}", "исправьте {what:#}"
+    ))
 }
 
 pub(crate) fn endless() -> Stop {
-    say(Refusal {
-        code: codes::RETURN,
-        message: both!(
-            "M99 in the main program: it starts again without end",
-            "M99 в главной программе: она начинается снова без конца"
-        ),
-        label: both!("no call to return from", "возвращаться не из чего"),
-        help: both!(
-            "end the program with M30; correct it once and repeat it on the control",
-            "закончите программу функцией M30; исправьте её один раз, а повторяйте на стойке"
-        ),
-    })
+    say(refusal!(codes::RETURN;
+        "M99 in the main program: it starts again without end",
+        "M99 в главной программе: она начинается снова без конца";
+        "no call to return from", "возвращаться не из чего";
+        "end the program with M30; correct it once and repeat it on the control",
+        "закончите программу функцией M30; исправьте её один раз, а повторяйте на стойке"
+    ))
 }
 
 pub(crate) fn no_call(what: &Text) -> Stop {
-    say(Refusal {
-        code: codes::RETURN,
-        message: both!("{what}: there is no call to return from", "{what:#}: возвращаться не из чего"),
-        label: both!("reached here", "сюда дошло исполнение"),
-        help: both!(
-            "`sub`, `endsub` and `return` belong together, and M98 and M99",
-            "`sub`, `endsub` и `return` стоят вместе, как и M98 с M99"
-        ),
-    })
+    say(refusal!(codes::RETURN;
+        "{what}: there is no call to return from", "{what:#}: возвращаться не из чего";
+        "reached here", "сюда дошло исполнение";
+        "`sub`, `endsub` and `return` belong together, and M98 and M99",
+        "`sub`, `endsub` и `return` стоят вместе, как и M98 с M99"
+    ))
 }
 
 pub(crate) fn no_return(names: &Names, kind: CallKind, macros: Macros) -> Stop {
@@ -215,110 +179,80 @@ pub(crate) fn no_return(names: &Names, kind: CallKind, macros: Macros) -> Stop {
         CallKind::Program(id) => (names.name(id).to_ascii_uppercase(), "M17"),
         CallKind::Name(id) | CallKind::Routine(id) => (format!("o<{}>", names.name(id)), "`endsub`"),
     };
-    say(Refusal {
-        code: codes::RETURN,
-        message: both!("subprogram {name} ends without {way}", "подпрограмма {name} кончается без {way}"),
-        label: both!("the end of it", "её конец"),
-        help: both!("end the subprogram with {way}", "закончите подпрограмму: {way}"),
-    })
+    say(refusal!(codes::RETURN;
+        "subprogram {name} ends without {way}", "подпрограмма {name} кончается без {way}";
+        "the end of it", "её конец";
+        "end the subprogram with {way}", "закончите подпрограмму: {way}"
+    ))
 }
 
 pub(crate) fn runs_into(program: &str) -> Stop {
-    say(Refusal {
-        code: codes::RETURN,
-        message: both!("the main program runs into {program}", "главная программа переходит в {program}"),
-        label: both!("reached without a call", "дошло без вызова"),
-        help: both!(
-            "end the main program with M30 before it",
-            "закончите перед ней главную программу функцией M30"
-        ),
-    })
+    say(refusal!(codes::RETURN;
+        "the main program runs into {program}", "главная программа переходит в {program}";
+        "reached without a call", "дошло без вызова";
+        "end the main program with M30 before it", "закончите перед ней главную программу функцией M30"
+    ))
 }
 
 pub(crate) fn nothing_executed(span: Range<u64>) -> Diagnostic {
-    Diagnostic::error(codes::NOTHING_EXECUTED, both!("the file defines subroutines and executes nothing", "в файле подпрограммы, и ничего не исполняется"))
-        .at(span, both!("defined here, called nowhere", "определена здесь, не вызвана нигде"))
-        .help(both!("correct the program that calls it, with `--include DIR` naming this file's folder: the moves depend on the call", "исправляйте программу, которая её вызывает, назвав папку этого файла: `--include DIR`; движения зависят от вызова"))
+    refusal!(codes::NOTHING_EXECUTED;
+        "the file defines subroutines and executes nothing", "в файле подпрограммы, и ничего не исполняется";
+        "defined here, called nowhere", "определена здесь, не вызвана нигде";
+        "correct the program that calls it, with `--include DIR` naming this file's folder: the moves depend on the call",
+        "исправляйте программу, которая её вызывает, назвав папку этого файла: `--include DIR`; движения зависят от вызова"
+    ).at(span)
 }
 
 pub(crate) fn block_delete() -> Stop {
-    say(Refusal {
-        code: codes::BLOCK_DELETE,
-        message: both!(
-            "flow behind block delete: the switch on the panel makes two programs of it",
-            "ветвление в кадре с пропуском: переключатель на пульте делает из программы две"
-        ),
-        label: both!("executed or not?", "исполнять или нет?"),
-        help: both!(
-            "remove the `/`, or the statement, and correct the program you mean to run",
-            "уберите `/` или оператор и исправляйте ту программу, которую будете исполнять"
-        ),
-    })
+    say(refusal!(codes::BLOCK_DELETE;
+        "flow behind block delete: the switch on the panel makes two programs of it",
+        "ветвление в кадре с пропуском: переключатель на пульте делает из программы две";
+        "executed or not?", "исполнять или нет?";
+        "remove the `/`, or the statement, and correct the program you mean to run",
+        "уберите `/` или оператор и исправляйте ту программу, которую будете исполнять"
+    ))
 }
 
 pub(crate) fn no_code(letter: char, value: f64) -> Stop {
-    say(Refusal {
-        code: codes::BAD_VALUE,
-        message: both!(
-            "{letter} with the computed value {value} is not taken",
-            "{letter} с вычисленным значением {value} не принимается"
-        ),
-        label: both!("computed here", "вычисляется здесь"),
-        help: both!(
-            "write the code or the count as a plain number",
-            "напишите функцию или счётчик простым числом"
-        ),
-    })
+    say(refusal!(codes::BAD_VALUE;
+        "{letter} with the computed value {value} is not taken",
+        "{letter} с вычисленным значением {value} не принимается";
+        "computed here", "вычисляется здесь";
+        "write the code or the count as a plain number", "напишите функцию или счётчик простым числом"
+    ))
 }
 
 pub(crate) fn too_large(letter: char, value: f64) -> Stop {
-    say(Refusal {
-        code: codes::BAD_VALUE,
-        message: both!(
-            "{letter} with the computed value {value} has more than 15 digits",
-            "у {letter} с вычисленным значением {value} больше 15 цифр"
-        ),
-        label: both!("computed here", "вычисляется здесь"),
-        help: both!(
-            "correct the expression, or the values given with `--set`",
-            "исправьте выражение или значения, заданные ключом `--set`"
-        ),
-    })
+    say(refusal!(codes::BAD_VALUE;
+        "{letter} with the computed value {value} has more than 15 digits",
+        "у {letter} с вычисленным значением {value} больше 15 цифр";
+        "computed here", "вычисляется здесь";
+        "correct the expression, or the values given with `--set`",
+        "исправьте выражение или значения, заданные ключом `--set`"
+    ))
 }
 
 pub(crate) fn protected(protected: Protected, variable: Variable, names: &Names) -> Stop {
     let shown = names.show(variable);
     match protected {
-        Protected::Alarm => say(Refusal {
-            code: codes::ALARM,
-            message: both!(
-                "the program stops itself with an alarm here",
-                "программа здесь сама выдаёт аварийное сообщение и останавливается"
-            ),
-            label: both!("reached with the values given", "при заданных значениях исполнение доходит сюда"),
-            help: both!(
-                "give the values the program expects with `--set`, or remove the line",
-                "задайте ключом `--set` те значения, которых ждёт программа, или уберите строку"
-            ),
-        }),
-        Protected::System => say(Refusal {
-            code: codes::SYSTEM_WRITE,
-            message: both!(
-                "the program writes {shown}, which the control acts on",
-                "программа записывает {shown}, а стойка по ней действует"
-            ),
-            label: both!("an offset, a position or a switch", "коррекция, положение или переключатель"),
-            help: both!(
-                "set it on the control, and remove the line",
-                "задайте её на стойке и уберите строку"
-            ),
-        }),
-        Protected::None => say(Refusal {
-            code: codes::SYSTEM_WRITE,
-            message: both!("{shown} cannot be written", "{shown} записать нельзя"),
-            label: both!("no such variable", "такой переменной нет"),
-            help: both!("correct the number of the variable", "исправьте номер переменной"),
-        }),
+        Protected::Alarm => say(refusal!(codes::ALARM;
+            "the program stops itself with an alarm here",
+            "программа здесь сама выдаёт аварийное сообщение и останавливается";
+            "reached with the values given", "при заданных значениях исполнение доходит сюда";
+            "give the values the program expects with `--set`, or remove the line",
+            "задайте ключом `--set` те значения, которых ждёт программа, или уберите строку"
+        )),
+        Protected::System => say(refusal!(codes::SYSTEM_WRITE;
+            "the program writes {shown}, which the control acts on",
+            "программа записывает {shown}, а стойка по ней действует";
+            "an offset, a position or a switch", "коррекция, положение или переключатель";
+            "set it on the control, and remove the line", "задайте её на стойке и уберите строку"
+        )),
+        Protected::None => say(refusal!(codes::SYSTEM_WRITE;
+            "{shown} cannot be written", "{shown} записать нельзя";
+            "no such variable", "такой переменной нет";
+            "correct the number of the variable", "исправьте номер переменной"
+        )),
     }
 }
 

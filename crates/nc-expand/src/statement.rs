@@ -1,6 +1,6 @@
 //! Blocks as statements: what is copied, what is computed, where it goes on.
 
-use diagnostic::{Diagnostic, Refusal, Text, both};
+use diagnostic::{Diagnostic, Refusal, Text, both, refusal};
 use nc_dialect::{Action, Dialect, TurningCycle};
 use nc_syntax::{Block, GCode, Item, ItemKind, Macros, Reader, Span, Value as WordValue};
 
@@ -573,15 +573,13 @@ pub(crate) fn whole(block: &Block<'_>) -> Span {
 fn wrong(block: &Block<'_>, span: Span, fault: &Text) -> Fault {
     let found: String = String::from_utf8_lossy(block.text(span)).chars().take(60).collect();
     Box::new(
-        Diagnostic::error(
-            codes::SYNTAX,
-            both!("`{}` cannot be read: {fault}", "`{}` не читается: {fault:#}", found.trim()),
-        )
-        .at(block.file_span(span), both!("not understood", "непонятно"))
-        .help(both!(
+        refusal!(codes::SYNTAX;
+            "`{}` cannot be read: {fault}", "`{}` не читается: {fault:#}", found.trim();
+            "not understood", "непонятно";
             "write it as the control's manual does, or post the program without variables and flow",
             "напишите так, как в руководстве стойки, или выведите программу без переменных и переходов"
-        )),
+        )
+        .at(block.file_span(span)),
     )
 }
 

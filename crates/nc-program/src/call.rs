@@ -1,6 +1,6 @@
 //! What only the control has: programs and functions that are left alone, and what is unknown behind them.
 
-use diagnostic::{Diagnostic, Refusal, both};
+use diagnostic::{Diagnostic, refusal};
 use nc_dialect::Action;
 use nc_syntax::Span;
 use smallvec::smallvec;
@@ -52,13 +52,13 @@ pub(crate) fn left_alone(
 
 /// A function that moves axes in a block that moves them too.
 pub(crate) fn moves_itself(words: &Words<'_, '_, '_>, span: Span) -> Box<Diagnostic> {
-    let message = both!(
-        "{} moves the axes itself, in a block that moves them too",
-        "{} сама двигает оси, и кадр двигает их тоже",
-        words.text(span)
-    );
-    let label =
-        both!("before or after the motion? controls differ", "до движения или после? у стоек по-разному");
-    let help = both!("write it in a block of its own", "напишите её отдельным кадром");
-    words.refuse(Refusal { code: codes::COMBINATION, message, label, help }, span)
+    words.refuse(
+        refusal!(codes::COMBINATION;
+            "{} moves the axes itself, in a block that moves them too",
+            "{} сама двигает оси, и кадр двигает их тоже", words.text(span);
+            "before or after the motion? controls differ", "до движения или после? у стоек по-разному";
+            "write it in a block of its own", "напишите её отдельным кадром"
+        ),
+        span,
+    )
 }

@@ -1,6 +1,6 @@
 //! Drilling cycles: which blocks make a hole, and where.
 
-use diagnostic::{Refusal, Text, both};
+use diagnostic::{Refusal, Text, both, refusal};
 use nc_dialect::CycleLevels;
 use nc_syntax::{GCode, Letters};
 use smallvec::SmallVec;
@@ -176,12 +176,7 @@ fn returns_to_initial(
         ),
     };
     Err(words.refuse(
-        Refusal {
-            code,
-            message: what,
-            label,
-            help: both!("write G98 or G99 in this block", "напишите G98 или G99 в этом кадре"),
-        },
+        refusal!(code; what; label; "write G98 or G99 in this block", "напишите G98 или G99 в этом кадре"),
         words.span(AXIS_LETTERS.or(R)),
     ))
 }

@@ -4,7 +4,7 @@
 //! makes of it is the machine's kinematics, and of two ways and all whole turns the nearest to where the axes stand; where two
 //! are as near, the branch of the profile.
 
-use diagnostic::{Refusal, both};
+use diagnostic::{Refusal, both, refusal};
 use nc_syntax::Letters;
 use toolpath::{AXIS_NAMES, Kinematics, NoAngles, unit};
 
@@ -112,15 +112,10 @@ pub(crate) fn check(
         ),
     };
     Err(words.refuse(
-        Refusal {
-            code: codes::DIRECTION_BETWEEN,
-            message: both!(
-                "a direction as a vector cannot be followed",
-                "направление вектором не проследить"
-            ),
-            label,
-            help,
-        },
+        refusal!(codes::DIRECTION_BETWEEN;
+            "a direction as a vector cannot be followed", "направление вектором не проследить";
+            label; help
+        ),
         span,
     ))
 }

@@ -1,6 +1,6 @@
 //! What the axis words of a block make the axes do.
 
-use diagnostic::{Diagnostic, Refusal, Text, both};
+use diagnostic::{Diagnostic, Text, both, refusal};
 use nc_syntax::Span;
 use smallvec::smallvec;
 use toolpath::{Division, Feed, FeedRate, Motion, Mover, Shape};
@@ -257,19 +257,13 @@ fn dwell(env: &Environment<'_>, words: &Words<'_, '_, '_>, demand: &Demand<'_>) 
         (b'A'..=b'Z').any(|l| own.contains(l) && words.plain(l).is_some_and(|time| time > 0.0))
     };
     if let (Some(own), Some(span)) = (own.filter(|own| !waits(*own)), demand.owner_span) {
-        let message = both!("{} without a time", "{} без времени", words.text(span));
-        let help = both!(
-            "write its time as {}, or delete it",
-            "напишите её время словом {} или удалите её",
-            own.names()
-        );
         return Err(words.refuse(
-            Refusal {
-                code: codes::REFUSED_CODE,
-                message,
-                label: both!("is no dwell on this control", "на этой стойке это не выдержка"),
-                help,
-            },
+            refusal!(codes::REFUSED_CODE;
+                "{} without a time", "{} без времени", words.text(span);
+                "is no dwell on this control", "на этой стойке это не выдержка";
+                "write its time as {}, or delete it",
+                "напишите её время словом {} или удалите её", own.names()
+            ),
             span,
         ));
     }
@@ -373,15 +367,12 @@ fn whose(words: &Words<'_, '_, '_>, demand: &Demand<'_>, motion: Span) -> Box<Di
 fn stray(words: &Words<'_, '_, '_>, why: Text) -> Box<Diagnostic> {
     let names = words.names(ARC_LETTERS);
     words.refuse(
-        Refusal {
-            code: codes::STRAY_ARC_WORD,
-            message: both!("{names} has no meaning here", "{names} здесь ничего не значит"),
-            label: why,
-            help: both!(
-                "write G2 or G3 for an arc, or remove the word; corner roundings must be posted as arcs",
-                "для дуги напишите G2 или G3 или уберите слово; скругления углов выводите дугами"
-            ),
-        },
+        refusal!(codes::STRAY_ARC_WORD;
+            "{names} has no meaning here", "{names} здесь ничего не значит";
+            why;
+            "write G2 or G3 for an arc, or remove the word; corner roundings must be posted as arcs",
+            "для дуги напишите G2 или G3 или уберите слово; скругления углов выводите дугами"
+        ),
         words.span(ARC_LETTERS),
     )
 }

@@ -1,6 +1,6 @@
 //! Where a block's axis words lead, and what is said where that cannot be known.
 
-use diagnostic::{Diagnostic, Entry, Refusal, Text, both};
+use diagnostic::{Diagnostic, Entry, Refusal, Text, both, refusal};
 use nc_dialect::Action;
 use nc_syntax::{Letters, Span};
 use toolpath::{AXIS_NAMES, Frame, Position};
@@ -141,11 +141,10 @@ fn direct(words: &Words<'_, '_, '_>, span: Span, value_deg: f64, axis: usize, st
             both!("where the axis comes from is not known", "откуда идёт ось, неизвестно")
         }
     };
-    let help = both!(
+    Err(words.refuse(refusal!(codes::BAD_NUMBER; message; label;
         "write the angle without a name, counted on over whole turns, or turn the axis by a rapid of its own before",
         "напишите угол без имени, со счётом полных оборотов, или поверните ось раньше отдельным быстрым ходом"
-    );
-    Err(words.refuse(Refusal { code: codes::BAD_NUMBER, message, label, help }, span))
+    ), span))
 }
 
 /// The linear axes after the words of the block where a rotation, scaling or mirror is in force.

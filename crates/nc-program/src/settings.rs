@@ -1,6 +1,6 @@
 //! What the codes of a block set before anything moves, whatever their order in the block.
 
-use diagnostic::{Refusal, Text, both};
+use diagnostic::{Text, both, refusal};
 use nc_dialect::{Action, PlaneCode};
 use nc_syntax::{GCode, Letters, Span};
 use toolpath::{CycleKind, Kinematics, Plane};
@@ -153,8 +153,13 @@ fn followed(
         _ => None,
     };
     if let Some((label, help)) = unwritten {
-        let message = both!("{} was not written out", "{} не расписана движениями", words.text(span));
-        return Err(words.refuse(Refusal { code: codes::REFUSED_CODE, message, label, help }, span));
+        return Err(words.refuse(
+            refusal!(codes::REFUSED_CODE;
+                "{} was not written out", "{} не расписана движениями", words.text(span);
+                label; help
+            ),
+            span,
+        ));
     }
     if *action == Action::Swivel && (state.shifts.local_mm != [0.0; 3] || !state.transform.is_none()) {
         return Err(words.refuse_code(refusal::WHILE_FRAME_IN_FORCE, span));
@@ -162,19 +167,17 @@ fn followed(
     if *action == Action::ContourTolerance && may_switch_tip(&words.text(span), before) {
         let call = words.text(span);
         let name = call.split('(').next().unwrap_or_default();
-        let message = both!(
-            "{name} is refused: may switch TRAORI by its second argument",
-            "{name} не принимается: может переключать TRAORI вторым аргументом"
-        );
-        let label = both!(
-            "its third digit from the right is a transformation, and 0 ends the one in force",
-            "третья справа цифра — трансформация, а 0 отменяет действующую"
-        );
-        let help = both!(
-            "write the tolerance alone, as in CYCLE832(0.01)",
-            "напишите только допуск, например CYCLE832(0.01)"
-        );
-        return Err(words.refuse(Refusal { code: codes::COMMAND, message, label, help }, span));
+        return Err(words.refuse(
+            refusal!(codes::COMMAND;
+                "{name} is refused: may switch TRAORI by its second argument",
+                "{name} не принимается: может переключать TRAORI вторым аргументом";
+                "its third digit from the right is a transformation, and 0 ends the one in force",
+                "третья справа цифра — трансформация, а 0 отменяет действующую";
+                "write the tolerance alone, as in CYCLE832(0.01)",
+                "напишите только допуск, например CYCLE832(0.01)"
+            ),
+            span,
+        ));
     }
     if let Action::Refuse { reason, help } = action {
         return Err(words.refused_code(span, reason, help));

@@ -7,7 +7,7 @@
 //! the control's own rapid to places that no program names; behind the cycle nobody knows where X, Y and Z stand in the
 //! plane, with a retraction or without.
 
-use diagnostic::{Diagnostic, Refusal, Text, both};
+use diagnostic::{Diagnostic, Text, both, refusal};
 use nc_syntax::Span;
 use toolpath::{AngleValue, Kinematics, Plane, TiltedPlane};
 
@@ -58,8 +58,10 @@ struct Swivel {
 
 impl Call<'_, '_, '_, '_> {
     fn refuse(&self, what: &Text, label: Text, help: Text) -> Box<Diagnostic> {
-        let message = both!("CYCLE800 {what}", "CYCLE800 {what:#}");
-        self.words.refuse(Refusal { code: codes::TILTED_PLANE, message, label, help }, self.span)
+        self.words.refuse(
+            refusal!(codes::TILTED_PLANE; "CYCLE800 {what}", "CYCLE800 {what:#}"; label; help),
+            self.span,
+        )
     }
 
     /// A plain number; an argument left out is 0.

@@ -5,7 +5,7 @@
 //! That it does so wherever the rotary axes stand no manual promises; so nothing moves in a plane on which the tool
 //! does not stand upright.
 
-use diagnostic::{Diagnostic, Refusal, Text, both};
+use diagnostic::{Diagnostic, Refusal, Text, both, refusal};
 use nc_dialect::Action;
 use nc_syntax::{Letters, Span};
 use smallvec::SmallVec;
@@ -61,11 +61,14 @@ pub(crate) fn declared(env: &Environment<'_>, words: &Words<'_, '_, '_>, span: S
         .unknown(&both!("no path in it", "в ней"), &both!("tilted planes", "наклонных плоскостей"));
     let Some((label, help)) = unknown else { return Ok(()) };
     let code = words.text(span);
-    let message = both!(
-        "{code} is refused: it tilts the working plane",
-        "{code} не принимается: она наклоняет рабочую плоскость"
-    );
-    Err(words.refuse(Refusal { code: codes::TILTED_PLANE, message, label, help }, span))
+    Err(words.refuse(
+        refusal!(codes::TILTED_PLANE;
+            "{code} is refused: it tilts the working plane",
+            "{code} не принимается: она наклоняет рабочую плоскость";
+            label; help
+        ),
+        span,
+    ))
 }
 
 /// G68.2.
@@ -487,17 +490,13 @@ pub(crate) fn check(
         _ => return Ok(()),
     };
     let span = span();
-    let message = both!("{} inside a tilted plane", "{} в наклонной плоскости", words.text(span));
     Err(words.refuse(
-        Refusal {
-            code: codes::TILTED_PLANE,
-            message,
-            label: both!(
-                "{what}: controls differ in what that means here",
-                "{what:#}: что это здесь значит, у стоек по-разному"
-            ),
-            help,
-        },
+        refusal!(codes::TILTED_PLANE;
+            "{} inside a tilted plane", "{} в наклонной плоскости", words.text(span);
+            "{what}: controls differ in what that means here",
+            "{what:#}: что это здесь значит, у стоек по-разному";
+            help
+        ),
         span,
     ))
 }

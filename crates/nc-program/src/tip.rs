@@ -1,6 +1,6 @@
 //! Tool centre point control: G43.4, TRAORI, M codes of the machine. X, Y and Z then say where the tip is.
 
-use diagnostic::{Refusal, both};
+use diagnostic::{both, refusal};
 use nc_dialect::{Action, TipSwitch};
 use nc_syntax::{Letters, Span};
 use toolpath::Kinematics;
@@ -59,12 +59,11 @@ pub(crate) fn switch(
         &both!("tool centre point control", "управления по вершине инструмента"),
     );
     if let (Kinematics::Tip, Some((label, help))) = (kinematics, unknown) {
-        let message = both!(
+        return Err(words.refuse(refusal!(codes::TIP_CONTROL;
             "{} is refused: it moves the axes so that the tool's tip follows the path (tool centre point)",
-            "{} не принимается: она ведёт оси так, чтобы по пути шла вершина инструмента",
-            words.text(span)
-        );
-        return Err(words.refuse(Refusal { code: codes::TIP_CONTROL, message, label, help }, span));
+            "{} не принимается: она ведёт оси так, чтобы по пути шла вершина инструмента", words.text(span);
+            label; help
+        ), span));
     }
     if kinematics == before.kinematics {
         return Ok(());
@@ -144,12 +143,10 @@ pub(crate) fn check(
         return Ok(());
     };
     Err(words.refuse(
-        Refusal {
-            code: codes::TIP_CONTROL,
-            message,
-            label: both!("X, Y and Z say where the tip is here", "X, Y и Z здесь — положение вершины"),
-            help,
-        },
+        refusal!(codes::TIP_CONTROL; message;
+            "X, Y and Z say where the tip is here", "X, Y и Z здесь — положение вершины";
+            help
+        ),
         span(),
     ))
 }

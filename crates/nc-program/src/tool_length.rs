@@ -1,6 +1,6 @@
 //! T, H, G43, G44, G49 and G43.1: which tool length is in force.
 
-use diagnostic::{Entry, Refusal, Text, both};
+use diagnostic::{Entry, Text, both, refusal};
 use nc_dialect::{LengthAfter, LengthAtChange, TWord, Turning};
 use nc_syntax::{Letters, Span};
 
@@ -296,19 +296,12 @@ fn written(words: &Words<'_, '_, '_>, span: Span, number: u32, state: &Modal) ->
         [Some(geometry), Some(wear)] => Ok(Some([0.0, 0.0, geometry + wear])),
         [geometry, _] => {
             let (has, lacks) = if geometry.is_some() { ("L10", "L11") } else { ("L11", "L10") };
-            let message = both!(
-                "the program writes H{number} by {has} alone",
-                "программа записывает H{number} одним {has}"
-            );
-            let label = both!(
-                "the other part keeps what nobody said",
-                "во второй части остаётся то, чего никто не сказал"
-            );
-            let help = both!(
+            Err(words.refuse(refusal!(codes::TOOL_LENGTH;
+                "the program writes H{number} by {has} alone", "программа записывает H{number} одним {has}";
+                "the other part keeps what nobody said", "во второй части остаётся то, чего никто не сказал";
                 "write G10 {lacks} P{number} R0 too where there is no other part",
                 "напишите и G10 {lacks} P{number} R0, если другой части нет"
-            );
-            Err(words.refuse(Refusal { code: codes::TOOL_LENGTH, message, label, help }, span))
+            ), span))
         }
     }
 }
@@ -379,15 +372,11 @@ pub(crate) fn from_words(
         return Ok(());
     };
     Err(words.refuse(
-        Refusal {
-            code: codes::TOOL_LENGTH,
-            message,
-            label: both!("the length is in the words of this block", "длина стоит в словах этого кадра"),
-            help: both!(
-                "write it in a block of its own with X, Y and Z alone",
-                "напишите её отдельным кадром, только с X, Y и Z"
-            ),
-        },
+        refusal!(codes::TOOL_LENGTH; message;
+            "the length is in the words of this block", "длина стоит в словах этого кадра";
+            "write it in a block of its own with X, Y and Z alone",
+            "напишите её отдельным кадром, только с X, Y и Z"
+        ),
         span,
     ))
 }

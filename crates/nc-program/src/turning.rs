@@ -1,6 +1,6 @@
 //! What is different in a lathe's program: X words are diameters, there is no Y, arcs lie in X and Z.
 
-use diagnostic::{Refusal, Text, both};
+use diagnostic::{Text, both, refusal};
 use nc_dialect::Action;
 use nc_syntax::{GCode, Letters};
 use toolpath::{Motion, Plane, Shape};
@@ -64,9 +64,11 @@ fn no_increments_of_other_axes(words: &Words<'_, '_, '_>) -> Outcome<()> {
             "коррекцию инструмента здесь задаёт T, а H относится к другой оси"
         )
     };
-    let message = both!("{} on a lathe of two axes", "{} на двухосевом токарном станке", words.names(others));
     Err(words.refuse(
-        Refusal { code: codes::NO_TURNING, message, label, help: off_the_axis() },
+        refusal!(codes::NO_TURNING;
+            "{} on a lathe of two axes", "{} на двухосевом токарном станке", words.names(others);
+            label; off_the_axis()
+        ),
         words.span(others),
     ))
 }
@@ -147,12 +149,7 @@ pub(crate) fn check(
             off_the_axis()
         };
         return Err(words.refuse(
-            Refusal {
-                code: codes::NO_TURNING,
-                message,
-                label: both!("the axes are X and Z", "оси — X и Z"),
-                help,
-            },
+            refusal!(codes::NO_TURNING; message; "the axes are X and Z", "оси — X и Z"; help),
             words.span(absent),
         ));
     }

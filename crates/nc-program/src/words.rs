@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Diagnostic, Edit, Refusal, Text, both};
+use diagnostic::{Diagnostic, Edit, Refusal, Text, both, refusal};
 use nc_dialect::{Action, CodeEntry, Dialect, MCode, TWord};
 use nc_syntax::{Block, GCode, Invalid, ItemKind, Letters, Number, Span, Value};
 use smallvec::SmallVec;
@@ -148,20 +148,13 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
             }
             if self.has(Letters::of(&[letter])) {
                 let span = self.span(Letters::of(&[own, letter]));
-                let message = both!(
-                    "{} stands beside {} in this block",
-                    "в этом кадре {} стоит рядом с {}",
-                    own as char,
-                    letter as char
-                );
-                let help = both!("write {} or {}", "напишите {} или {}", letter as char, own as char);
                 return Err(self.refuse(
-                    Refusal {
-                        code: codes::LETTER_TWICE,
-                        message,
-                        label: both!("both say where one axis goes", "оба слова говорят, куда идёт одна ось"),
-                        help,
-                    },
+                    refusal!(codes::LETTER_TWICE;
+                        "{} stands beside {} in this block",
+                        "в этом кадре {} стоит рядом с {}", own as char, letter as char;
+                        "both say where one axis goes", "оба слова говорят, куда идёт одна ось";
+                        "write {} or {}", "напишите {} или {}", letter as char, own as char
+                    ),
                     span,
                 ));
             }
@@ -345,14 +338,12 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
 
     /// The refusal of a code or a letter by its row of the table.
     pub(crate) fn refused_code(&self, span: Span, reason: &Text, help: &Text) -> Box<Diagnostic> {
-        let message = both!("{} is refused: {reason}", "{} не принимается: {reason:#}", self.text(span));
         self.refuse(
-            Refusal {
-                code: codes::REFUSED_CODE,
-                message,
-                label: both!("not understood", "не исполняется"),
-                help: help.clone(),
-            },
+            refusal!(codes::REFUSED_CODE;
+                "{} is refused: {reason}", "{} не принимается: {reason:#}", self.text(span);
+                "not understood", "не исполняется";
+                help.clone()
+            ),
             span,
         )
     }
@@ -379,15 +370,10 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                 )
             };
             return Err(self.refuse(
-                Refusal {
-                    code: codes::SAME_GROUP,
-                    message,
-                    label: both!("{first} stands before it", "перед ним стоит {first}"),
-                    help: both!(
-                        "write them in two blocks, or remove one",
-                        "напишите их двумя кадрами или уберите одну"
-                    ),
-                },
+                refusal!(codes::SAME_GROUP; message;
+                    "{first} stands before it", "перед ним стоит {first}";
+                    "write them in two blocks, or remove one", "напишите их двумя кадрами или уберите одну"
+                ),
                 span,
             ));
         }
@@ -437,15 +423,10 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
             ),
         };
         Err(self.refuse(
-            Refusal {
-                code: codes::COMMAND,
-                message,
-                label: both!(
-                    "it may move the frame or an axis",
-                    "может сместить систему координат или двигать ось"
-                ),
-                help,
-            },
+            refusal!(codes::COMMAND; message;
+                "it may move the frame or an axis", "может сместить систему координат или двигать ось";
+                help
+            ),
             span,
         ))
     }

@@ -1,6 +1,6 @@
 //! Work offsets that codes choose: by name, by P, by H.
 
-use diagnostic::{Entry, Refusal, both};
+use diagnostic::{Entry, both, refusal};
 use nc_dialect::{Action, Dialect};
 use nc_syntax::{GCode, Letters, Span};
 
@@ -20,12 +20,12 @@ pub(crate) fn by_h(
 ) -> Outcome<()> {
     const H: Letters = Letters::of(b"H");
     if length {
-        let message = both!("{} beside a tool length", "{} рядом с коррекцией на длину", words.text(span));
-        let help = both!("write them in two blocks", "напишите их двумя кадрами");
         return Err(words.refuse(
-            Refusal {
-                code: codes::WORDS_OF_TWO, message, label: both!("whose is H?", "чьё это H?"), help
-            },
+            refusal!(codes::WORDS_OF_TWO;
+                "{} beside a tool length", "{} рядом с коррекцией на длину", words.text(span);
+                "whose is H?", "чьё это H?";
+                "write them in two blocks", "напишите их двумя кадрами"
+            ),
             words.span(H),
         ));
     }
@@ -36,10 +36,13 @@ pub(crate) fn by_h(
                 None => both!("{} without H", "{} без H", words.text(span)),
                 Some(_) => both!("{} with H0", "{} с H0", words.text(span)),
             };
-            let label = both!("a number from 1 was expected", "ожидался номер от 1");
-            let help =
-                both!("write the number of the work offset as H", "напишите номер смещения нуля словом H");
-            return Err(words.refuse(Refusal { code: codes::WORK_OFFSET, message, label, help }, span));
+            return Err(words.refuse(
+                refusal!(codes::WORK_OFFSET; message;
+                    "a number from 1 was expected", "ожидался номер от 1";
+                    "write the number of the work offset as H", "напишите номер смещения нуля словом H"
+                ),
+                span,
+            ));
         }
     };
     let name = name_by_h(code, number);

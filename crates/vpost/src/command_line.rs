@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use diagnostic::Language;
+use jobs::diagnose::plan::Form;
 
 use crate::arguments::{Check, Completions, Correct, Grammar, Lsp, Manual, Predict, Profile, Shared, Solve};
 use crate::batch::{Batch, Watch};
 use crate::budget::Budget;
 use crate::calibrate::Calibrate;
 use crate::config::{Config, Held, called};
-use crate::diagnose::{Diagnose, Form};
+use crate::diagnose::Diagnose;
 use crate::explain::Explain;
 use crate::map::Map;
 use crate::message::Failure;

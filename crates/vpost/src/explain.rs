@@ -1,10 +1,10 @@
 //! What a message means, from the page that explains them all.
 
 use clap::Args;
-use diagnostic::Language;
+use diagnostic::{Language, notice};
 
 use crate::file;
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 
 /// `docs/diagnostics.md`: an entry for each number.
 const PAGE: &str = include_str!(env!("DIAGNOSTICS_PAGE"));

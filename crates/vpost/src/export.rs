@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use diagnostic::{Code, Text};
+use diagnostic::{Code, Text, notice};
 use jobs::export::{Asked, Format, Sign, of};
 
-use crate::message::{Deed, Failure, Messages, notice};
+use crate::message::{Deed, Failure, Messages};
 use crate::{file, profile};
 
 /// Warning: the form holds less than the profile.

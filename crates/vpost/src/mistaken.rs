@@ -6,11 +6,11 @@ use std::io::ErrorKind as FileError;
 use std::path::Path;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use diagnostic::{Code, Diagnostic, Text, both, closest};
+use diagnostic::{Code, Diagnostic, Text, both, closest, notice};
 
 use crate::batch::ENDINGS;
 use crate::file;
-use crate::message::{Deed, Failure, Report, file_diagnostic, notice};
+use crate::message::{Deed, Failure, Report, file_diagnostic};
 
 /// What is given is something else than what is asked for there.
 const MISTAKEN: Code = Code(8);
@@ -133,11 +133,10 @@ pub(crate) fn profile(path: &Path) -> Result<(), Failure> {
         }
         _ => return Ok(()),
     };
-    Err(Failure::asks(
-        MISTAKEN,
-        both!("{name} is no profile but {what}", "{name} — не профиль, а {what:#}"),
-        way,
-    ))
+    Err(Failure::usage(notice!(MISTAKEN;
+        "{name} is no profile but {what}", "{name} — не профиль, а {what:#}";
+        way
+    )))
 }
 
 /// What a path is by its name.

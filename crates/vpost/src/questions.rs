@@ -2,9 +2,9 @@
 
 use std::io::{BufRead, IsTerminal};
 
-use diagnostic::Text;
+use diagnostic::{Text, notice};
 
-use crate::message::{Deed, Failure, Messages, OPTION, notice};
+use crate::message::{Deed, Failure, Messages, OPTION};
 
 /// Asks on standard error and reads standard input.
 pub(crate) struct Questions<'m> {

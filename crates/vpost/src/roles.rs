@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Code, Text};
+use diagnostic::{Code, Text, notice};
 
 use crate::file;
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 
 /// A file is named in two roles.
 const TWO_ROLES: Code = Code(4);

@@ -6,9 +6,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::SystemTime;
 
-use diagnostic::Code;
+use diagnostic::{Code, notice};
 
-use crate::message::{Failure, Report, notice};
+use crate::message::{Failure, Report};
 
 /// A file changed while it was read.
 const CHANGED: Code = Code(3);

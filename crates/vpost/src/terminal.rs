@@ -5,11 +5,11 @@
 
 use std::io;
 
-use diagnostic::{Code, Text};
+use diagnostic::{Code, Text, notice};
 
 pub(crate) use jobs::shown::{is_obeyed, shown};
 
-use crate::message::{Deed, Failure, Report, notice};
+use crate::message::{Deed, Failure, Report};
 
 /// A program would give orders to the terminal.
 const OBEYED: Code = Code(5);

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use diagnostic::{Code, Text};
+use diagnostic::{Code, Text, notice};
 use jobs::causes::Causes;
 use report::viewer::scene::{BEFORE, CAUSES, Cause, Displacement, Place, Scene};
 use report::viewer::thinning::TooLarge;
 
 use crate::file;
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 
 /// Even thinned the path is too large for a page.
 const TOO_LARGE: Code = Code(1201);

@@ -1,6 +1,6 @@
 //! Where the criteria are taken: a grid over the volume, or the points of a file.
 
-use diagnostic::{Diagnostic, Speaks, Text, both};
+use diagnostic::{Diagnostic, Speaks, Text, both, notice};
 use error_budget::Machine;
 use error_map::Nodes;
 use machine_model::{Axis, Command, Engine, PathModel, Range, RotaryAxis, RotaryPlay, Vector, Volume};
@@ -8,7 +8,7 @@ use machine_profile::Profile;
 
 use crate::figures::{printable, triple};
 use crate::map::{grid, outside, rotary};
-use crate::message::{Failure, OPTION, Report, notice};
+use crate::message::{Failure, OPTION, Report};
 use crate::options::{JobOptions, Outside};
 use crate::points::{self, POINTS};
 use crate::predict::POINT_OUTSIDE;

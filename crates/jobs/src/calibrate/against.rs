@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use calibration::change::{by_function, compare};
-use diagnostic::{Text, both};
+use diagnostic::{Text, both, notice};
 use machine_model::{Component, Range, Vector, Volume};
 use machine_profile::Profile;
 use measurement_files::micro;
 
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 use crate::{lines, profile};
 
 use super::codes::QUESTION;

@@ -6,7 +6,7 @@ use calibration::measured_line::{
     AxisOnNodes, FunctionSets, Gauge, MeasuredLine, Zero, angles_between, apply_gauge, field_u95_mm,
     settle_directions, squareness_for,
 };
-use diagnostic::both;
+use diagnostic::{both, notice};
 use machine_model::effects::{Conditions, EffectTerm};
 use machine_model::{
     Axis, Chain, Description, Interpolation, LinearAxis, Range, RotaryAxis, Squareness, Vector, WithEffects,
@@ -15,7 +15,7 @@ use machine_profile::EngineError;
 use measurement_files::series::Series;
 
 use crate::conditions;
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 
 use super::codes::{AXES, QUESTION, body, failure};
 use super::options::Interferometer;

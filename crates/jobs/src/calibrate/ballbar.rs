@@ -6,7 +6,7 @@ use calibration::CalibrationError;
 use calibration::linear_ballbar::{self, CircleCalibration};
 use calibration::rotary_ballbar::{self, RotaryCalibration, Test};
 use clap::Args;
-use diagnostic::{Speaks, Text};
+use diagnostic::{Speaks, Text, notice};
 use machine_model::effects::{Conditions, EffectTerm};
 use machine_model::{
     Axis, Command, Description, Engine, LinearAxis, Range, RotaryAxis, Squareness, Vector, WithEffects,
@@ -14,7 +14,7 @@ use machine_model::{
 use machine_profile::{Profile, ProfileText};
 
 use crate::conditions;
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 use crate::profile::load_mill;
 use crate::values::{Given, Point3};
 
@@ -318,8 +318,7 @@ fn located(
     place: impl Fn(usize) -> (usize, usize),
 ) -> Failure {
     let CalibrationError::Outlier { point, message } = error else { return refusal(error) };
-    readings.at(place(*point))(notice!(OUTLIER;
-        message.clone();
+    readings.at(place(*point))(notice!(OUTLIER; message.clone();
         "measure it again, or leave it out; readings moved by a row look like this as well",
         "измерьте снова или исключите; так же выглядят показания со сдвигом на строку"
     ))

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use calibration::linear_ballbar::CircleReading;
 use calibration::rotary_ballbar::{Test, Turning};
-use diagnostic::{Diagnostic, both};
+use diagnostic::{Diagnostic, both, notice};
 use machine_model::{Axis, Command, Vector};
 use measurement_files::{Row, Sheet};
 
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 
 use super::codes::{AXES, UNITS};
 use super::sources;

@@ -1,11 +1,11 @@
 //! Numbers of the messages of `calibrate`.
 
 use calibration::CalibrationError;
-use diagnostic::{Code, Speaks, Text};
+use diagnostic::{Code, Speaks, Text, notice};
 
 use machine_model::{Description, RigidBody};
 
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 
 pub use measurement_files::codes::{AXES, CELL, OPEN, QUESTION, RUNS};
 
@@ -63,8 +63,7 @@ pub(crate) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Fai
 /// The machine that a base describes.
 pub(crate) fn body(description: &Description) -> Result<RigidBody, Failure> {
     RigidBody::new(description.clone()).map_err(|error| {
-        Failure::usage(notice!(QUESTION;
-            error.text();
+        Failure::usage(notice!(QUESTION; error.text();
             "run `vpost profile check` on the base", "запустите `vpost profile check` для исходного профиля"
         ))
     })

@@ -3,12 +3,12 @@
 use calibration::functions::{self, refined};
 use calibration::iso230_2;
 use calibration::measured_line::{AxisOnNodes, Gauge, Zero};
-use diagnostic::{Text, both};
+use diagnostic::{Text, both, notice};
 use machine_model::{Axis, Component, Interpolation, Six, Squareness, Table};
 use measurement_files::micro;
 use measurement_files::series::{Origin, Series, Told};
 
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 use crate::profile::load_mill;
 
 use super::axis_change::Session;

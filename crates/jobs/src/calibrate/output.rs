@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use calibration::rotary_ballbar::Location;
 use calibration::{Base, ChangedAxis, SetUp};
 use clap::Args;
-use diagnostic::Speaks;
+use diagnostic::{Speaks, notice};
 use machine_model::effects::{Conditions, EffectKind};
 use machine_model::{Axis, Chain, Command, Component, Description, Six, Vector};
 use machine_profile::{Calibrated, Profile, ProfileText};
 use measurement_files::micro;
 
 use crate::figures::short;
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 use crate::{lines, profile};
 
 use super::codes::{QUESTION, UNSAID};

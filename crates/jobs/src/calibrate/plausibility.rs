@@ -2,10 +2,10 @@
 
 use calibration::functions::Function;
 use calibration::iso230_2::{self, Runs};
-use diagnostic::{Text, both};
+use diagnostic::{Text, both, notice};
 use machine_model::Component;
 
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 
 use measurement_files::series::{Origin, Series};
 use measurement_files::{OddSizes, micro};
@@ -89,8 +89,7 @@ pub(super) fn copies(
             "дайте проходы, каждый из которых измерен, или один проход"
         )));
     }
-    work.warning(notice!(MISSING;
-        message;
+    work.warning(notice!(MISSING; message;
         "then they say nothing of the repeatability; the uncertainty counts the instrument's alone",
         "о повторяемости они тогда ничего не говорят; в неопределённости учтена только приборная"
     ));

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use calibration::CalibrationError;
 use calibration::functions::FunctionReading;
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text, both, notice};
 use machine_model::Vector;
 use machine_model::effects::Conditions;
 use measurement_files::series::{Content, Series, Told, symbol};
@@ -12,7 +12,7 @@ use measurement_files::{Codes, Kind, Row, Sheet};
 
 use super::codes::{CELL, OUTLIER, QUESTION, failure};
 use super::work::Work;
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 
 /// Reads a table of one of the instruments.
 ///
@@ -110,8 +110,7 @@ impl<T> Read<T> {
         row.map_or_else(
             || failure("", &[], error),
             |row| {
-                Failure::at_cell(&row, column)(notice!(OUTLIER;
-                    error.text();
+                Failure::at_cell(&row, column)(notice!(OUTLIER; error.text();
                     "measure it again, or take the row out", "измерьте снова или уберите строку"
                 ))
             },

@@ -1,9 +1,10 @@
 //! Squareness as an instrument or a file gave it, and what must be asked of it.
 
 use calibration::functions::{self, Function, SquarenessConvention, straight_line};
+use diagnostic::notice;
 use machine_model::{Axis, Squareness};
 
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 
 use super::codes::QUESTION;
 use super::options::{Convention, Interferometer};

@@ -8,13 +8,13 @@ use calibration::tracker::{
 };
 use calibration::{MeanTraverse, Noise, Point, PointReading, Reading, SetUp};
 use clap::{Args, ValueEnum};
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Diagnostic, Text, both, notice};
 use machine_model::effects::Conditions;
 use machine_model::{Axis, Command, Component, Vector};
 use measurement_files::{Sheet, micro};
 
 use crate::conditions::conditions;
-use crate::message::{Failure, Report, notice};
+use crate::message::{Failure, Report};
 use crate::profile::load_mill;
 
 use super::codes::{DOUBTFUL, MISSING, QUESTION, UNFIT, failure};

@@ -10,7 +10,7 @@ use calibration::turning::{
     Change, Feature, Stretch, TurnedReading, TurningBase, TurningCalibration, calibrate,
 };
 use clap::Args;
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text, both, notice};
 use machine_model::{Axis, Command, PathModel, Vector};
 use machine_profile::{LatheParts, Profile};
 use measurement_files::{Row, numbered};
@@ -20,7 +20,7 @@ use super::output::{Output, Target};
 use super::page::Shown;
 use super::sources;
 use crate::conditions::conditions;
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 use crate::options::JobOptions;
 
 use super::work::Work;
@@ -299,8 +299,7 @@ pub fn by_effects(
     let whole = profile.lathe(&conditions(options)?).map_err(|error| crate::conditions::failure(&error))?;
     let stretch = Stretch { low_mm: 0.0, high_mm: 1.0 };
     let bare = base.predicted_mm(&Change::default(), stretch, rows).map_err(|error| {
-        Failure::usage(notice!(QUESTION;
-            error.text();
+        Failure::usage(notice!(QUESTION; error.text();
             "run `vpost profile check` on it", "запустите для него `vpost profile check`"
         ))
     })?;

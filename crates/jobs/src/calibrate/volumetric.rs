@@ -6,12 +6,12 @@ use calibration::rigid_motion::RigidMotion;
 use calibration::volumetric::{Options, VolumetricCalibration, calibrate};
 use calibration::{Point, PointReading, SetUp};
 use clap::Args;
-use diagnostic::{Text, both};
+use diagnostic::{Text, both, notice};
 use machine_model::{Axis, Component, Vector};
 use measurement_files::{Row, micro, numbered};
 
 use crate::conditions::conditions;
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 use crate::profile::load_mill;
 
 use super::codes::{DOUBTFUL, QUESTION, UNFIT};

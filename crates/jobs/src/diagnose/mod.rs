@@ -5,13 +5,15 @@ pub mod change;
 pub mod json;
 mod measurements;
 mod model;
+pub mod plan;
 mod read;
+pub mod summary;
 
-use diagnostic::{Speaks, both};
+use diagnostic::{Speaks, notice};
 use gap_diagnosis::{Diagnosis, Options};
 use machine_model::effects::EffectKind;
 
-use crate::message::Failure;
+use crate::message::{Failure, OPTION};
 pub use books::Books;
 use change::Change;
 pub use model::Model;
@@ -42,10 +44,9 @@ pub fn diagnose(
 ) -> Result<Diagnosed, Failure> {
     let without = without.iter().map(|id| id.parse::<EffectKind>()).collect::<Result<Vec<_>, _>>().map_err(
         |error| {
-            Failure::option(
-                error.text(),
-                both!("see docs/diagnosis.md for the library", "список эффектов — в docs/diagnosis.md"),
-            )
+            Failure::usage(notice!(OPTION; error.text();
+                "see docs/diagnosis.md for the library", "список эффектов — в docs/diagnosis.md"
+            ))
         },
     )?;
     let steps = model.profile.resolution_mm.iter().map(|step| 1e3 * step);

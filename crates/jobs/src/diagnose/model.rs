@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use diagnostic::{Speaks, both};
+use diagnostic::{Speaks, notice};
 use machine_model::effects::{EffectGeometry, EffectTerm};
 use machine_model::engines::build;
 use machine_profile::Profile;
 
-use crate::message::Failure;
+use crate::message::{Failure, OPTION};
 use crate::options::JobOptions;
 use crate::profile;
 use crate::settings::machine;
@@ -37,13 +37,10 @@ impl Model {
         let profile::Loaded { profile, hash, files } = profile::load_mill(machine(options)?)?;
         let built = options.engine().map(|id| build(id, profile.engine_inputs_without_effects()));
         let engine = built.transpose().map_err(|error| {
-            Failure::option(
-                error.text(),
-                both!(
-                    "use an engine the profile has the tables for",
-                    "возьмите метод, для которого в профиле есть таблицы"
-                ),
-            )
+            Failure::usage(notice!(OPTION; error.text();
+                "use an engine the profile has the tables for",
+                "возьмите метод, для которого в профиле есть таблицы"
+            ))
         })?;
         let geometry = profile.effect_geometry();
         let effects = profile
@@ -52,10 +49,9 @@ impl Model {
             .map(|entry| EffectTerm::from_entry(&entry.id, &entry.parameters))
             .collect::<Result<Vec<_>, _>>()
             .map_err(|error| {
-                Failure::option(
-                    error.text(),
-                    both!("correct the profile's [[effect]]", "исправьте [[effect]] профиля"),
-                )
+                Failure::usage(notice!(OPTION; error.text();
+                    "correct the profile's [[effect]]", "исправьте [[effect]] профиля"
+                ))
             })?;
         let effects = effects.into_iter().map(|term| term.with_geometry(geometry.clone())).collect();
         Ok(Self { profile, hash, files, engine, effects, geometry })

@@ -1,13 +1,13 @@
 //! A measurement file with its predictions.
 
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text, both, notice};
 use gap_diagnosis::{Measurements, Row};
 use machine_profile::Profile;
 
 use super::books::{self, Books};
 use super::measurements;
 use super::model::Model;
-use crate::message::Failure;
+use crate::message::{Failure, OPTION};
 use crate::settings::setup_tool;
 
 /// A measurement file with its predictions, and what a report says of the file.
@@ -42,13 +42,11 @@ pub fn of_one_machine(name: &str, measured: &Measured, held: &Measured) -> Resul
         high - low > SAME_RAD
     };
     let refuse = |message: Text| {
-        Failure::option(
-            both!("the hold-out {name}: {message}", "контрольные измерения {name}: {message:#}"),
-            both!(
-                "give a hold-out of the same machine that moves the same axes, or diagnose without --holdout",
-                "дайте контрольные измерения того же станка с теми же осями или проводите диагностику без --holdout"
-            ),
-        )
+        Failure::usage(notice!(OPTION;
+            "the hold-out {name}: {message}", "контрольные измерения {name}: {message:#}";
+            "give a hold-out of the same machine that moves the same axes, or diagnose without --holdout",
+            "дайте контрольные измерения того же станка с теми же осями или проводите диагностику без --holdout"
+        ))
     };
     for (axis, letter) in ["A", "B", "C"].into_iter().enumerate() {
         if turns(&held.data, axis) && !turns(&measured.data, axis) {
@@ -111,13 +109,11 @@ pub fn read(
         for effect in &model.effects {
             row.predicted_mm += effect.displacement_mm(&row.command, &row.conditions).map_err(|error| {
                 let error = error.text();
-                Failure::option(
-                    both!("{} of the profile: {error}", "{} профиля: {error:#}", effect.kind()),
-                    both!(
-                        "give the measurements that column, or take the effect out of the profile",
-                        "добавьте этот столбец в измерения или уберите эффект из профиля"
-                    ),
-                )
+                Failure::usage(notice!(OPTION;
+                    "{} of the profile: {error}", "{} профиля: {error:#}", effect.kind();
+                    "give the measurements that column, or take the effect out of the profile",
+                    "добавьте этот столбец в измерения или уберите эффект из профиля"
+                ))
             })?;
         }
         Ok(())

@@ -1,5 +1,6 @@
 //! Finite rotations on this machine: what the first order leaves out.
 
+use diagnostic::notice;
 use error_map::ErrorMap;
 use machine_model::finite_rotations::{
     OrderInterval, Threshold, Translation, Truncation, order_interval, second_order, threshold,
@@ -8,7 +9,7 @@ use machine_model::{Command, Vector};
 use machine_profile::Profile;
 
 use super::asked::Asked;
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 
 /// Most nodes that are looked at: the errors of machines are smooth, and each costs 1296 compositions.
 const MOST_NODES: usize = 2000;

@@ -1,7 +1,7 @@
 //! The map and everything that is found in it.
 
 use super::evaluated;
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text, both, notice};
 use error_map::diagonals::{Diagonal, body_diagonals};
 use error_map::placement::{self, Freedom, Place};
 use error_map::zero_point::{best_node, best_share, geometric_median, smallest_ball};
@@ -14,7 +14,7 @@ use super::asked::Asked;
 use super::curves::{Curve, curves};
 use super::deformation::{self, Deformation};
 use super::second_order::{self, SecondOrder};
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 
 /// Targets along each body diagonal.
 const TARGETS: u32 = 41;

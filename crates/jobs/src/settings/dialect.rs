@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Code, Diagnostic, Text, both, notice};
 use machine_profile::{BareLengths, Profile};
 use nc_dialect::{Action, CodeEntry, ControlCall, Dialect, MCode, PointFree, TipSwitch};
 use nc_syntax::GCode;
 
 use crate::lines;
-use crate::message::{Failure, OPTION, Report, Source, notice};
+use crate::message::{Failure, OPTION, Report, Source};
 use crate::options::{self, JobOptions};
 
 /// A lathe's dialect for a lathe and a mill's for a mill; of its G-code systems that of the profile.

@@ -1,6 +1,6 @@
 //! `X=AC()`, `X=IC()`, `TURN=` and `AR=` in a block, written out.
 
-use diagnostic::{Refusal, Text, both};
+use diagnostic::{Text, both, refusal};
 use nc_dialect::{Action, Called};
 use nc_program::Owner;
 use nc_program::modal::{Distance, Modal};
@@ -28,18 +28,12 @@ impl Writer<'_> {
         let owned = matches!(owner, Owner::Motion | Owner::DwellP);
         let refuse = |span: Span, label: Text| {
             words.fault(
-                Refusal {
-                    code: codes::CALLED_CYCLE,
-                    message: both!(
-                        "a dimension that cannot be written out",
-                        "размер, который нельзя расписать"
-                    ),
-                    label,
-                    help: both!(
-                        "write the word without AC or IC, in G90 or G91",
-                        "напишите слово без AC и IC, при G90 или G91"
-                    ),
-                },
+                refusal!(codes::CALLED_CYCLE;
+                    "a dimension that cannot be written out", "размер, который нельзя расписать";
+                    label;
+                    "write the word without AC or IC, in G90 or G91",
+                    "напишите слово без AC и IC, при G90 или G91"
+                ),
                 span,
             )
         };

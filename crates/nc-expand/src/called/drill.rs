@@ -1,6 +1,6 @@
 //! The moves of a hole where the axes stand, and what a cycle leaves in force.
 
-use diagnostic::{Refusal, both};
+use diagnostic::{both, refusal};
 use nc_dialect::Action;
 use nc_program::Owner;
 
@@ -47,12 +47,11 @@ impl Writer<'_> {
             return Ok(());
         };
         Err(words.fault(
-            Refusal {
-                code: codes::CALLED_CYCLE,
-                message: both!("{message} is not known", "неизвестно, {message:#}"),
-                label: both!("the cycle's manual does not say", "в руководстве цикла этого нет"),
-                help,
-            },
+            refusal!(codes::CALLED_CYCLE;
+                "{message} is not known", "неизвестно, {message:#}";
+                "the cycle's manual does not say", "в руководстве цикла этого нет";
+                help
+            ),
             words.whole(),
         ))
     }

@@ -2,20 +2,16 @@
 
 use std::fmt::Display;
 
-use diagnostic::{Refusal, Text, both};
+use diagnostic::{Refusal, Text, both, refusal};
 
 use crate::codes;
 
 pub(crate) fn in_brackets(written: impl Display, name: &str) -> Refusal {
-    Refusal {
-        code: codes::CALLED_CYCLE,
-        message: both!("`{written}` in the brackets of {name}", "`{written}` в скобках {name}"),
-        label: both!("plain numbers were expected", "ожидались простые числа"),
-        help: both!(
-            "write the numbers in the place of expressions and texts",
-            "напишите числа вместо выражений и текстов"
-        ),
-    }
+    refusal!(codes::CALLED_CYCLE;
+        "`{written}` in the brackets of {name}", "`{written}` в скобках {name}";
+        "plain numbers were expected", "ожидались простые числа";
+        "write the numbers in the place of expressions and texts", "напишите числа вместо выражений и текстов"
+    )
 }
 
 pub(crate) fn with_as_argument(
@@ -24,42 +20,33 @@ pub(crate) fn with_as_argument(
     number: impl Display,
     place: impl Display,
 ) -> Refusal {
-    Refusal {
-        code: codes::CALLED_CYCLE,
-        message: both!("{name} with {value} as argument {number}", "{name} с {value} в аргументе {number}"),
-        label: both!("chooses how the control reads the others", "решает, как стойка прочтёт остальные"),
-        help: both!(
-            "write {name} with its first {place} arguments, which posts do with extended cycles off, or the holes as G0 and G1",
-            "напишите {name} с первыми аргументами ({place}), как постпроцессоры без расширенных циклов, или отверстия кадрами G0 и G1"
-        ),
-    }
+    refusal!(codes::CALLED_CYCLE;
+        "{name} with {value} as argument {number}", "{name} с {value} в аргументе {number}";
+        "chooses how the control reads the others", "решает, как стойка прочтёт остальные";
+        "write {name} with its first {place} arguments, which posts do with extended cycles off, or the holes as G0 and G1",
+        "напишите {name} с первыми аргументами ({place}), как постпроцессоры без расширенных циклов, или отверстия кадрами G0 и G1"
+    )
 }
 
-pub(crate) const CYCLE_UNDER_G91: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("a cycle under G91", "цикл при G91"),
-    label: Text::pair("its moves are places", "его ходы заданы координатами"),
-    help: Text::pair("write G90 before it", "напишите перед ним G90"),
-};
+pub(crate) const CYCLE_UNDER_G91: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "a cycle under G91", "цикл при G91";
+    "its moves are places", "его ходы заданы координатами";
+    "write G90 before it", "напишите перед ним G90"
+);
 
 pub(crate) fn place_not_known(letter: char) -> Refusal {
-    Refusal {
-        code: codes::CALLED_CYCLE,
-        message: both!("where {letter} stands is not known", "неизвестно, где стоит {letter}"),
-        label: both!("the cycle moves by increments from there", "цикл отходит оттуда на приращения"),
-        help: both!("name it before the cycle, in G90", "назовите её до цикла, при G90"),
-    }
+    refusal!(codes::CALLED_CYCLE;
+        "where {letter} stands is not known", "неизвестно, где стоит {letter}";
+        "the cycle moves by increments from there", "цикл отходит оттуда на приращения";
+        "name it before the cycle, in G90", "назовите её до цикла, при G90"
+    )
 }
 
-pub(crate) const CYCLE_WHILE_ARC_IN_FORCE: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("a cycle while an arc is in force", "цикл, пока действует дуга"),
-    label: Text::pair(
-        "the words behind it would be an arc's again",
-        "слова после него снова относились бы к дуге",
-    ),
-    help: Text::pair("write G0 before the cycle", "напишите G0 до цикла"),
-};
+pub(crate) const CYCLE_WHILE_ARC_IN_FORCE: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "a cycle while an arc is in force", "цикл, пока действует дуга";
+    "the words behind it would be an arc's again", "слова после него снова относились бы к дуге";
+    "write G0 before the cycle", "напишите G0 до цикла"
+);
 
 pub(crate) fn without_depth(name: &str) -> Refusal {
     hole(
@@ -138,15 +125,12 @@ pub(crate) fn too_many_pecks(most: impl Display) -> Refusal {
     )
 }
 
-pub(crate) const MODAL_CALL_OF_UNKNOWN: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("a call that stays of something unknown", "модальный вызов чего-то неизвестного"),
-    label: Text::pair(
-        "a cycle from CYCLE81 to CYCLE83, CYCLE85 or CYCLE86 was expected behind MCALL",
-        "после MCALL ожидался цикл от CYCLE81 до CYCLE83, CYCLE85 или CYCLE86",
-    ),
-    help: Text::pair("let the CAM write the holes as G0 and G1", "выводите из CAM отверстия кадрами G0 и G1"),
-};
+pub(crate) const MODAL_CALL_OF_UNKNOWN: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "a call that stays of something unknown", "модальный вызов чего-то неизвестного";
+    "a cycle from CYCLE81 to CYCLE83, CYCLE85 or CYCLE86 was expected behind MCALL",
+    "после MCALL ожидался цикл от CYCLE81 до CYCLE83, CYCLE85 или CYCLE86";
+    "let the CAM write the holes as G0 and G1", "выводите из CAM отверстия кадрами G0 и G1"
+);
 
 pub(crate) fn without_cycle(name: &str) -> Refusal {
     hole(
@@ -155,32 +139,24 @@ pub(crate) fn without_cycle(name: &str) -> Refusal {
     )
 }
 
-pub(crate) const TWO_CALLS_IN_ONE_BLOCK: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("two calls in one block", "два вызова в одном кадре"),
-    label: Text::pair("in which order?", "в каком порядке?"),
-    help: Text::pair("write them in two blocks", "напишите их двумя кадрами"),
-};
+pub(crate) const TWO_CALLS_IN_ONE_BLOCK: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "two calls in one block", "два вызова в одном кадре";
+    "in which order?", "в каком порядке?";
+    "write them in two blocks", "напишите их двумя кадрами"
+);
 
-pub(crate) const WORDS_BESIDE_CALL: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("something beside the call of a cycle", "что-то рядом с вызовом цикла"),
-    label: Text::pair("before or behind the cycle?", "до цикла или после?"),
-    help: Text::pair("write it in a block of its own", "напишите отдельным кадром"),
-};
+pub(crate) const WORDS_BESIDE_CALL: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "something beside the call of a cycle", "что-то рядом с вызовом цикла";
+    "before or behind the cycle?", "до цикла или после?";
+    "write it in a block of its own", "напишите отдельным кадром"
+);
 
-pub(crate) const MCALL_NOT_KNOWN: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("what MCALL drills here is not known", "неизвестно, что здесь сверлит MCALL"),
-    label: Text::pair(
-        "the frame, the tool or machine coordinates in a block under MCALL",
-        "в кадре при MCALL меняются система координат, инструмент или стоят координаты станка",
-    ),
-    help: Text::pair(
-        "end the call with MCALL alone before it",
-        "закончите вызов до него: MCALL отдельным кадром",
-    ),
-};
+pub(crate) const MCALL_NOT_KNOWN: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "what MCALL drills here is not known", "неизвестно, что здесь сверлит MCALL";
+    "the frame, the tool or machine coordinates in a block under MCALL",
+    "в кадре при MCALL меняются система координат, инструмент или стоят координаты станка";
+    "end the call with MCALL alone before it", "закончите вызов до него: MCALL отдельным кадром"
+);
 
 pub(crate) const HOLES1_FROM_UNKNOWN_PLACE: Refusal = hole(
     Text::pair("HOLES1 from a place that is not known", "HOLES1 из неизвестного положения"),
@@ -202,104 +178,68 @@ pub(crate) fn number_of_holes(name: &str, count: impl Display) -> Refusal {
     )
 }
 
-pub(crate) const END_BEHIND_BLOCK_DELETE: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair(
-        "a cycle that ends behind block delete",
-        "цикл, который заканчивается в кадре с пропуском",
-    ),
-    label: Text::pair(
-        "what follows drills or not, by a switch",
-        "дальше сверлят или нет, решает переключатель",
-    ),
-    help: Text::pair("remove the `/`, or the block", "уберите `/` или кадр"),
-};
+pub(crate) const END_BEHIND_BLOCK_DELETE: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "a cycle that ends behind block delete", "цикл, который заканчивается в кадре с пропуском";
+    "what follows drills or not, by a switch", "дальше сверлят или нет, решает переключатель";
+    "remove the `/`, or the block", "уберите `/` или кадр"
+);
 
-pub(crate) const MOVE_WITHOUT_ITS_CODE: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("a move behind a cycle without its code", "ход после цикла без своей функции"),
-    label: Text::pair("a rapid or a feed?", "быстрый или рабочий?"),
-    help: Text::pair("write G0 or G1 in this block", "напишите в этом кадре G0 или G1"),
-};
+pub(crate) const MOVE_WITHOUT_ITS_CODE: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "a move behind a cycle without its code", "ход после цикла без своей функции";
+    "a rapid or a feed?", "быстрый или рабочий?";
+    "write G0 or G1 in this block", "напишите в этом кадре G0 или G1"
+);
 
-pub(crate) const RETURN_LEVEL_NOT_CERTAIN: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("a return level that is not certain", "неоднозначная плоскость отвода"),
-    label: Text::pair("G71 and Z alone were expected, in G90", "ожидались одни G71 и Z, при G90"),
-    help: Text::pair(
-        "write G71 with Z in a block of its own, G90 in force",
-        "напишите G71 и Z отдельным кадром при G90",
-    ),
-};
+pub(crate) const RETURN_LEVEL_NOT_CERTAIN: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "a return level that is not certain", "неоднозначная плоскость отвода";
+    "G71 and Z alone were expected, in G90", "ожидались одни G71 и Z, при G90";
+    "write G71 with Z in a block of its own, G90 in force", "напишите G71 и Z отдельным кадром при G90"
+);
 
-pub(crate) const BLOCK_UNDER_CYCLE_NOT_CERTAIN: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair(
-        "a block under a cycle that is not certain",
-        "неоднозначный кадр при действующем цикле",
-    ),
-    label: Text::pair("X and Y alone were expected", "ожидались одни X и Y"),
-    help: Text::pair(
-        "write the cycle anew, with all of its words",
-        "напишите цикл заново, со всеми его словами",
-    ),
-};
+pub(crate) const BLOCK_UNDER_CYCLE_NOT_CERTAIN: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "a block under a cycle that is not certain", "неоднозначный кадр при действующем цикле";
+    "X and Y alone were expected", "ожидались одни X и Y";
+    "write the cycle anew, with all of its words", "напишите цикл заново, со всеми его словами"
+);
 
-pub(crate) const M53_WITHOUT_LEVEL: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("M53 without a level", "M53 без уровня"),
-    label: Text::pair("no G71 stands before it", "перед ним нет G71"),
-    help: Text::pair("write G71 with the level before the cycle", "напишите перед циклом G71 с уровнем"),
-};
+pub(crate) const M53_WITHOUT_LEVEL: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "M53 without a level", "M53 без уровня";
+    "no G71 stands before it", "перед ним нет G71";
+    "write G71 with the level before the cycle", "напишите перед циклом G71 с уровнем"
+);
 
-pub(crate) const RETURN_NOT_SAID: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("a cycle that does not say where it returns", "цикл не говорит, куда отводится"),
-    label: Text::pair(
-        "M53 (the level of G71) or M54 (R) was expected in this block",
-        "в этом кадре ожидалось M53 (уровень из G71) или M54 (R)",
-    ),
-    help: Text::pair(
-        "write G71 with the level before the cycle and M53 beside it",
-        "напишите перед циклом G71 с уровнем, а рядом с ним M53",
-    ),
-};
+pub(crate) const RETURN_NOT_SAID: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "a cycle that does not say where it returns", "цикл не говорит, куда отводится";
+    "M53 (the level of G71) or M54 (R) was expected in this block",
+    "в этом кадре ожидалось M53 (уровень из G71) или M54 (R)";
+    "write G71 with the level before the cycle and M53 beside it",
+    "напишите перед циклом G71 с уровнем, а рядом с ним M53"
+);
 
-pub(crate) const RETURN_TO_UNKNOWN_LEVEL: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("a cycle that returns to nobody knows where", "цикл отводится неизвестно куда"),
-    label: Text::pair("no word says where Z stands", "ни одно слово не говорит, где стоит Z"),
-    help: Text::pair("write the level with Z before the cycle", "напишите уровень словом Z до цикла"),
-};
+pub(crate) const RETURN_TO_UNKNOWN_LEVEL: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "a cycle that returns to nobody knows where", "цикл отводится неизвестно куда";
+    "no word says where Z stands", "ни одно слово не говорит, где стоит Z";
+    "write the level with Z before the cycle", "напишите уровень словом Z до цикла"
+);
 
-pub(crate) const G98_OR_G99_NOT_SAID: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("a cycle that does not say where it returns", "цикл не говорит, куда отводится"),
-    label: Text::pair("G98 or G99 was expected", "ожидалась G98 или G99"),
-    help: Text::pair("write G98 or G99 in this block", "напишите G98 или G99 в этом кадре"),
-};
+pub(crate) const G98_OR_G99_NOT_SAID: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "a cycle that does not say where it returns", "цикл не говорит, куда отводится";
+    "G98 or G99 was expected", "ожидалась G98 или G99";
+    "write G98 or G99 in this block", "напишите G98 или G99 в этом кадре"
+);
 
-pub(crate) const WORD_BESIDE_CYCLE_NOT_CERTAIN: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("a word beside a cycle that is not certain", "неоднозначное слово рядом с циклом"),
-    label: Text::pair(
-        "before the hole or behind it, and in which unit?",
-        "до отверстия или после, и в каких единицах?",
-    ),
-    help: Text::pair(
-        "write it in a block of its own, a dwell as moves and G4",
-        "напишите его отдельным кадром, выдержку — ходами и G4",
-    ),
-};
+pub(crate) const WORD_BESIDE_CYCLE_NOT_CERTAIN: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "a word beside a cycle that is not certain", "неоднозначное слово рядом с циклом";
+    "before the hole or behind it, and in which unit?", "до отверстия или после, и в каких единицах?";
+    "write it in a block of its own, a dwell as moves and G4",
+    "напишите его отдельным кадром, выдержку — ходами и G4"
+);
 
 /// A called cycle whose arguments leave its holes open.
 pub(crate) const fn hole(message: Text, label: Text) -> Refusal {
-    Refusal {
-        code: codes::CALLED_CYCLE,
-        message,
-        label,
-        help: Text::pair("write the holes as G0 and G1", "напишите отверстия кадрами G0 и G1"),
-    }
+    refusal!(const codes::CALLED_CYCLE; message; label;
+        "write the holes as G0 and G1", "напишите отверстия кадрами G0 и G1"
+    )
 }
 
 pub(crate) const CALL_BEHIND_BLOCK_DELETE: Refusal = skipped(Text::pair(
@@ -312,94 +252,68 @@ pub(crate) const HOLE_BEHIND_BLOCK_DELETE: Refusal =
 
 /// What is done or not, by a switch.
 const fn skipped(message: Text) -> Refusal {
-    Refusal {
-        code: codes::BLOCK_DELETE,
-        message,
-        label: Text::pair("two programs in one", "две программы в одной"),
-        help: Text::pair("remove the `/`, or the block", "уберите `/` или кадр"),
-    }
+    refusal!(const codes::BLOCK_DELETE; message;
+        "two programs in one", "две программы в одной";
+        "remove the `/`, or the block", "уберите `/` или кадр"
+    )
 }
 
-pub(crate) const CYCLE_BESIDE_ANOTHER_CODE: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("a cycle beside another code", "цикл рядом с другой функцией"),
-    label: Text::pair("which comes first?", "что из них первое?"),
-    help: Text::pair("write them in two blocks", "напишите их двумя кадрами"),
-};
+pub(crate) const CYCLE_BESIDE_ANOTHER_CODE: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "a cycle beside another code", "цикл рядом с другой функцией";
+    "which comes first?", "что из них первое?";
+    "write them in two blocks", "напишите их двумя кадрами"
+);
 
-pub(crate) const CYCLE_THAT_CANNOT_BE_WRITTEN_OUT: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("a cycle that cannot be written out", "цикл, который нельзя расписать"),
-    label: Text::pair(
-        "G90 and G17 were expected, and no block delete",
-        "ожидались G90 и G17 без пропуска кадра",
-    ),
-    help: Text::pair(
-        "write it in G90 and G17, or let the CAM write the moves",
-        "напишите его при G90 и G17 или выводите из CAM ходы",
-    ),
-};
+pub(crate) const CYCLE_THAT_CANNOT_BE_WRITTEN_OUT: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "a cycle that cannot be written out", "цикл, который нельзя расписать";
+    "G90 and G17 were expected, and no block delete", "ожидались G90 и G17 без пропуска кадра";
+    "write it in G90 and G17, or let the CAM write the moves",
+    "напишите его при G90 и G17 или выводите из CAM ходы"
+);
 
 pub(crate) fn cycle_without_levels(depth: char, level: char) -> Refusal {
-    Refusal {
-        code: codes::CALLED_CYCLE,
-        message: both!("a cycle without its levels", "цикл без своих уровней"),
-        label: both!(
-            "{depth} below {level} was expected in this block",
-            "в этом кадре ожидалось {depth} ниже {level}"
-        ),
-        help: both!(
-            "write {depth} and {level} beside the cycle",
-            "напишите рядом с циклом {depth} и {level}"
-        ),
-    }
+    refusal!(codes::CALLED_CYCLE;
+        "a cycle without its levels", "цикл без своих уровней";
+        "{depth} below {level} was expected in this block", "в этом кадре ожидалось {depth} ниже {level}";
+        "write {depth} and {level} beside the cycle", "напишите рядом с циклом {depth} и {level}"
+    )
 }
 
-pub(crate) const PECKS_WITHOUT_DEPTH: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("pecks without their depth", "проходы без своей глубины"),
-    label: Text::pair("Q above zero was expected", "ожидалось Q больше нуля"),
-    help: Text::pair("write the depth of a peck as Q", "напишите глубину прохода словом Q"),
-};
+pub(crate) const PECKS_WITHOUT_DEPTH: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "pecks without their depth", "проходы без своей глубины";
+    "Q above zero was expected", "ожидалось Q больше нуля";
+    "write the depth of a peck as Q", "напишите глубину прохода словом Q"
+);
 
-pub(crate) const Q_WITHOUT_PECKS: Refusal = Refusal {
-    code: codes::CALLED_CYCLE,
-    message: Text::pair("Q beside a cycle without pecks", "Q рядом с циклом без проходов"),
-    label: Text::pair("what does it say?", "что оно значит?"),
-    help: Text::pair("write G83, or remove Q", "напишите G83 или уберите Q"),
-};
+pub(crate) const Q_WITHOUT_PECKS: Refusal = refusal!(const codes::CALLED_CYCLE;
+    "Q beside a cycle without pecks", "Q рядом с циклом без проходов";
+    "what does it say?", "что оно значит?";
+    "write G83, or remove Q", "напишите G83 или уберите Q"
+);
 
 pub(crate) fn return_level_below(letter: char) -> Refusal {
-    Refusal {
-        code: codes::CALLED_CYCLE,
-        message: both!("a return level below {letter}", "плоскость отвода ниже {letter}"),
-        label: both!("the tool would not return", "инструмент не отошёл бы"),
-        help: both!(
-            "write a return level above {letter}, or go there before the cycle",
-            "напишите плоскость отвода выше {letter} или отойдите туда до цикла"
-        ),
-    }
+    refusal!(codes::CALLED_CYCLE;
+        "a return level below {letter}", "плоскость отвода ниже {letter}";
+        "the tool would not return", "инструмент не отошёл бы";
+        "write a return level above {letter}, or go there before the cycle",
+        "напишите плоскость отвода выше {letter} или отойдите туда до цикла"
+    )
 }
 
 /// Turns of a helix that cannot be written out.
 pub(crate) const fn turns(label: Text) -> Refusal {
-    Refusal {
-        code: codes::CALLED_CYCLE,
-        message: Text::pair("turns that cannot be written out", "обороты, которые нельзя расписать"),
-        label,
-        help: Text::pair("let the CAM write each turn", "выводите из CAM каждый оборот"),
-    }
+    refusal!(const codes::CALLED_CYCLE;
+        "turns that cannot be written out", "обороты, которые нельзя расписать";
+        label;
+        "let the CAM write each turn", "выводите из CAM каждый оборот"
+    )
 }
 
 /// An arc by its angle that cannot be written out.
 pub(crate) const fn arc_by_angle(label: Text) -> Refusal {
-    Refusal {
-        code: codes::CALLED_CYCLE,
-        message: Text::pair(
-            "an arc by its angle that cannot be written out",
-            "дуга по углу, которую нельзя расписать",
-        ),
-        label,
-        help: Text::pair("write the arc with I, J, K", "напишите дугу словами I, J, K"),
-    }
+    refusal!(const codes::CALLED_CYCLE;
+        "an arc by its angle that cannot be written out", "дуга по углу, которую нельзя расписать";
+        label;
+        "write the arc with I, J, K", "напишите дугу словами I, J, K"
+    )
 }

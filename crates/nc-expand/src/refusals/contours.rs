@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use diagnostic::{Refusal, Text, both};
+use diagnostic::{Refusal, Text, both, refusal};
 
 use crate::codes;
 
@@ -64,19 +64,13 @@ pub(crate) fn two_such_blocks(number: impl Display, name: impl Display) -> Refus
 }
 
 pub(crate) fn within_contour(code: &str) -> Refusal {
-    Refusal {
-        code: codes::CONTOUR,
-        message: both!("{code} within a contour", "{code} внутри контура"),
-        label: both!(
-            "whether roughing heeds it controls differ",
-            "учитывает ли её черновая обработка, у стоек по-разному"
-        ),
-        help: both!(
-            "write `contour_compensation = \"finishing\"` under `[program]` in the profile where it may hold in G70 \
+    refusal!(codes::CONTOUR;
+        "{code} within a contour", "{code} внутри контура";
+        "whether roughing heeds it controls differ", "учитывает ли её черновая обработка, у стоек по-разному";
+        "write `contour_compensation = \"finishing\"` under `[program]` in the profile where it may hold in G70 \
                              alone: roughing then leaves its allowance at the tip as programmed",
-            "впишите `contour_compensation = \"finishing\"` в раздел `[program]` профиля, если она действует только в G70: тогда черновая обработка оставляет припуск от запрограммированной вершины"
-        ),
-    }
+        "впишите `contour_compensation = \"finishing\"` в раздел `[program]` профиля, если она действует только в G70: тогда черновая обработка оставляет припуск от запрограммированной вершины"
+    )
 }
 
 pub(crate) fn turns_back(name: impl Display, cycle: impl Display, here: f64) -> Refusal {
@@ -90,20 +84,14 @@ pub(crate) fn turns_back(name: impl Display, cycle: impl Display, here: f64) -> 
 }
 
 pub(crate) fn word_on_a_line(text: impl Display) -> Refusal {
-    Refusal {
-        code: codes::CONTOUR,
-        message: both!("{text} on a line of a contour", "{text} на прямой контура"),
-        label: both!(
-            "a corner, by a parameter of the control (3405.4)",
-            "сопряжение по параметру стойки (3405.4)"
-        ),
-        help: both!(
-            "write `drawing_words = \"plain\"` under `[program]` in the profile where A, C and R of lines are angles, chamfers and \
+    refusal!(codes::CONTOUR;
+        "{text} on a line of a contour", "{text} на прямой контура";
+        "a corner, by a parameter of the control (3405.4)", "сопряжение по параметру стойки (3405.4)";
+        "write `drawing_words = \"plain\"` under `[program]` in the profile where A, C and R of lines are angles, chamfers and \
              roundings without a comma, or remove it",
-            "впишите `drawing_words = \"plain\"` в раздел `[program]` профиля, если A, C и R прямых без запятой — углы, фаски и \
+        "впишите `drawing_words = \"plain\"` в раздел `[program]` профиля, если A, C и R прямых без запятой — углы, фаски и \
              скругления, или уберите слово"
-        ),
-    }
+    )
 }
 
 pub(crate) fn rises_beyond_start(value: f64) -> Refusal {
@@ -120,46 +108,28 @@ pub(crate) fn rises_beyond_start(value: f64) -> Refusal {
 }
 
 pub(crate) fn allowance_with_pockets(name: impl Display) -> Refusal {
-    Refusal {
-        code: codes::TURNING_CYCLE,
-        message: both!(
-            "an allowance {name} on a contour with pockets",
-            "припуск {name} на контуре с карманами"
-        ),
-        label: both!(
-            "it moves one wall of each pocket into the finished contour",
-            "он сдвигает одну из стенок кармана внутрь готового контура"
-        ),
-        help: both!("write {name}0 in this block", "напишите {name}0 в этом кадре"),
-    }
+    refusal!(codes::TURNING_CYCLE;
+        "an allowance {name} on a contour with pockets", "припуск {name} на контуре с карманами";
+        "it moves one wall of each pocket into the finished contour",
+        "он сдвигает одну из стенок кармана внутрь готового контура";
+        "write {name}0 in this block", "напишите {name}0 в этом кадре"
+    )
 }
 
 pub(crate) fn allowance_into_workpiece(name: impl Display) -> Refusal {
-    Refusal {
-        code: codes::TURNING_CYCLE,
-        message: both!(
-            "an allowance {name} that leads into the workpiece",
-            "припуск {name} направлен в деталь"
-        ),
-        label: both!(
-            "roughing would cut below the finished contour",
-            "черновая обработка зарезала бы готовый контур"
-        ),
-        help: both!("change its sign", "смените его знак"),
-    }
+    refusal!(codes::TURNING_CYCLE;
+        "an allowance {name} that leads into the workpiece", "припуск {name} направлен в деталь";
+        "roughing would cut below the finished contour", "черновая обработка зарезала бы готовый контур";
+        "change its sign", "смените его знак"
+    )
 }
 
 /// A contour that cannot be cut as it stands.
 pub(crate) const fn contour(message: Text, label: Text) -> Refusal {
-    Refusal {
-        code: codes::CONTOUR,
-        message,
-        label,
-        help: Text::pair(
-            "write the contour between N of P and N of Q, or let the CAM write the moves",
-            "напишите контур между кадрами N из P и N из Q или выводите движения из CAM",
-        ),
-    }
+    refusal!(const codes::CONTOUR; message; label;
+        "write the contour between N of P and N of Q, or let the CAM write the moves",
+        "напишите контур между кадрами N из P и N из Q или выводите движения из CAM"
+    )
 }
 
 pub(crate) const CONTOUR_ELSEWHERE: Refusal = contour(

@@ -2,20 +2,17 @@
 
 use std::fmt::Display;
 
-use diagnostic::{Refusal, Text, both};
+use diagnostic::{Refusal, Text, both, refusal};
 
 use crate::codes;
 
 pub(crate) fn beside_cycle(letter: char) -> Refusal {
-    Refusal {
-        code: codes::TURNING_CYCLE,
-        message: both!("{letter} beside this cycle", "{letter} рядом с этим циклом"),
-        label: both!(
-            "the interpreter takes it for an axis that a lathe does not have",
-            "интерпретатор принимает его за ось, которой у токарного станка нет"
-        ),
-        help: both!("write the distance that stays as D", "напишите остающийся припуск словом D"),
-    }
+    refusal!(codes::TURNING_CYCLE;
+        "{letter} beside this cycle", "{letter} рядом с этим циклом";
+        "the interpreter takes it for an axis that a lathe does not have",
+        "интерпретатор принимает его за ось, которой у токарного станка нет";
+        "write the distance that stays as D", "напишите остающийся припуск словом D"
+    )
 }
 
 pub(crate) const ENDS_WHERE_IT_BEGINS: Refusal = routine(
@@ -33,31 +30,19 @@ pub(crate) fn within_contour(text: impl Display) -> Refusal {
     )
 }
 
-pub(crate) const CYCLE_UNDER_OTHER_MODES: Refusal = Refusal {
-    code: codes::TURNING_CYCLE,
-    message: Text::pair(
-        "a cycle outside G18 G90 G91.1 and G94 or G95",
-        "цикл вне G18 G90 G91.1 и G94 или G95",
-    ),
-    label: Text::pair(
-        "the interpreter starts in G17, and takes it in G18 and G90 alone",
-        "интерпретатор начинает с G17, а цикл принимает только при G18 и G90",
-    ),
-    help: Text::pair("write `G18 G90 G91.1` in a block before it", "напишите кадром раньше `G18 G90 G91.1`"),
-};
+pub(crate) const CYCLE_UNDER_OTHER_MODES: Refusal = refusal!(const codes::TURNING_CYCLE;
+    "a cycle outside G18 G90 G91.1 and G94 or G95", "цикл вне G18 G90 G91.1 и G94 или G95";
+    "the interpreter starts in G17, and takes it in G18 and G90 alone",
+    "интерпретатор начинает с G17, а цикл принимает только при G18 и G90";
+    "write `G18 G90 G91.1` in a block before it", "напишите кадром раньше `G18 G90 G91.1`"
+);
 
-pub(crate) const DISTANCE_THAT_IS_NONE: Refusal = Refusal {
-    code: codes::TURNING_CYCLE,
-    message: Text::pair(
-        "a distance, a depth or a number of passes that is none",
-        "неверный припуск, глубина или число проходов",
-    ),
-    label: Text::pair(
-        "expected D and R from 0, I above 0, P from 1 to 1000",
-        "ожидались D и R от 0, I больше 0, P от 1 до 1000",
-    ),
-    help: Text::pair("correct these words", "исправьте эти слова"),
-};
+pub(crate) const DISTANCE_THAT_IS_NONE: Refusal = refusal!(const codes::TURNING_CYCLE;
+    "a distance, a depth or a number of passes that is none", "неверный припуск, глубина или число проходов";
+    "expected D and R from 0, I above 0, P from 1 to 1000",
+    "ожидались D и R от 0, I больше 0, P от 1 до 1000";
+    "correct these words", "исправьте эти слова"
+);
 
 pub(crate) const ARC_WITHOUT_END: Refusal = routine(
     Text::pair("an arc without an end", "дуга без конечной точки"),
@@ -95,15 +80,10 @@ pub(crate) const ARC_WHOSE_R_NOT_CERTAIN: Refusal = routine(
 
 /// A subroutine of a contour that the interpreter would take otherwise, or not at all.
 pub(crate) const fn routine(message: Text, label: Text) -> Refusal {
-    Refusal {
-        code: codes::CONTOUR,
-        message,
-        label,
-        help: Text::pair(
-            "correct the subroutine of the contour, or let the CAM write the moves",
-            "исправьте подпрограмму контура или выводите движения из CAM",
-        ),
-    }
+    refusal!(const codes::CONTOUR; message; label;
+        "correct the subroutine of the contour, or let the CAM write the moves",
+        "исправьте подпрограмму контура или выводите движения из CAM"
+    )
 }
 
 /// * `number` – that of Q
@@ -114,13 +94,9 @@ pub(crate) fn without_subroutine(number: Option<f64>) -> Refusal {
         }
         None => both!("a cycle without Q", "цикл без Q"),
     };
-    Refusal {
-        code: codes::CONTOUR,
-        message,
-        label: both!("Q is the number of the contour's subroutine", "Q — номер подпрограммы контура"),
-        help: both!(
-            "write the contour before the cycle, as `O100 SUB` … `O100 ENDSUB`, and its number as Q100",
-            "напишите контур до цикла, как `O100 SUB` … `O100 ENDSUB`, а его номер — как Q100"
-        ),
-    }
+    refusal!(codes::CONTOUR; message;
+        "Q is the number of the contour's subroutine", "Q — номер подпрограммы контура";
+        "write the contour before the cycle, as `O100 SUB` … `O100 ENDSUB`, and its number as Q100",
+        "напишите контур до цикла, как `O100 SUB` … `O100 ENDSUB`, а его номер — как Q100"
+    )
 }

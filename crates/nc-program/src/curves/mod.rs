@@ -11,7 +11,7 @@ mod knots;
 mod parts;
 mod points;
 
-use diagnostic::{Diagnostic, Refusal, Text, both};
+use diagnostic::{Diagnostic, Refusal, Text, both, refusal};
 use nc_dialect::CurveCode;
 use nc_syntax::{Letters, Span};
 
@@ -56,12 +56,11 @@ fn serves(words: &Words<'_, '_, '_>, before: &Modal, state: &Modal, span: Span) 
     }
     if words.has(ROTARY_LETTERS) {
         return Err(words.refuse(
-            Refusal {
-                code: codes::CURVE,
-                message: both!("a rotary axis in a curve", "поворотная ось в кривой"),
-                label: both!("its path is not resolved", "такой путь не разворачивается"),
-                help: lines(),
-            },
+            refusal!(codes::CURVE;
+                "a rotary axis in a curve", "поворотная ось в кривой";
+                "its path is not resolved", "такой путь не разворачивается";
+                lines()
+            ),
             words.span(ROTARY_LETTERS),
         ));
     }
@@ -69,17 +68,12 @@ fn serves(words: &Words<'_, '_, '_>, before: &Modal, state: &Modal, span: Span) 
         return Err(words.refuse(refusal::CURVE_UNDER_G93, span));
     }
     if !state.transform.is_none() {
-        let message = both!("a curve under {}", "кривая, пока действует {:#}", state.transform.name());
         return Err(words.refuse(
-            Refusal {
-                code: codes::CURVE,
-                message,
-                label: both!(
-                    "controls forbid it, or differ in what it does",
-                    "стойки это запрещают или делают по-разному"
-                ),
-                help: lines(),
-            },
+            refusal!(codes::CURVE;
+                "a curve under {}", "кривая, пока действует {:#}", state.transform.name();
+                "controls forbid it, or differ in what it does", "стойки это запрещают или делают по-разному";
+                lines()
+            ),
             span,
         ));
     }

@@ -2,58 +2,42 @@
 
 use std::fmt::Display;
 
-use diagnostic::{Refusal, Text, both};
+use diagnostic::{Refusal, Text, refusal};
 
 use crate::codes;
 
 pub(crate) fn work_offset_rewritten(name: impl Display) -> Refusal {
-    Refusal {
-        code: codes::FRAME,
-        message: both!(
-            "G10 wrote work offset {name} while it was in force",
-            "G10 записала смещение нуля {name}, пока оно действовало"
-        ),
-        label: both!("in force at once or not? controls differ", "действует ли сразу? у стоек по-разному"),
-        help: both!("write {name} again after the G10 block", "напишите {name} снова после кадра G10"),
-    }
+    refusal!(codes::FRAME;
+        "G10 wrote work offset {name} while it was in force",
+        "G10 записала смещение нуля {name}, пока оно действовало";
+        "in force at once or not? controls differ", "действует ли сразу? у стоек по-разному";
+        "write {name} again after the G10 block", "напишите {name} снова после кадра G10"
+    )
 }
 
-pub(crate) const NO_WORK_OFFSET_IN_FORCE: Refusal = Refusal {
-    code: codes::WORK_OFFSET,
-    message: Text::pair("no work offset is in force", "не действует ни одно смещение нуля"),
-    label: Text::pair("coordinates of which zero?", "координаты от какого нуля?"),
-    help: Text::pair(
-        "program G54 before the first motion and give it with `--work-offset G54=X,Y,Z`",
-        "запрограммируйте G54 до первого движения и задайте его ключом `--work-offset G54=X,Y,Z`",
-    ),
-};
+pub(crate) const NO_WORK_OFFSET_IN_FORCE: Refusal = refusal!(const codes::WORK_OFFSET;
+    "no work offset is in force", "не действует ни одно смещение нуля";
+    "coordinates of which zero?", "координаты от какого нуля?";
+    "program G54 before the first motion and give it with `--work-offset G54=X,Y,Z`",
+    "запрограммируйте G54 до первого движения и задайте его ключом `--work-offset G54=X,Y,Z`"
+);
 
 pub(crate) fn cannot_be_resolved(letters: &str) -> Refusal {
-    Refusal {
-        code: codes::SECONDARY_AXIS,
-        message: both!("{letters} cannot be resolved", "{letters}: как это понимать, неизвестно"),
-        label: both!(
-            "an increment on some controls, an axis on others",
-            "на одних стойках приращение, на других отдельная ось"
-        ),
-        help: both!(
-            "program X, Y, Z instead (with G91 for increments)",
-            "пишите вместо этого X, Y, Z (для приращений при G91)"
-        ),
-    }
+    refusal!(codes::SECONDARY_AXIS;
+        "{letters} cannot be resolved", "{letters}: как это понимать, неизвестно";
+        "an increment on some controls, an axis on others",
+        "на одних стойках приращение, на других отдельная ось";
+        "program X, Y, Z instead (with G91 for increments)",
+        "пишите вместо этого X, Y, Z (для приращений при G91)"
+    )
 }
 
 pub(crate) fn no_such_axis(name: impl Display, rotary_names: &Text) -> Refusal {
-    Refusal {
-        code: codes::NO_SUCH_AXIS,
-        message: both!("the machine has no axis {name}", "на станке нет оси {name}"),
-        label: both!(
-            "rotary axes of the profile's chain: {rotary_names}",
-            "поворотные оси в цепи профиля: {rotary_names:#}"
-        ),
-        help: both!(
-            "name {name} in `chain` of the profile, or remove the word",
-            "назовите {name} в `chain` профиля или уберите слово"
-        ),
-    }
+    refusal!(codes::NO_SUCH_AXIS;
+        "the machine has no axis {name}", "на станке нет оси {name}";
+        "rotary axes of the profile's chain: {rotary_names}",
+        "поворотные оси в цепи профиля: {rotary_names:#}";
+        "name {name} in `chain` of the profile, or remove the word",
+        "назовите {name} в `chain` профиля или уберите слово"
+    )
 }

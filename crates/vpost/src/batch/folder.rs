@@ -17,11 +17,11 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use blake3::{Hash, Hasher};
-use diagnostic::{Code, both};
+use diagnostic::{Code, both, notice};
 
 use crate::file::{self, Place};
 use crate::growing::{GrowingFile, Nursery};
-use crate::message::{Deed, Failure, Report, notice};
+use crate::message::{Deed, Failure, Report};
 use crate::to_disk;
 
 /// Someone else works in the output folder.

@@ -5,13 +5,13 @@ use std::ffi::OsStr;
 use std::fs::DirEntry;
 use std::path::{Path, PathBuf};
 
-use diagnostic::Code;
+use diagnostic::{Code, notice};
 use glob::{MatchOptions, Pattern};
 
 use super::arguments::Programs;
 use super::folder;
 use crate::file;
-use crate::message::{Deed, Failure, OPTION, notice};
+use crate::message::{Deed, Failure, OPTION};
 
 /// No program was found.
 const NONE_FOUND: Code = Code(1001);

@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Code, Text, both};
+use diagnostic::{Code, Text, both, notice};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ use super::inputs::Item;
 use super::job::Job;
 use crate::arguments::{JobOptions, Shared};
 use crate::file;
-use crate::message::{Deed, Failure, Messages, notice};
+use crate::message::{Deed, Failure, Messages};
 
 /// The manifest cannot be used.
 const MANIFEST: Code = Code(1010);

@@ -8,8 +8,8 @@ use super::progress::Progress;
 use super::work::Results;
 use super::{inputs, record, table};
 use crate::file;
-use crate::message::{Failure, Messages, OPTION, Report, notice};
-use diagnostic::{Language, Text, both};
+use crate::message::{Failure, Messages, OPTION, Report};
+use diagnostic::{Language, Text, both, notice};
 
 /// What a folder held besides programs: a program of an unusual name must not be missed.
 pub(super) fn passed_over(found: &inputs::Found, messages: &Messages) {

@@ -1,9 +1,9 @@
 //! Shares of a manifest's programs.
 
-use diagnostic::Code;
+use diagnostic::{Code, notice};
 
 use super::arguments::EngineForm;
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 
 /// A share that does not exist.
 const SHARD: Code = Code(1009);

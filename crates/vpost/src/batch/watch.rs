@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use diagnostic::{Code, Text, both};
+use diagnostic::{Code, Text, both, notice};
 use jobs::message::Wording;
 
 use super::arguments::Programs;
@@ -27,7 +27,7 @@ use crate::arguments::{Shared, size};
 use crate::exit_status::REFUSED;
 use crate::file;
 use crate::interrupt::Interrupt;
-use crate::message::{Deed, Failure, Messages, OPTION, Report, notice};
+use crate::message::{Deed, Failure, Messages, OPTION, Report};
 use crate::source::Stamp;
 
 /// What decides the outputs changed while a folder was watched.

@@ -9,7 +9,7 @@ use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use blake3::Hash;
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Code, Diagnostic, Text, both, notice};
 
 use super::folder::{Grown, OutputFolder, hash};
 use super::inputs::Item;
@@ -21,7 +21,7 @@ use super::record::{Record, Status};
 use super::shelf::Shelf;
 use crate::file;
 use crate::interrupt::Interrupt;
-use crate::message::{Deed, Failure, OPTION, Report, notice};
+use crate::message::{Deed, Failure, OPTION, Report};
 
 /// An output would be written over a file that vpost did not write.
 const FOREIGN: Code = Code(1006);

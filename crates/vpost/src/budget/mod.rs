@@ -1,12 +1,11 @@
 //! `vpost budget`: what each deviation costs, what they may come to together, and what each may be.
 
 mod arguments;
-mod text;
 
 pub use arguments::Budget;
 
 use diagnostic::both;
-use jobs::budget::{json, of};
+use jobs::budget::{json, of, text};
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};

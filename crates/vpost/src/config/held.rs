@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
-use diagnostic::{Code, Text, both};
+use diagnostic::{Code, Text, both, notice};
 
 use crate::file;
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 use crate::summary::SettingsFile;
 
 /// Programs of one call lie under different settings files.

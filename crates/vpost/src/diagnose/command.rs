@@ -3,17 +3,17 @@
 use std::path::Path;
 
 use diagnostic::{Text, both};
-use jobs::diagnose::{Books, Diagnosed, Model, of_one_machine};
+use jobs::diagnose::plan::{Form, Plan};
+use jobs::diagnose::{Books, Diagnosed, Model, of_one_machine, summary};
 
 use super::options::Diagnose;
-use super::plan::{self, Form};
 use super::report::{Facts, Report};
-use super::{summary, written};
+use super::written;
 use crate::arguments::Shared;
 use crate::file;
 use crate::message::{Failure, Messages};
 use crate::roles::Roles;
-use crate::settings::machine;
+use crate::settings::{self, machine};
 
 /// `vpost diagnose MEASUREMENTS.csv -m PROFILE`
 pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
     }
     let model = Model::load(&shared.job)?;
     let Some(measurements) = &arguments.measurements else {
-        return plan::print(arguments.plan.unwrap_or(Form::Points), &model, shared, messages);
+        return print(arguments.plan.unwrap_or(Form::Points), &Plan::whole(&model)?, shared, messages);
     };
     let books = if arguments.as_written { Books::AsWritten } else { Books::Checked };
     let read = |path: &Path, bytes: &[u8]| {
@@ -84,7 +84,18 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         messages.note(&both!("{} holds {holds}", "в {} записан {holds:#}", file::name(path)));
     }
     match arguments.next {
-        Some(form) => plan::print_next(form, &diagnosis, &model, shared, messages),
+        Some(form) => print(form, &Plan::next(&diagnosis, &model)?, shared, messages),
         None => file::print(summary::text(&diagnosis, &changes).in_language(messages.language()).as_bytes()),
     }
+}
+
+/// Prints what to measure, and says what is to be known of it.
+fn print(form: Form, plan: &Plan, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let text = match form {
+        Form::Points => plan.points(),
+        Form::Program => plan.program(&settings::load(shared, messages)?)?,
+    };
+    file::print(text.as_bytes())?;
+    messages.note(&plan.note);
+    Ok(())
 }

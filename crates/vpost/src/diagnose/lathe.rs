@@ -3,20 +3,19 @@
 use std::path::Path;
 
 use calibration::turning::{Bar, CauseRow, Change, Feature, Stretch, TurnedReading, lathe_causes};
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text, both, notice};
 use jobs::calibrate::codes::{CELL, UNITS, question};
 use jobs::calibrate::{MOST_UM, base_of, by_effects, part_name, sources, stood_at, vector_mm};
-use jobs::diagnose::{File, json};
+use jobs::diagnose::{File, json, summary};
 use jobs::profile::Loaded;
 use machine_profile::{LatheParts, Profile};
 use measurement_files::{Row, numbered};
 
 use super::options::Diagnose;
 use super::report::Facts;
-use super::summary;
 use crate::arguments::Shared;
 use crate::file;
-use crate::message::{Failure, Messages};
+use crate::message::{Failure, Messages, OPTION};
 
 mod page;
 
@@ -111,16 +110,11 @@ fn only_what_a_lathe_has(arguments: &Diagnose) -> Result<(), Failure> {
     ];
     match given.iter().find(|(_, is_given)| *is_given) {
         None => Ok(()),
-        Some((option, _)) => Err(Failure::option(
-            both!(
-                "`{option}` is not there for the parts of a lathe",
-                "`{option}` для деталей токарного станка нет"
-            ),
-            both!(
-                "leave it out; `vpost calibrate turning` writes taper and barrel to a profile",
-                "уберите его; конус и бочку в профиль записывает `vpost calibrate turning`"
-            ),
-        )),
+        Some((option, _)) => Err(Failure::usage(notice!(OPTION;
+            "`{option}` is not there for the parts of a lathe", "`{option}` для деталей токарного станка нет";
+            "leave it out; `vpost calibrate turning` writes taper and barrel to a profile",
+            "уберите его; конус и бочку в профиль записывает `vpost calibrate turning`"
+        ))),
     }
 }
 

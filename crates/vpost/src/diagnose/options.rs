@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-
-use super::plan::Form;
+use jobs::diagnose::plan::Form;
 
 /// `vpost diagnose`
 #[derive(Debug, Args)]

@@ -2,15 +2,13 @@
 
 mod arguments;
 mod dominant;
-mod export;
 mod page;
-mod text;
 mod viewer;
 
 pub use arguments::Map;
 
 use diagnostic::both;
-use jobs::map::{dominant as deviations, json, model, of};
+use jobs::map::{dominant as deviations, export, json, model, of, text};
 use machine_profile::Profile;
 
 use crate::arguments::Shared;

@@ -14,11 +14,11 @@ use report::scale::nice;
 use report::text::opening;
 
 use super::dominant;
-use super::text::second_order_lines;
 use crate::origin::{MACHINE, MODEL, Origin, PROFILE};
 use jobs::map::deformation;
 use jobs::map::dominant::Dominant;
 use jobs::map::study::Study;
+use jobs::map::text::second_order_lines;
 use tables::{AXES, axes, diagonals, percent2, places, sizes, um, within, within_said, zero_points};
 
 /// Nodes drawn along an axis of the volume, at most: thinned in the drawing, not in the numbers.

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use control_files::Machine;
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text, both, notice};
 use machine_model::{Axis, Chain, Range, Vector};
 use machine_profile::plus_turns;
 
-use crate::message::{Failure, Messages, OPTION, notice};
+use crate::message::{Failure, Messages, OPTION};
 use crate::profile_new::arguments::New;
 use crate::questions::Questions;
 use crate::settings::load_dialect;

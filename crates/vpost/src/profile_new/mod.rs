@@ -4,12 +4,12 @@ use std::fmt::Write;
 use std::path::Path;
 
 use control_files::Machine;
-use diagnostic::{Language, both, say};
+use diagnostic::{Language, both, notice, say};
 use machine_model::Axis;
 use machine_profile::plus_turns;
 
 use crate::figures::short;
-use crate::message::{Failure, Messages, OPTION, notice};
+use crate::message::{Failure, Messages, OPTION};
 use crate::{file, profile};
 
 mod answers;

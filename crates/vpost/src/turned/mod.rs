@@ -3,7 +3,7 @@
 mod page;
 mod wear;
 
-use diagnostic::{Code, both};
+use diagnostic::{Code, both, notice};
 use jobs::turned::read;
 use jobs::turned::surface::{Asked, HIGHEST_WAVE, Surface, Turned};
 use machine_profile::Profile;
@@ -14,7 +14,7 @@ use crate::arguments::{Predict, Shared};
 use crate::conditions::{conditions, failure};
 use crate::figures::fixed;
 use crate::file;
-use crate::message::{Failure, Messages, OPTION, notice};
+use crate::message::{Failure, Messages, OPTION};
 use crate::roles::Roles;
 use crate::settings::Settings;
 

@@ -5,9 +5,9 @@ mod rows;
 
 use calibration::Base;
 use calibration::rtest::{HeldOut, RotaryTables, Term, calibrate};
-use diagnostic::{Speaks, Text, both};
+use diagnostic::{Speaks, Text, both, notice};
 
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 use crate::profile::load_mill;
 
 use super::codes::{AXES, CONTRADICTED, DOUBTFUL, OPEN, OUTLIER, QUESTION, UNFIT, UNSAID, body, failure};
@@ -75,8 +75,7 @@ fn refused(rows: &Rows, error: &calibration::CalibrationError) -> Failure {
     use calibration::CalibrationError::{Axes, Contradicted, Outlier, Unobservable};
     Failure::unfit(match error {
         Outlier { point, .. } => {
-            return rows.at(*point)(notice!(OUTLIER;
-                error.text();
+            return rows.at(*point)(notice!(OUTLIER; error.text();
                 "measure it again, or take the row out", "измерьте снова или уберите строку"
             ));
         }
@@ -101,8 +100,7 @@ fn held_out(found: &RotaryTables, held: &Rows, base: &Base) -> Result<HeldOut, F
     let machine = body(&found.description)?;
     for (row, reading) in held.read.rows.iter().enumerate() {
         if let Err(error) = machine.rotary_inside(&reading.command) {
-            return Err(held.at(row)(notice!(AXES;
-                error.text();
+            return Err(held.at(row)(notice!(AXES; error.text();
                 "hold out rows at angles between those that were measured",
                 "откладывайте строки с углами между измеренными"
             )));

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use calibration::rtest::BallReading;
-use diagnostic::{Diagnostic, Speaks, Text, both};
+use diagnostic::{Diagnostic, Speaks, Text, both, notice};
 use machine_model::{Axis, Command, RigidBody, Vector};
 use machine_profile::Profile;
 use measurement_files::{Row, Sheet, numbered};
@@ -14,7 +14,7 @@ use crate::calibrate::options::{RTest, RTestMethod};
 use crate::calibrate::output::Output;
 use crate::calibrate::sources;
 use crate::conditions::conditions;
-use crate::message::{Failure, notice};
+use crate::message::Failure;
 
 const COLUMNS: &str = "run x_mm y_mm z_mm a_deg b_deg c_deg dx_um dy_um dz_um tool_x_mm tool_y_mm tool_z_mm dir_x dir_y dir_z \
                        dir_a dir_b dir_c u_um u_x_um u_y_um u_z_um repeat temp_c time_s load_kg feed_mm_min note";
@@ -354,8 +354,7 @@ fn stands_where_the_profile_knows(
         }
     }
     if let Err(error) = machine.rotary_inside(command) {
-        return Err(Failure::at_row(row)(notice!(AXES;
-            error.text();
+        return Err(Failure::at_row(row)(notice!(AXES; error.text();
             "angles are machine coordinates, degrees; `travel_deg` and the error tables of the profile say how far they go",
             "углы — координаты станка в градусах; их пределы — `travel_deg` и таблицы погрешностей профиля"
         )));

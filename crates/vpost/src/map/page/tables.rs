@@ -6,9 +6,9 @@ use report::chart::{Curves, Histogram, curves, histogram};
 use report::numbers::{count, digits, figures as written, number, percent, prose};
 use report::text::MICROMETRES;
 
-use super::super::text::proof;
 use jobs::map::drawn::classes;
 use jobs::map::study::{Part, Study, freedom_name};
+use jobs::map::text::proof;
 
 pub(super) const AXES: [&str; 3] = ["X", "Y", "Z"];
 

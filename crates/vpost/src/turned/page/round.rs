@@ -1,6 +1,6 @@
 //! Cross sections: how round they are.
 
-use diagnostic::{Text, both};
+use diagnostic::{Text, both, notice};
 use machine_model::Vector;
 use report::body::Body;
 use report::chart::{Magnification, Polar, Round, polar};
@@ -10,7 +10,7 @@ use turning::Lathe;
 use units::math;
 
 use crate::figures::round;
-use crate::message::{Failure, OPTION, notice};
+use crate::message::{Failure, OPTION};
 use jobs::turned::judged::{mm, um};
 use jobs::turned::surface::{ANGLES, HIGHEST_WAVE, Place, Stretch, Turned};
 

@@ -1,8 +1,8 @@
 //! The diagnosis for people at a terminal.
 
+use super::change::Change;
 use diagnostic::{Text, both};
 use gap_diagnosis::{Cause, Diagnosis, Verdict};
-use jobs::diagnose::change::Change;
 
 /// What nothing else explains, to what it explains alone, in percent.
 fn share(unique: f64, alone: f64) -> String {
@@ -10,8 +10,9 @@ fn share(unique: f64, alone: f64) -> String {
     if low == high { format!("{low} %") } else { format!("{low}..{high} %") }
 }
 
-/// The text.
-pub(super) fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> Text {
+/// The whole text.
+#[must_use]
+pub fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> Text {
     let (verdict, sentence) = (d.verdict.words(), &d.sentence);
     let mut out = both!("{verdict}: {sentence}\n\n", "{verdict:#}: {sentence:#}\n\n");
     if d.verdict == Verdict::Underpowered {

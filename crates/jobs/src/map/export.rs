@@ -3,15 +3,16 @@
 use std::fmt::Write;
 
 use crate::figures::fixed;
-use jobs::map::deformation;
-use jobs::map::study::Study;
+use crate::map::deformation;
+use crate::map::study::Study;
 
 /// Decimals of a micrometre.
 const DECIMALS: usize = 6;
 
 /// `x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,d_um`, a row for each node, X fastest; of a field also stretch, shear and rotation of
 /// the cell that begins at the node, nothing at the last nodes.
-pub(super) fn csv(study: &Study) -> Vec<u8> {
+#[must_use]
+pub fn csv(study: &Study) -> Vec<u8> {
     let mut out = String::from("x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,d_um");
     let names: &[&str] = if study.cells.is_empty() { &[] } else { &deformation::NAMES };
     for name in names {
@@ -44,7 +45,8 @@ pub(super) fn csv(study: &Study) -> Vec<u8> {
 
 /// Legacy VTK, a rectilinear grid: errors and their lengths, as they are and after the shift by the
 /// geometric median.
-pub(super) fn vtk(study: &Study) -> Vec<u8> {
+#[must_use]
+pub fn vtk(study: &Study) -> Vec<u8> {
     let grid = study.map.grid();
     let [nx, ny, nz] = grid.counts();
     // The title is one line of at most 255 characters.

@@ -14,7 +14,7 @@ pub(super) const LONGER_MM: f64 = 100.0;
 
 /// A place where something is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::diagnose) struct Stop {
+pub(super) struct Stop {
     /// Axis positions.
     pub at_mm: Vector,
     /// A, B, C.
@@ -25,7 +25,7 @@ pub(in crate::diagnose) struct Stop {
 
 /// One line, forward and back.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::diagnose) struct Line {
+pub(super) struct Line {
     /// Its id.
     pub run: String,
     /// Time before it, for the axes to run warm, seconds.
@@ -52,7 +52,7 @@ pub(in crate::diagnose) struct Line {
 
 /// Axes that keep at the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::diagnose) struct Spot {
+pub(super) struct Spot {
     pub(super) at_mm: Vector,
     pub(super) rotary_deg: [f64; 3],
 }

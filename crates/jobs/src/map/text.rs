@@ -1,16 +1,17 @@
-//! What is printed.
+//! A map as text for people.
 
 use diagnostic::{Text, both};
 use error_map::Statistics;
 use machine_model::Vector;
 
+use super::deformation;
+use super::second_order::SecondOrder;
 use crate::figures::{fixed, printable, triple, um};
-use jobs::map::deformation;
-use jobs::map::second_order::SecondOrder;
-use jobs::map::study::{Part, Proof, Study, ZeroPoint, freedom_name};
+use crate::map::study::{Part, Proof, Study, ZeroPoint, freedom_name};
 
-/// The page.
-pub(super) fn page(study: &Study) -> Text {
+/// The whole text.
+#[must_use]
+pub fn page(study: &Study) -> Text {
     let mut out = head(study);
     figures(study, &mut out);
     deformations(study, &mut out);
@@ -136,7 +137,9 @@ fn zero_points(study: &Study, part: &Part, out: &mut Text) {
     }
 }
 
-pub(super) fn proof(zero: &ZeroPoint, part: &Part) -> Text {
+/// What is known of a zero point: that no other is better, or by how much at most.
+#[must_use]
+pub fn proof(zero: &ZeroPoint, part: &Part) -> Text {
     let (nodes, name) = (part.figures.nodes, zero.kind.name());
     let n = nodes as f64;
     match &zero.proof {
@@ -202,7 +205,8 @@ fn axes_and(place_mm: &Vector) -> String {
 }
 
 /// What products of errors do, in three sentences.
-pub(super) fn second_order_lines(found: &SecondOrder) -> [Text; 3] {
+#[must_use]
+pub fn second_order_lines(found: &SecondOrder) -> [Text; 3] {
     let fine = |mm: f64| fixed(mm * 1e3, 6);
     let limit = fixed(found.limit_mm * 1e3, 0);
     let (off, at) = (fine(found.chain_difference_mm), axes_and(&found.chain_place_mm));

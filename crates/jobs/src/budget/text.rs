@@ -1,4 +1,4 @@
-//! What is printed.
+//! A budget as text for people.
 
 use std::fmt::Write;
 
@@ -7,11 +7,12 @@ use error_budget::OneSided;
 use error_budget::mending::Mending;
 use error_budget::tolerances::Tolerances;
 
+use crate::budget::study::{Combined, MENDING_OUT_OF_REACH, Study, Target};
 use crate::figures::{fixed, printable, round, triple, um};
-use jobs::budget::study::{Combined, MENDING_OUT_OF_REACH, Study, Target};
 
-/// The page.
-pub(super) fn page(study: &Study) -> Text {
+/// The whole text.
+#[must_use]
+pub fn page(study: &Study) -> Text {
     let mut out = head(study);
     for sentence in study.from_zero.said(study.machine.model()) {
         out.push(&both!("{sentence}\n", "{sentence:#}\n"));
@@ -221,7 +222,7 @@ fn tolerances(study: &Study, target: &Target, out: &mut Text) {
 }
 
 /// A control point in words.
-pub(super) fn place(study: &Study, at: usize) -> Text {
+fn place(study: &Study, at: usize) -> Text {
     let command = &study.points.commands[at];
     let mut place = triple(&command.linear_mm, 3);
     for (letter, rad) in ['A', 'B', 'C'].iter().zip(command.rotary_rad.iter()) {

@@ -1,4 +1,4 @@
-//! `vpost diagnose --plan`: what to measure so that the causes can be told apart.
+//! What to measure so that the causes can be told apart.
 
 mod line;
 mod lines;
@@ -9,22 +9,21 @@ mod rotary;
 use std::fmt::Write;
 
 use clap::ValueEnum;
-use diagnostic::{Text, both};
+use diagnostic::{Text, both, notice};
 use gap_diagnosis::{Confounding, Diagnosis, Measurements, Reading, Row, confounding};
 use machine_model::effects::{Conditions, EffectGeometry, EffectKind};
 use machine_model::{Axis, Command, Vector};
 
-use crate::arguments::Shared;
-use crate::file;
-use crate::message::{Failure, Messages};
-use jobs::diagnose::Model;
+use super::Model;
+use crate::message::{Failure, OPTION};
+use crate::settings::Settings;
 
 use line::Line;
 use lines::lines;
 use proposed::proposed;
 use rotary::rotary_lines;
 
-/// What of a plan is printed.
+/// The form of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Form {
     /// The rows to be filled in (CSV).
@@ -33,56 +32,59 @@ pub enum Form {
     Program,
 }
 
-/// Prints a plan for the profile's axes and volume, and says what it cannot separate.
-pub(super) fn print(form: Form, model: &Model, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let tool_mm = Vector::from(model.profile.default_tool_mm);
-    let mut plan = lines(model.profile.volume(), tool_mm)?;
-    let (turning, missing) = rotary_lines(&model.profile, tool_mm, plan.len());
-    plan.extend(turning);
-    print_lines(form, &plan, "measuring plan of vpost", shared, messages)?;
-    let found = confounding(&design(&plan, &model.geometry));
-    messages.note(&summary(&plan, &found, &missing));
-    Ok(())
+/// Lines to measure along.
+#[derive(Debug)]
+pub struct Plan {
+    lines: Vec<Line>,
+    title: String,
+    /// What is to be known of them.
+    pub note: Text,
 }
 
-/// Prints the measurement that a diagnosis proposes; the words of the proposal go with it.
-pub(super) fn print_next(
-    form: Form,
-    diagnosis: &Diagnosis,
-    model: &Model,
-    shared: &Shared,
-    messages: &Messages,
-) -> Result<(), Failure> {
-    let Some(next) = &diagnosis.next_measurement else {
-        return Err(Failure::option(
-            both!(
+impl Plan {
+    /// Lines for the profile's axes and volume; the note says what they cannot separate.
+    ///
+    /// # Errors
+    /// The volume is too small for lines.
+    pub fn whole(model: &Model) -> Result<Self, Failure> {
+        let tool_mm = Vector::from(model.profile.default_tool_mm);
+        let mut lines = lines(model.profile.volume(), tool_mm)?;
+        let (turning, missing) = rotary_lines(&model.profile, tool_mm, lines.len());
+        lines.extend(turning);
+        let note = summary(&lines, &confounding(&design(&lines, &model.geometry)), &missing);
+        Ok(Self { lines, title: "measuring plan of vpost".to_owned(), note })
+    }
+
+    /// The measurement that a diagnosis proposes; the words of the proposal go with it.
+    ///
+    /// # Errors
+    /// It proposes none, or one with a rotary axis turned.
+    pub fn next(diagnosis: &Diagnosis, model: &Model) -> Result<Self, Failure> {
+        let Some(next) = &diagnosis.next_measurement else {
+            return Err(Failure::usage(notice!(OPTION;
                 "there is no next measurement: the verdict is {}",
-                "следующего измерения нет: заключение — {:#}",
-                diagnosis.verdict.words()
-            ),
-            both!(
+                "следующего измерения нет: заключение — {:#}", diagnosis.verdict.words();
                 "leave out `--next`; `--plan` prints a measurement of the whole machine",
                 "уберите `--next`; измерение всего станка печатает `--plan`"
-            ),
-        ));
-    };
-    print_lines(form, &proposed(next, model.profile.volume())?, next.text.english(), shared, messages)?;
-    messages.note(&next.text);
-    Ok(())
-}
+            )));
+        };
+        let lines = proposed(next, model.profile.volume())?;
+        Ok(Self { lines, title: next.text.english().to_owned(), note: next.text.clone() })
+    }
 
-fn print_lines(
-    form: Form,
-    plan: &[Line],
-    title: &str,
-    shared: &Shared,
-    messages: &Messages,
-) -> Result<(), Failure> {
-    let text = match form {
-        Form::Points => points(plan),
-        Form::Program => program::text(plan, title, &crate::settings::load(shared, messages)?)?,
-    };
-    file::print(text.as_bytes())
+    /// The rows in the columns of a measurement file, readings and conditions to be filled in.
+    #[must_use]
+    pub fn points(&self) -> String {
+        points(&self.lines)
+    }
+
+    /// The same lines as an NC program, with a stop for each reading.
+    ///
+    /// # Errors
+    /// There is no work offset for it.
+    pub fn program(&self, settings: &Settings) -> Result<String, Failure> {
+        program::text(&self.lines, &self.title, settings)
+    }
 }
 
 /// Seconds from the start to each stop, as the machine would need them; to be replaced by what the clock said. A proposal
@@ -137,7 +139,7 @@ fn points(plan: &[Line]) -> String {
 }
 
 /// The plan as measurements without readings.
-pub(super) fn design(plan: &[Line], geometry: &EffectGeometry) -> Measurements {
+fn design(plan: &[Line], geometry: &EffectGeometry) -> Measurements {
     let mut data = Measurements {
         runs: Vec::new(),
         instruments: Vec::new(),

@@ -1,11 +1,11 @@
 //! The lines of the measurement that a diagnosis proposes.
 
-use diagnostic::both;
+use diagnostic::notice;
 use gap_diagnosis::{NextMeasurement, Row};
 use machine_model::{Vector, Volume};
 
 use super::line::{Line, SLOW_MM_MIN, Stop, rounded};
-use crate::message::Failure;
+use crate::message::{Failure, OPTION};
 
 /// Way before the first reading and beyond the last, share of the line: an axis comes to each from the side that is read.
 const OVERRUN: f64 = 0.03;
@@ -18,16 +18,12 @@ pub(super) fn proposed(next: &NextMeasurement, volume: Volume) -> Result<Vec<Lin
 fn line(rows: &[Row], run: String, volume: Volume) -> Result<Line, Failure> {
     let command = &rows[0].command;
     if command.rotary_rad != Vector::zeros() {
-        return Err(Failure::option(
-            both!(
-                "the next measurement is a line with a rotary axis turned, and these lines keep rotary axes at zero",
-                "следующее измерение — линия с повёрнутой осью, а эти линии держат поворотные оси в нуле"
-            ),
-            both!(
-                "take its rows from `next_measurement` of `--json`",
-                "возьмите его строки из `next_measurement` в `--json`"
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "the next measurement is a line with a rotary axis turned, and these lines keep rotary axes at zero",
+            "следующее измерение — линия с повёрнутой осью, а эти линии держат поворотные оси в нуле";
+            "take its rows from `next_measurement` of `--json`",
+            "возьмите его строки из `next_measurement` в `--json`"
+        )));
     }
     let (from, to) = (command.linear_mm, rows[rows.len() / 2 - 1].command.linear_mm);
     let way = to - from;

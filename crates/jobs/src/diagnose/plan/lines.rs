@@ -1,11 +1,11 @@
 //! The lines of a plan.
 
-use diagnostic::both;
+use diagnostic::notice;
 use machine_model::effects::Conditions;
 use machine_model::{Vector, Volume};
 
 use super::line::{LONGER_MM, Line, MARGIN, SLOW_MM_MIN, Stop, rounded};
-use crate::message::Failure;
+use crate::message::{Failure, OPTION};
 
 /// Stops along a line, each way.
 const STOPS: usize = 15;
@@ -21,19 +21,15 @@ const WARM_UP_S: f64 = 1800.0;
 
 /// Lines through the volume that make the effects of a three-axis machine separable: every axis in three places, all
 /// diagonals, with three tools, both ways, at rest; axes and diagonals again on the fly at two feeds; some again warm.
-pub(in crate::diagnose) fn lines(volume: Volume, tool_mm: Vector) -> Result<Vec<Line>, Failure> {
+pub(super) fn lines(volume: Volume, tool_mm: Vector) -> Result<Vec<Line>, Failure> {
     let span = Vector::from_fn(|a, _| volume.0[a].high - volume.0[a].low);
     if (0..3).any(|a| span[a] < 10.0) {
-        return Err(Failure::option(
-            both!(
-                "the profile's volume is thinner than 10 mm along an axis",
-                "объём профиля по одной из осей тоньше 10 мм"
-            ),
-            both!(
-                "a plan needs three axes to move; give the axis its `travel_mm`, or a longer table",
-                "для плана нужны движения трёх осей; дайте оси `travel_mm` или более длинную таблицу"
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "the profile's volume is thinner than 10 mm along an axis",
+            "объём профиля по одной из осей тоньше 10 мм";
+            "a plan needs three axes to move; give the axis its `travel_mm`, or a longer table",
+            "для плана нужны движения трёх осей; дайте оси `travel_mm` или более длинную таблицу"
+        )));
     }
     let share = |x: f64, y: f64, z: f64| {
         let inside = |s: f64| MARGIN + (1.0 - 2.0 * MARGIN) * s;

@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use diagnostic::both;
+use diagnostic::notice;
 use machine_model::Vector;
 use nc_syntax::{Paren, Semicolon};
 
 use super::line::{DWELL_S, Line, Spot};
-use crate::message::Failure;
+use crate::message::{Failure, OPTION};
 use crate::settings::Settings;
 
 /// Feed of the way between lines, mm/min.
@@ -34,16 +34,12 @@ fn turning(plan: &[Line]) -> Vec<(usize, char)> {
 /// The program: slow, Z up between lines, both ways along each, a dwell at every stop.
 pub(super) fn text(plan: &[Line], title: &str, settings: &Settings) -> Result<String, Failure> {
     let Some((offset, zero_mm)) = settings.setup.work_offsets.first().cloned() else {
-        return Err(Failure::option(
-            both!(
-                "the program needs a work offset, and the profile has none",
-                "программе нужно смещение нуля, а в профиле его нет"
-            ),
-            both!(
-                "add `--work-offset G54=0,0,0` with the machine coordinates of its zero",
-                "добавьте `--work-offset G54=0,0,0` с координатами станка его нуля"
-            ),
-        ));
+        return Err(Failure::usage(notice!(OPTION;
+            "the program needs a work offset, and the profile has none",
+            "программе нужно смещение нуля, а в профиле его нет";
+            "add `--work-offset G54=0,0,0` with the machine coordinates of its zero",
+            "добавьте `--work-offset G54=0,0,0` с координатами станка его нуля"
+        )));
     };
     let spots = |line: &Line| {
         let (before, passed) = line.swing.as_ref()?;
