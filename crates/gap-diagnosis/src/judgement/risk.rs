@@ -138,26 +138,25 @@ impl Assembly<'_> {
         let score = model.space.fit(library, parts).score;
         let own_prior = model.log_prior(parts);
         let least = units::math::ln(LEAST_WEIGHT);
-        let others = |rest: &[Part], group: &[usize], limit: f64, plainer: bool| {
-            let is_other = |(part, _): &(Part, Fit)| {
-                let slopes = group.iter().any(|place| library.slopes_as(*part, library.kind(parts[*place])));
-                let is_plainer = |own: &Part| {
-                    own.candidate != part.candidate
-                        || library.form(*part).columns.len() < library.form(*own).columns.len()
-                };
-                !slopes
-                    && !parts.contains(part)
-                    && (!plainer || parts.iter().all(is_plainer))
-                    && unsupported(library, *part, &self.data.rows).is_none()
-            };
-            let scanned = model.space.scan(library, rest, Asked::WithRivals);
-            by_effect(scanned.into_iter().filter(is_other).collect(), limit)
-        };
-        // What the rows say and what machines usually have, together: an angle that no carriage has may fit better.
-        let is_likely =
-            |all: &[Part], fit: &Fit| model.log_prior(all) - own_prior - 0.5 * (fit.score - score) > least;
         // Whatever machines usually have, no model is likelier by that than one without a price.
         let limit = score - 2.0 * (own_prior + least);
+        let likely = |rest: &[Part], group: &[usize], may: &dyn Fn(EffectKind) -> bool| {
+            let is_other = |(part, _): &(Part, Fit)| {
+                let slopes = group.iter().any(|place| library.slopes_as(*part, library.kind(parts[*place])));
+                let other = !slopes && !parts.contains(part) && may(library.kind(*part));
+                other && unsupported(library, *part, &self.data.rows).is_none()
+            };
+            let scanned = model.space.scan(library, rest, Asked::WithRivals);
+            let others = by_effect(scanned.into_iter().filter(is_other).collect(), limit);
+            let all = others.into_iter().filter_map(|(part, fit)| {
+                let all = with(rest, part);
+                // What the rows say and what machines usually have, together: an angle that no carriage has may fit
+                // better.
+                let likelier = model.log_prior(&all) - own_prior - 0.5 * (fit.score - score);
+                (likelier > least).then_some((part, all))
+            });
+            all.collect::<Vec<_>>()
+        };
         let pairs = (0..parts.len()).flat_map(|a| (0..a).map(move |b| vec![b, a]));
         let written =
             |group: &Vec<usize>| group.iter().all(|place| self.corrects(library.kind(parts[*place])));
@@ -165,29 +164,25 @@ impl Assembly<'_> {
         let mut found = Vec::new();
         for group in groups {
             let rest = group.iter().rev().fold(parts.clone(), |rest, place| without(&rest, *place));
-            for (part, fit) in others(&rest, &group, limit, false) {
-                let all = with(&rest, part);
-                if is_likely(&all, &fit) {
-                    found.push(self.explained(&all, Some((group[0], part))));
-                }
-            }
+            let singles = likely(&rest, &group, &|_| true);
+            found.extend(singles.iter().map(|(part, all)| self.explained(all, Some((group[0], *part)))));
             let [place] = group[..] else { continue };
-            let own = library.kind(parts[place]);
-            let firsts = others(&rest, &group, f64::INFINITY, true).into_iter().filter(|(part, fit)| {
-                is_one_of_two(own, library.kind(*part)) && !is_likely(&with(&rest, *part), fit)
-            });
-            for (part, _) in firsts.take(FIRSTS) {
-                let first = with(&rest, part);
-                let seconds = others(&first, &group, limit, true).into_iter().filter(|(second, _)| {
-                    let [first, second] = [part, *second].map(|part| library.kind(part));
-                    if first == own { second.is_instrument() } else { gives_way_to(own, second) }
+            let (own, kind) = (parts[place], library.kind(parts[place]));
+            let columns = |part: Part| library.form(part).columns.len();
+            let firsts =
+                model.space.scan(library, &rest, Asked::WithRivals).into_iter().filter(|(part, _)| {
+                    let plainer = part.candidate == own.candidate && columns(*part) < columns(own);
+                    plainer || gives_way_to(kind, library.kind(*part))
                 });
-                for (second, fit) in seconds {
-                    let all = with(&first, second);
-                    if is_likely(&all, &fit) {
-                        found.push(self.explained(&all, Some((place, part))));
-                    }
-                }
+            let firsts = by_effect(firsts.collect(), f64::INFINITY).into_iter().map(|(part, _)| part);
+            let short = firsts.filter(|first| singles.iter().all(|(single, _)| single != first));
+            for first in short.take(FIRSTS) {
+                let is_second = |second: EffectKind| match library.kind(first) {
+                    first if first == kind => second.is_instrument(),
+                    _ => gives_way_to(kind, second),
+                };
+                let pairs = likely(&with(&rest, first), &group, &is_second);
+                found.extend(pairs.iter().map(|(_, all)| self.explained(all, Some((place, first)))));
             }
         }
         found.extend(self.with_what_is_little());
@@ -234,12 +229,6 @@ impl Assembly<'_> {
             covariance: DMatrix::from_fn(own.len(), own.len(), |i, j| covariance[(own[i], own[j])]),
         }
     }
-}
-
-/// True of what may stand for a cause beside a second effect: its own plainer form beside a fault of the instrument, and
-/// what a droop or an angle gives way to.
-fn is_one_of_two(cause: EffectKind, first: EffectKind) -> bool {
-    first == cause || gives_way_to(cause, first)
 }
 
 /// Places at which the risk is looked at, with conditions as they were measured.

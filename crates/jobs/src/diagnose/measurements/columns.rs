@@ -173,8 +173,8 @@ fn read_in(sheet: &Sheet) -> impl Iterator<Item = &'static str> {
     READINGS.into_iter().filter(|column| sheet.has(column))
 }
 
-/// True where repeats of one command lie so few steps of the display apart that some coincide: most do not. Of a part that
-/// was pasted twice all do.
+/// True where repeats of one command lie so few steps of the display apart that some coincide: most do not. Of a part
+/// that was pasted twice all do.
 fn coincide(sheet: &Sheet, copies: usize) -> bool {
     /// So many steps apart one repeat in twenty coincides.
     const STEPS: f64 = 20.0;

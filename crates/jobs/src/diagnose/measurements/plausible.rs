@@ -258,8 +258,8 @@ fn scatter_um(data: &Measurements) -> f64 {
     robust_um(differences)
 }
 
-/// Scatter of the steps between two places that were read more than once, µm: neither offsets of runs nor what lies between
-/// the places are in it. `None` where too few were.
+/// Scatter of the steps between two places that were read more than once, µm: neither offsets of runs nor what lies
+/// between the places are in it. `None` where too few were.
 fn repeated_um(data: &Measurements) -> Option<f64> {
     let mut steps: BTreeMap<_, [Option<f64>; 3]> = BTreeMap::new();
     let mut differences = Vec::new();
