@@ -332,7 +332,14 @@ fn units_wrong_by_a_thousand() {
     refused(&scaled(1..4, 1e-3), "2:4", "VP0913", "metres?");
     refused(&scaled(1..4, 1e3), "2:4", "VP0913", "outside the profile's travel");
     // Readings so small that a thousand times them is no large number: their scatter gives them away.
-    refused(&scaled(4..7, 150.0), "2:29", "VP0913", "nanometres?");
+    let nanometres = scaled(4..7, 150.0);
+    refused(&nanometres, "2:29", "VP0913", "nanometres?");
+    // So they do where a fine instrument read the same lines again, and its readings agree.
+    let again = nanometres.lines().skip(1).map(|line| {
+        let line = with(&format!("b{line}"), 15, |f| (f.parse::<f64>().expect("seconds") + 1e5).to_string());
+        with(&line, 4, |f| (f.parse::<f64>().expect("a number") + 40.0).to_string()) + "\n"
+    });
+    refused(&(nanometres.clone() + &again.collect::<String>()), "2:29", "VP0913", "nanometres?");
 }
 
 /// A robot is out by millimetres: positions in the unit of the commands are no slip, and who says so is believed.

@@ -42,28 +42,21 @@ fn design(csv: &str, profile: &str, kept: &dyn Fn(&str) -> bool) -> Measurements
         if data.runs.last().is_none_or(|run| run != fields[0]) {
             data.runs.push(fields[0].to_owned());
         }
+        let command = Command {
+            linear_mm: three(["x_mm", "y_mm", "z_mm"]),
+            rotary_rad: Vector::zeros(),
+            tool_mm: three(["tool_x_mm", "tool_y_mm", "tool_z_mm"]),
+            direction: ["dir_x", "dir_y", "dir_z"].map(|n| value(n).expect("filled in") as i8),
+            ..Default::default()
+        };
+        let unread = Reading::Displacement([Some(0.0); 3]);
         data.rows.push(Row {
-            run: data.runs.len() - 1,
-            command: Command {
-                linear_mm: three(["x_mm", "y_mm", "z_mm"]),
-                rotary_rad: Vector::zeros(),
-                tool_mm: three(["tool_x_mm", "tool_y_mm", "tool_z_mm"]),
-                direction: ["dir_x", "dir_y", "dir_z"].map(|n| value(n).expect("filled in") as i8),
-                ..Default::default()
-            },
             conditions: Conditions {
                 time_s: value("time_s"),
                 feed_mm_min: value("feed_mm_min"),
                 ..Conditions::default()
             },
-            predicted_mm: Vector::zeros(),
-            u_um: [None; 3],
-            instrument: None,
-            station: None,
-            artefact: None,
-            order: [0.0; 2],
-            reading: Reading::Displacement([Some(0.0); 3]),
-            line: 0,
+            ..Row::new(data.runs.len() - 1, command, unread)
         });
     }
     data

@@ -244,8 +244,8 @@ fn a_refusal_lies_beside_the_output_it_concerns() {
     assert_eq!(left, [PathBuf::from("half.nc"), PathBuf::from("part.nc")]);
 }
 
-#[test]
-fn a_watcher_that_knows_no_machine_says_so_in_the_folder() {
+/// A folder with a corrected program, watched while its profile was broken, and that profile's text.
+fn broken() -> (Shop, Child, String) {
     let mut shop = Shop::new();
     shop.machine = shop.folder.path().join("mill.toml");
     let good = std::fs::read_to_string(root().join("machine-profiles/perfect.toml")).expect("text");
@@ -255,6 +255,12 @@ fn a_watcher_that_knows_no_machine_says_so_in_the_folder() {
     until("it is corrected", || shop.output("part.nc").exists());
     std::fs::write(&shop.machine, "nonsense").expect("writable");
     until("it is said", || shop.output("vpost.refused.txt").exists());
+    (shop, watcher, good)
+}
+
+#[test]
+fn a_watcher_that_knows_no_machine_says_so_in_the_folder() {
+    let (shop, watcher, good) = broken();
     shop.save("new.nc", &program(2, 20));
     std::fs::write(&shop.machine, &good).expect("writable");
     until("it goes on", || shop.output("new.nc").exists() && !shop.output("vpost.refused.txt").exists());
@@ -287,15 +293,7 @@ fn an_output_folder_that_went_is_made_again() {
 
 #[test]
 fn an_output_folder_may_go_while_the_profile_is_broken() {
-    let mut shop = Shop::new();
-    shop.machine = shop.folder.path().join("mill.toml");
-    let good = std::fs::read_to_string(root().join("machine-profiles/perfect.toml")).expect("text");
-    std::fs::write(&shop.machine, &good).expect("writable");
-    shop.save("part.nc", &program(1, 20));
-    let watcher = shop.watching("0.1");
-    until("it is corrected", || shop.output("part.nc").exists());
-    std::fs::write(&shop.machine, "nonsense").expect("writable");
-    until("it is said", || shop.output("vpost.refused.txt").exists());
+    let (shop, watcher, good) = broken();
     until("it is taken away", || std::fs::remove_dir_all(shop.output("")).is_ok());
     until("it is said again", || shop.output("vpost.refused.txt").exists());
     assert!(!shop.output("part.nc").exists());

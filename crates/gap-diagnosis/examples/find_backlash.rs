@@ -36,18 +36,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let lost_um = Vector::new(-4.0 * f64::from(direction[0]), 0.0, 0.0);
             let read = lost_um + Vector::new(noise_um(), noise_um(), noise_um());
             let tool_mm = Vector::new(0.0, 0.0, if corner % 2 == 0 { -80.0 } else { -200.0 });
+            let command = Command { linear_mm, tool_mm, direction, ..Default::default() };
+            let reading = Reading::Displacement([Some(read.x), Some(read.y), Some(read.z)]);
             rows.push(Row {
-                run: usize::from(line),
-                command: Command { linear_mm, tool_mm, direction, ..Default::default() },
                 conditions: Conditions { feed_mm_min: Some(feed), ..Conditions::default() },
-                predicted_mm: Vector::zeros(),
-                u_um: [None; 3],
-                instrument: None,
-                station: None,
-                artefact: None,
-                order: [0.0; 2],
-                reading: Reading::Displacement([Some(read.x), Some(read.y), Some(read.z)]),
                 line: rows.len() as u64 + 2,
+                ..Row::new(usize::from(line), command, reading)
             });
         }
     }

@@ -58,27 +58,20 @@ pub(crate) fn measured(plan: Plan, field_um: impl Fn(&Row) -> Vector) -> Measure
                 let mut direction = [0; 3];
                 direction[axis] = if pass % 2 == 0 { 1 } else { -1 };
                 time_s += 5.0;
+                let command = Command {
+                    linear_mm: at,
+                    tool_mm: Vector::new(0.0, 0.0, plan.tools_mm[corner % plan.tools_mm.len()]),
+                    direction,
+                    ..Default::default()
+                };
                 let mut row = Row {
-                    run: line,
-                    command: Command {
-                        linear_mm: at,
-                        tool_mm: Vector::new(0.0, 0.0, plan.tools_mm[corner % plan.tools_mm.len()]),
-                        direction,
-                        ..Default::default()
-                    },
                     conditions: Conditions {
                         time_s: Some(time_s),
                         feed_mm_min: Some(plan.feeds[pass / 2 % plan.feeds.len()]),
                         ..Conditions::default()
                     },
-                    predicted_mm: Vector::zeros(),
-                    u_um: [None; 3],
-                    instrument: None,
-                    station: None,
-                    artefact: None,
-                    order: [0.0; 2],
-                    reading: Reading::Magnitude(0.0),
                     line: rows.len() as u64 + 2,
+                    ..Row::new(line, command, Reading::Magnitude(0.0))
                 };
                 let gap = field_um(&row) + offset + Vector::new(normal(), normal(), normal()) * plan.sigma_um;
                 row.reading = Reading::Displacement([Some(gap.x), Some(gap.y), Some(gap.z)]);

@@ -47,6 +47,24 @@ pub struct Row {
 }
 
 impl Row {
+    /// Of a run, in no condition that is known, where the model predicts nothing.
+    #[must_use]
+    pub fn new(run: usize, command: Command, reading: Reading) -> Self {
+        Self {
+            run,
+            command,
+            conditions: Conditions::default(),
+            predicted_mm: Vector::zeros(),
+            u_um: [None; 3],
+            instrument: None,
+            artefact: None,
+            station: None,
+            reading,
+            order: [0.0; 2],
+            line: 0,
+        }
+    }
+
     /// Stated uncertainty of an equation of a class: of its component, or the mean of all for another direction, µm.
     #[must_use]
     pub fn uncertainty_um(&self, class: usize) -> Option<f64> {
@@ -220,7 +238,13 @@ impl Measurements {
     pub(crate) fn is_one_run(&self) -> bool {
         let moving: Vec<usize> = (0..3).filter(|axis| self.places_mm(*axis).len() > 1).collect();
         let comes_back = moving.len() == 1 && self.comes_back(|row| row.command.direction);
-        self.runs.len() < 2 && !comes_back && !moving.iter().all(|axis| self.is_crossed(*axis))
+        self.runs.len() < 2 && !comes_back && !self.is_area()
+    }
+
+    /// True where the places of every axis that moves are met all along another one, as a mesh has them.
+    #[must_use]
+    pub fn is_area(&self) -> bool {
+        (0..3).filter(|axis| self.places_mm(*axis).len() > 1).all(|axis| self.is_crossed(axis))
     }
 
     /// True where the places of an axis are met all along another one.

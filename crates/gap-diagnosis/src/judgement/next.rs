@@ -141,13 +141,9 @@ fn separation(
 /// Cheap lines inside the measured box, the simplest first.
 pub(crate) fn lines(data: &Measurements) -> Vec<Line> {
     let Some(typical) = data.rows.get(data.rows.len() / 2).copied() else { return Vec::new() };
-    let time = data
-        .rows
-        .iter()
-        .filter_map(|r| r.conditions.time_s)
-        .fold(None, |m: Option<f64>, t| Some(m.map_or(t, |m| m.max(t))));
+    let time = data.rows.iter().filter_map(|r| r.conditions.time_s).max_by(f64::total_cmp);
+    let unread = Row::new(data.runs.len(), typical.command, Reading::Displacement([Some(0.0); 3]));
     let base = Row {
-        run: data.runs.len(),
         conditions: machine_model::effects::Conditions {
             time_s: time.map(|t| t + 60.0),
             share: None,
@@ -155,14 +151,8 @@ pub(crate) fn lines(data: &Measurements) -> Vec<Line> {
             curvature_per_mm: None,
             ..typical.conditions
         },
-        predicted_mm: Vector::zeros(),
-        u_um: [None; 3],
-        instrument: None,
-        station: None,
-        artefact: None,
-        order: [0.0; 2],
-        reading: Reading::Displacement([Some(0.0); 3]),
-        ..typical
+        line: typical.line,
+        ..unread
     };
     let plain = ends(data);
     let mut lines = Vec::new();

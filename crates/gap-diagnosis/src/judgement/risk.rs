@@ -140,14 +140,13 @@ impl Assembly<'_> {
         let least = units::math::ln(LEAST_WEIGHT);
         // Whatever machines usually have, no model is likelier by that than one without a price.
         let limit = score - 2.0 * (own_prior + least);
-        let likely = |rest: &[Part], group: &[usize], may: &dyn Fn(EffectKind) -> bool| {
+        let scan = |rest: &[Part]| model.space.scan(library, rest, Asked::WithRivals);
+        let likely = |rest: &[Part], scanned: &[(Part, Fit)], group: &[usize]| {
             let is_other = |(part, _): &(Part, Fit)| {
                 let slopes = group.iter().any(|place| library.slopes_as(*part, library.kind(parts[*place])));
-                let other = !slopes && !parts.contains(part) && may(library.kind(*part));
-                other && unsupported(library, *part, &self.data.rows).is_none()
+                !slopes && !parts.contains(part) && unsupported(library, *part, &self.data.rows).is_none()
             };
-            let scanned = model.space.scan(library, rest, Asked::WithRivals);
-            let others = by_effect(scanned.into_iter().filter(is_other).collect(), limit);
+            let others = by_effect(scanned.iter().copied().filter(is_other).collect(), limit);
             let all = others.into_iter().filter_map(|(part, fit)| {
                 let all = with(rest, part);
                 // What the rows say and what machines usually have, together: an angle that no carriage has may fit
@@ -164,25 +163,29 @@ impl Assembly<'_> {
         let mut found = Vec::new();
         for group in groups {
             let rest = group.iter().rev().fold(parts.clone(), |rest, place| without(&rest, *place));
-            let singles = likely(&rest, &group, &|_| true);
+            let scanned = scan(&rest);
+            let singles = likely(&rest, &scanned, &group);
             found.extend(singles.iter().map(|(part, all)| self.explained(all, Some((group[0], *part)))));
             let [place] = group[..] else { continue };
             let (own, kind) = (parts[place], library.kind(parts[place]));
             let columns = |part: Part| library.form(part).columns.len();
-            let firsts =
-                model.space.scan(library, &rest, Asked::WithRivals).into_iter().filter(|(part, _)| {
-                    let plainer = part.candidate == own.candidate && columns(*part) < columns(own);
-                    plainer || gives_way_to(kind, library.kind(*part))
-                });
+            let firsts = scanned.into_iter().filter(|(part, _)| {
+                let plainer = part.candidate == own.candidate && columns(*part) < columns(own);
+                plainer || gives_way_to(kind, library.kind(*part))
+            });
             let firsts = by_effect(firsts.collect(), f64::INFINITY).into_iter().map(|(part, _)| part);
             let short = firsts.filter(|first| singles.iter().all(|(single, _)| single != first));
             for first in short.take(FIRSTS) {
-                let is_second = |second: EffectKind| match library.kind(first) {
-                    first if first == kind => second.is_instrument(),
-                    _ => gives_way_to(kind, second),
+                let is_plainer = library.kind(first) == kind;
+                let is_second = |(part, _): &(Part, Fit)| match library.kind(*part) {
+                    second if is_plainer => second.is_instrument(),
+                    second => gives_way_to(kind, second),
                 };
-                let pairs = likely(&with(&rest, first), &group, &is_second);
-                found.extend(pairs.iter().map(|(_, all)| self.explained(all, Some((place, first)))));
+                let rest = with(&rest, first);
+                let seconds: Vec<_> = scan(&rest).into_iter().filter(is_second).collect();
+                for (second, all) in likely(&rest, &seconds, &group) {
+                    found.push(self.explained(&all, Some((place, if is_plainer { second } else { first }))));
+                }
             }
         }
         found.extend(self.with_what_is_little());

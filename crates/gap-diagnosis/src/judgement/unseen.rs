@@ -300,25 +300,14 @@ pub(crate) fn residuals(scalars: &[Scalar], before: &[f64], after: &[f64]) -> Ve
 #[cfg(test)]
 mod tests {
     use machine_model::Command;
-    use machine_model::effects::{Conditions, EffectGeometry};
+    use machine_model::effects::EffectGeometry;
 
     use super::*;
 
     /// Fifty rows a run, of which every second one grows by 3 µm² more than the other shrinks.
     fn grown(runs: usize, growth: f64) -> Option<WorseRun> {
-        let row = |run: usize| Row {
-            run,
-            command: Command::default(),
-            conditions: Conditions::default(),
-            predicted_mm: Vector::zeros(),
-            u_um: [None; 3],
-            instrument: None,
-            station: None,
-            artefact: None,
-            order: [0.0; 2],
-            reading: Reading::Displacement([Some(0.0), None, None]),
-            line: 0,
-        };
+        let reading = Reading::Displacement([Some(0.0), None, None]);
+        let row = |run: usize| Row::new(run, Command::default(), reading);
         let rows: Vec<Row> = (0..50 * runs).map(|k| row(k / 50)).collect();
         let names = (0..runs).map(|run| run.to_string()).collect();
         let data =

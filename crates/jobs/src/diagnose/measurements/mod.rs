@@ -157,8 +157,6 @@ fn measured(
         _ => None,
     };
     Ok(gap_diagnosis::Row {
-        run,
-        command,
         conditions: Conditions {
             temp_c,
             time_s: row.number("time_s")?,
@@ -167,14 +165,9 @@ fn measured(
             station_mm,
             ..Conditions::default()
         },
-        predicted_mm: Vector::zeros(),
         u_um,
-        instrument: None,
-        station: None,
-        artefact: None,
-        order: [0.0; 2],
-        reading,
         line: row.line(),
+        ..gap_diagnosis::Row::new(run, command, reading)
     })
 }
 

@@ -131,8 +131,9 @@ fn scatter(sheet: &Sheet, data: &Measurements) -> Result<(), Failure> {
         "deviations are micrometres: check the unit; if it is right, add --as-written",
         "отклонения — в микрометрах: проверьте единицу; если она верна, добавьте --as-written"
     );
-    // Where places were read again, what lies between them says nothing.
-    let scatter = repeated_um(data).unwrap_or_else(|| scatter_um(data));
+    // What lies between the places of a bed's mesh says nothing where they were read again.
+    let again = if data.is_area() { repeated_um(data) } else { None };
+    let scatter = again.unwrap_or_else(|| scatter_um(data));
     if scatter > LARGEST_SCATTER_UM {
         let message = both!(
             "neighbouring deviations differ by {:.2} mm and more: are they nanometres?",

@@ -149,28 +149,21 @@ fn design(plan: &[Line], geometry: &EffectGeometry) -> Measurements {
     for (line, times) in plan.iter().zip(times(plan)) {
         data.runs.push(line.run.clone());
         for (stop, time) in line.stops.iter().zip(times) {
+            let command = Command {
+                linear_mm: stop.at_mm,
+                rotary_rad: Vector::from(stop.rotary_deg.map(f64::to_radians)),
+                tool_mm: line.tool_mm,
+                direction: stop.direction,
+                ..Default::default()
+            };
+            let unread = Reading::Displacement([Some(0.0); 3]);
             data.rows.push(Row {
-                run: data.runs.len() - 1,
-                command: Command {
-                    linear_mm: stop.at_mm,
-                    rotary_rad: Vector::from(stop.rotary_deg.map(f64::to_radians)),
-                    tool_mm: line.tool_mm,
-                    direction: stop.direction,
-                    ..Default::default()
-                },
                 conditions: Conditions {
                     time_s: Some(time),
                     feed_mm_min: line.flying.then_some(line.feed_mm_min),
                     ..Conditions::default()
                 },
-                predicted_mm: Vector::zeros(),
-                u_um: [None; 3],
-                instrument: None,
-                station: None,
-                artefact: None,
-                order: [0.0; 2],
-                reading: Reading::Displacement([Some(0.0); 3]),
-                line: 0,
+                ..Row::new(data.runs.len() - 1, command, unread)
             });
         }
     }
