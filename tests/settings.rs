@@ -62,7 +62,7 @@ fn a_file_above_the_program_says_what_would_be_typed() {
     assert!(typed.status.success() && held.status.success(), "{}{}", messages(&typed), messages(&held));
     assert_eq!(typed.stdout, held.stdout);
     let said = messages(&held);
-    assert!(said.contains("settings from vpost.toml: summary, machine"), "{said}");
+    assert!(said.contains("settings from vpost.toml: summary (line "), "{said}");
     assert!(!messages(&typed).contains("settings from"), "{}", messages(&typed));
     let summary: serde_json::Value =
         serde_json::from_slice(&std::fs::read(shop.path("last.json")).expect("beside the file"))
@@ -94,12 +94,18 @@ fn a_quiet_file_is_not_quiet_about_itself() {
 }
 
 #[test]
+fn a_value_that_the_work_refuses_has_its_line() {
+    let shop = Shop::new(&SETTINGS.replace("2.5", "-1"));
+    shop.fails("jobs/part.nc", &["tolerance (line 4)", "VP0002", "-1 um"]);
+}
+
+#[test]
 fn a_flag_that_is_off_and_a_folder_of_that_name_decide_nothing() {
     let shop = Shop::new("strict = true\ntolerance = 2.5\n[correct]\nstrict = false\n");
     let line = format!("jobs/op10/part.nc {TYPED}").replace("--tolerance 2.5", "");
     std::fs::create_dir(shop.path("jobs/vpost.toml")).expect("a new folder");
     let said = messages(&shop.run(&line));
-    assert!(said.contains("settings from vpost.toml: tolerance\n"), "{said}");
+    assert!(said.contains("settings from vpost.toml: tolerance (line 2)\n"), "{said}");
     std::fs::write(shop.path("jobs/op10/vpost.toml"), "strict = false\n").expect("writable");
     let said = messages(&shop.run(&line));
     assert!(!said.contains("settings from"), "{said}");

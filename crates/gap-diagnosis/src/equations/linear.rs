@@ -56,12 +56,12 @@ impl Factor {
                 });
             let Some(pivot) = best else { break };
             let root = rest[pivot].sqrt();
-            let row: Vec<f64> = (0..count)
-                .map(|j| {
-                    let sum: f64 = rows.iter().map(|r| r[pivot] * r[j]).sum();
-                    (products.product(columns[pivot], columns[j]) - sum) / root
-                })
-                .collect();
+            let mut known = vec![0.0; count];
+            for earlier in &rows {
+                known.iter_mut().zip(earlier).for_each(|(sum, v)| *sum += earlier[pivot] * v);
+            }
+            let own = columns.iter().map(|column| products.product(columns[pivot], *column));
+            let row: Vec<f64> = own.zip(known).map(|(product, sum)| (product - sum) / root).collect();
             for (to, v) in rest.iter_mut().zip(&row) {
                 *to -= v * v;
             }

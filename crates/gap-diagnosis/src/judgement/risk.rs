@@ -21,7 +21,7 @@ use crate::judgement::assembly::Assembly;
 use crate::judgement::shrinkage::LEAST_WEIGHT;
 use crate::library::candidates::{Library, Part};
 use crate::search::explanation::Reason;
-use crate::search::moves::{by_effect, with, without};
+use crate::search::moves::{by_effect, halves, with, without};
 use crate::search::space::{Asked, Fit};
 use crate::search::trial::unsupported;
 
@@ -131,8 +131,6 @@ impl Assembly<'_> {
     /// Explanations beside the one named that the rows do not refute: another effect, or another form, for one cause or
     /// for two, and two for one: a squareness and a curve for a droop, a plainer play and a drift for a play.
     fn not_refuted(&self) -> Vec<Explained> {
-        /// Effects that are not enough for a cause, the nearest, of which each is tried with a second one.
-        const FIRSTS: usize = 6;
         let model = self.model;
         let (library, parts) = (&model.library, &model.parts);
         let score = model.space.fit(library, parts).score;
@@ -167,15 +165,10 @@ impl Assembly<'_> {
             let singles = likely(&rest, &scanned, &group);
             found.extend(singles.iter().map(|(part, all)| self.explained(all, Some((group[0], *part)))));
             let [place] = group[..] else { continue };
-            let (own, kind) = (parts[place], library.kind(parts[place]));
-            let columns = |part: Part| library.form(part).columns.len();
-            let firsts = scanned.into_iter().filter(|(part, _)| {
-                let plainer = part.candidate == own.candidate && columns(*part) < columns(own);
-                plainer || gives_way_to(kind, library.kind(*part))
-            });
-            let firsts = by_effect(firsts.collect(), f64::INFINITY).into_iter().map(|(part, _)| part);
-            let short = firsts.filter(|first| singles.iter().all(|(single, _)| single != first));
-            for first in short.take(FIRSTS) {
+            let kind = library.kind(parts[place]);
+            let mut firsts = halves(library, parts[place], &scanned);
+            firsts.retain(|first| singles.iter().all(|(single, _)| single != first));
+            for first in firsts {
                 let is_plainer = library.kind(first) == kind;
                 let is_second = |(part, _): &(Part, Fit)| match library.kind(*part) {
                     second if is_plainer => second.is_instrument(),

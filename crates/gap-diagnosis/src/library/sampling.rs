@@ -5,6 +5,8 @@ use crate::equations::observation::Measurements;
 
 /// So many places at uneven distances show a wave even where they lie further apart than half its period.
 pub(crate) const ENOUGH_PLACES: usize = 24;
+/// So many even places a period show a wave as itself: of fewer, a screw of twice the turns or more reads alike.
+pub(crate) const FINE: f64 = 3.0;
 /// A step that differs from the typical one by more than this share is uneven.
 pub(crate) const UNEVEN: f64 = 0.15;
 
@@ -55,10 +57,12 @@ impl Sampling {
         self.places >= LINE && !self.uneven && self.spacing_mm > USUAL_MM
     }
 
-    /// True where a wave of this period is sampled at less than two places per period, so that it could be any curve.
+    /// True where a wave of this period is sampled at so few places per period that it could be any curve, or one of
+    /// another period: two, of even ones [`FINE`].
     ///
     /// Many places at uneven distances show a wave even where they lie further apart; even ones never do.
     pub(crate) fn is_coarse(&self, period_mm: f64) -> bool {
-        2.0 * self.spacing_mm > period_mm && (self.places <= ENOUGH_PLACES || !self.uneven)
+        let of_period = if self.uneven { 2.0 } else { FINE };
+        of_period * self.spacing_mm > period_mm && (self.places <= ENOUGH_PLACES || !self.uneven)
     }
 }

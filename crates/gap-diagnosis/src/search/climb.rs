@@ -216,7 +216,7 @@ impl State<'_, '_> {
         let mut fit = self.space.fit(&self.library, &with);
         for place in (first..with.len()).rev() {
             let fewer = without(&with, place);
-            let plainer = self.space.fit(&self.library, &fewer);
+            let plainer = self.space.fit_near(&self.library, &fewer, &fit);
             if plainer.score <= fit.score {
                 (with, fit) = (fewer, plainer);
             }

@@ -1,5 +1,6 @@
 //! The search: add, refine, swap, drop, on inner products alone.
 
+use crate::effects::gives_way_to;
 use crate::library::candidates::Library;
 use crate::library::candidates::Part;
 use crate::search::space::{Asked, Fit, Space};
@@ -85,6 +86,20 @@ pub(crate) fn without(parts: &[Part], place: usize) -> Vec<Part> {
 /// The model with one more part.
 pub(crate) fn with(parts: &[Part], part: Part) -> Vec<Part> {
     parts.iter().copied().chain([part]).collect()
+}
+
+/// Effects that are not enough for a cause, the nearest of a scan without it, each of which may stand for it together
+/// with a second one: a plainer form of it, and what an angle or a droop gives way to.
+pub(crate) fn halves(library: &Library, cause: Part, scanned: &[(Part, Fit)]) -> Vec<Part> {
+    /// How many are tried.
+    const MOST: usize = 6;
+    let columns = |part: Part| library.form(part).columns.len();
+    let is_half = |(part, _): &&(Part, Fit)| {
+        let is_plainer = part.candidate == cause.candidate && columns(*part) < columns(cause);
+        is_plainer || gives_way_to(library.kind(cause), library.kind(*part))
+    };
+    let found = by_effect(scanned.iter().filter(is_half).copied().collect(), f64::INFINITY);
+    found.into_iter().take(MOST).map(|(part, _)| part).collect()
 }
 
 fn replaced(parts: &[Part], place: usize, new: Part) -> Vec<Part> {

@@ -6,7 +6,7 @@ use units::math;
 use crate::equations::columns::Source;
 use crate::equations::noise::median;
 use crate::equations::observation::{Row, Scalar};
-use crate::library::sampling::{ENOUGH_PLACES, UNEVEN};
+use crate::library::sampling::{ENOUGH_PLACES, FINE, UNEVEN};
 
 /// Pitches that screws, racks and gears are made with, mm; five, four, two and one a turn of an inch among them.
 const NOMINAL_PITCHES_MM: [f64; 21] = [
@@ -15,9 +15,7 @@ const NOMINAL_PITCHES_MM: [f64; 21] = [
 ];
 /// How far from a nominal pitch is still a neighbour.
 const NEIGHBOURHOOD: f64 = 0.025;
-/// Free periods are looked for where an axis was read at enough places, even ones from so many of them per period on …
-const FINE: f64 = 3.0;
-/// … and within these, mm.
+/// Free periods are looked for where an axis was read at enough places, and within these, mm.
 const SHORTEST_MM: f64 = 1.0;
 const LONGEST_MM: f64 = 60.0;
 /// Rows before and after a knock: of fewer at the end of a file nobody can tell it from a blunder or two.
@@ -37,10 +35,9 @@ pub(crate) fn thinned(scalars: &[Scalar]) -> Vec<usize> {
 /// finely.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pitches {
-    /// Neighbouring periods, mm.
-    grid: Vec<Vec<f64>>,
+    grid: Vec<Band>,
     /// Of the nominal ones those that even steps show as a slow curve, or not at all: rivals of curves.
-    strobed: Vec<Vec<f64>>,
+    strobed: Vec<Band>,
     /// How many are looked at.
     asked: usize,
 }
@@ -66,13 +63,13 @@ impl Pitches {
             .filter(|step| *step > 0.0)
             .collect();
         for nominal in NOMINAL_PITCHES_MM.into_iter().filter(|p| 3.0 * p <= length) {
-            let step = (0.25 * nominal * nominal / length).max(2.0 * NEIGHBOURHOOD * nominal / 60.0);
-            let count = (NEIGHBOURHOOD * nominal / step).floor() as i32;
-            found.asked += 2 * count.unsigned_abs() as usize + 1;
-            let neighbours = (-count..=count).map(|k| nominal + step * f64::from(k));
-            found.grid.push(neighbours.filter(|pitch| !is_strobed(&steps, *pitch)).collect());
+            let step = (0.25 / length).max(2.0 * NEIGHBOURHOOD / (60.0 * nominal));
+            let count = (NEIGHBOURHOOD / (nominal * step)).floor();
+            let band = Band::new(1.0 / nominal - count * step, step, 2 * count as usize + 1, &steps);
+            found.asked += band.is_seen.len();
+            found.grid.push(band);
             if is_strobed(&steps, nominal) {
-                found.strobed.push(vec![nominal]);
+                found.strobed.push(Band::new(1.0 / nominal, step, 1, &[]));
             }
         }
         // Where an axis is read so finely that no curve passes for a wave, gears and racks may have any period.
@@ -88,17 +85,14 @@ impl Pitches {
         let step = median(&mut steps.clone()).unwrap_or(f64::INFINITY);
         let odd = steps.iter().filter(|s| (**s / step - 1.0).abs() > UNEVEN).count();
         let fine = if 3 * odd >= steps.len() { 0.0 } else { FINE * (square / length.max(1e-9)).max(step) };
-        let mut pitch = fine.max(SHORTEST_MM);
-        while pitch <= LONGEST_MM.min(length / 3.0) {
-            let group_end = 1.25 * pitch;
-            let mut group = Vec::new();
-            while pitch <= group_end.min(LONGEST_MM).min(length / 3.0) {
-                found.asked += 1;
-                group.push(pitch);
-                pitch += 0.25 * pitch * pitch / length;
-            }
-            group.retain(|pitch| !is_strobed(&steps, *pitch));
-            found.grid.push(group);
+        let (mut highest, lowest) = (1.0 / fine.max(SHORTEST_MM), 1.0 / LONGEST_MM.min(length / 3.0));
+        let step = 0.25 / length;
+        while highest >= lowest {
+            let least = (0.8 * highest).max(lowest);
+            let count = ((highest - least) / step).floor() + 1.0;
+            found.asked += count as usize;
+            found.grid.push(Band::new(highest - (count - 1.0) * step, step, count as usize, &steps));
+            highest -= count * step;
         }
         found
     }
@@ -129,12 +123,8 @@ impl Pitches {
             }
             same
         });
-        let strongest = |grid: &[Vec<f64>]| {
-            let of_group = |neighbours: &Vec<f64>| {
-                let powers = neighbours.iter().map(|pitch| (*pitch, power(&places, *pitch)));
-                powers.reduce(|best, next| if next.1 > best.1 { next } else { best })
-            };
-            let mut found: Vec<(f64, f64)> = grid.iter().filter_map(of_group).collect();
+        let strongest = |grid: &[Band]| {
+            let mut found: Vec<(f64, f64)> = grid.iter().filter_map(|band| band.strongest(&places)).collect();
             found.sort_by(|a, b| b.1.total_cmp(&a.1));
             found.into_iter().map(|(pitch, _)| pitch)
         };
@@ -150,12 +140,49 @@ struct Place {
     sum_um: f64,
 }
 
-/// Square explained by a sine and a cosine of this period beside a constant.
-fn power(places: &[Place], pitch_mm: f64) -> f64 {
+/// Periods beside each other, even in turns per millimetre.
+#[derive(Clone, Debug)]
+struct Band {
+    /// Turns per millimetre of the longest, and from each to the next.
+    from: f64,
+    step: f64,
+    /// False of those that the steps from row to row show as a slow curve.
+    is_seen: Vec<bool>,
+}
+
+impl Band {
+    fn new(from: f64, step: f64, count: usize, steps_mm: &[f64]) -> Self {
+        let period_mm = |k: usize| 1.0 / (from + step * k as f64);
+        Self { from, step, is_seen: (0..count).map(|k| !is_strobed(steps_mm, period_mm(k))).collect() }
+    }
+
+    /// The period that explains most, mm, and the square it explains.
+    fn strongest(&self, places: &[Place]) -> Option<(f64, f64)> {
+        let turned = |per_mm: f64| {
+            let turn = |place: &Place| math::sin_cos(std::f64::consts::TAU * per_mm * place.position_mm);
+            places.iter().map(turn).collect::<Vec<(f64, f64)>>()
+        };
+        // From period to period each place turns by the same angle.
+        let (mut turns, by) = (turned(self.from), turned(self.step));
+        let mut best: Option<(f64, f64)> = None;
+        for (k, is_seen) in self.is_seen.iter().enumerate() {
+            let found = is_seen.then(|| power(places, &turns));
+            if let Some(found) = found.filter(|found| best.is_none_or(|(_, most)| *found > most)) {
+                best = Some((1.0 / (self.from + self.step * k as f64), found));
+            }
+            for ((sin, cos), (s, c)) in turns.iter_mut().zip(&by) {
+                (*sin, *cos) = (*sin * c + *cos * s, *cos * c - *sin * s);
+            }
+        }
+        best
+    }
+}
+
+/// Square explained by a sine and a cosine of these values beside a constant.
+fn power(places: &[Place], turns: &[(f64, f64)]) -> f64 {
     let (mut s, mut c, mut ss, mut sc, mut cc, mut sy, mut cy, mut y, mut n) =
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    for place in places {
-        let (sin, cos) = math::sin_cos(std::f64::consts::TAU * place.position_mm / pitch_mm);
+    for (place, (sin, cos)) in places.iter().zip(turns) {
         let (k, r) = (place.count, place.sum_um);
         (s, c, ss, sc, cc) =
             (s + k * sin, c + k * cos, ss + k * sin * sin, sc + k * sin * cos, cc + k * cos * cos);
@@ -341,12 +368,17 @@ mod tests {
             .collect();
         let mean = places.iter().map(|p| p.sum_um).sum::<f64>() / 200.0;
         let square: f64 = places.iter().map(|p| (p.sum_um - mean) * (p.sum_um - mean)).sum();
-        assert!((power(&places, 10.0) / square - 1.0).abs() < 1e-9);
-        assert!(power(&places, 7.3) < 0.05 * square);
+        let power =
+            |places: &[Place], pitch: f64| Band::new(1.0 / pitch, 1.0, 1, &[]).strongest(places).map(|f| f.1);
+        assert!(power(&places, 7.3) < Some(0.05 * square));
+        // Turned from period to period, it is found among its neighbours.
+        let (pitch, found) =
+            Band::new(0.1 - 40.0 * 1e-4, 1e-4, 90, &[]).strongest(&places).expect("one of them");
+        assert!((pitch - 10.0).abs() < 1e-9 && (found / square - 1.0).abs() < 1e-9, "{pitch} {found}");
         // A period on which every place stands alike has no sine to speak of.
         let strobed: Vec<Place> =
             (0..50).map(|k| Place { position_mm: 10.0 * f64::from(k), count: 1.0, sum_um: 1.0 }).collect();
-        assert_eq!(power(&strobed, 10.0), 0.0);
+        assert_eq!(power(&strobed, 10.0), Some(0.0));
     }
 
     #[test]

@@ -5,10 +5,12 @@ use machine_model::effects::{EffectKind, Shape};
 use crate::effects::{self, Searched};
 use crate::equations::fit::residuals;
 use crate::equations::term::Term;
-use crate::library::candidates::Variant;
+use crate::library::candidates::{Part, Variant};
 use crate::library::seen::JOINT_PLACES;
+use crate::search::moves::{halves, without};
 use crate::search::proposals;
 use crate::search::refine::Stage;
+use crate::search::space::Asked;
 use crate::search::state::State;
 
 impl State<'_, '_> {
@@ -169,5 +171,12 @@ impl State<'_, '_> {
             }
         }
         self.grow();
+        // Whether two stand for one is asked of the model that the search ends with.
+        let (parts, library) = (&self.parts, &self.library);
+        let halves = (0..parts.len()).flat_map(|place| {
+            let scanned = self.space.scan(library, &without(parts, place), Asked::WithRivals);
+            halves(library, parts[place], &scanned)
+        });
+        self.complete(&halves.collect::<Vec<Part>>());
     }
 }

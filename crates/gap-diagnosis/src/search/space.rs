@@ -245,18 +245,22 @@ impl Space {
 
     /// Judges a model.
     pub(crate) fn fit(&self, library: &Library, parts: &[Part]) -> Fit {
-        let mut best: Option<Fit> = None;
-        for index in 0..self.levels.len() {
-            let (residual, rank) = self.left(library, parts, index);
-            let fit = self.judged(index, residual, rank, 0.0);
-            if best.is_none_or(|b| fit.score < b.score) {
-                best = Some(fit);
-            }
-        }
-        let mut fit = best.unwrap_or(Fit { score: 0.0, residual: 0.0, level: 0, rank: 0 });
-        // The price does not depend on the level.
-        fit.score += parts.iter().map(|part| self.price(library, *part)).sum::<f64>();
-        fit
+        let all = (0..self.levels.len()).filter_map(|level| self.at(library, parts, level));
+        let best = all.reduce(|best, next| if next.score < best.score { next } else { best });
+        best.unwrap_or(Fit { score: 0.0, residual: 0.0, level: 0, rank: 0 })
+    }
+
+    /// The same for a model that differs little from one that is judged.
+    pub(crate) fn fit_near(&self, library: &Library, parts: &[Part], near: &Fit) -> Fit {
+        uphill(near.level, |level| self.at(library, parts, level)).unwrap_or(*near)
+    }
+
+    /// Judges a model at a level; `None` where there is no such.
+    pub(super) fn at(&self, library: &Library, parts: &[Part], level: usize) -> Option<Fit> {
+        self.levels.get(level)?;
+        let (residual, rank) = self.left(library, parts, level);
+        let price = parts.iter().map(|part| self.price(library, *part)).sum();
+        Some(self.judged(level, residual, rank, price))
     }
 
     /// BIC of a model with its set-up columns counted.
@@ -300,7 +304,7 @@ impl Space {
         for (part, own) in forms {
             let kind = library.kind(part);
             let price = base_price + self.price(library, part);
-            let mut judge = |index: usize| {
+            let judge = |index: usize| {
                 self.levels.get(index)?;
                 let sweep = sweeps[index].get_or_insert_with(|| {
                     Sweep::new(self.products(index), &columns, &self.reference, &needed)
@@ -309,21 +313,25 @@ impl Space {
                 let residual = (sweep.product(last, last) - gain).max(0.0);
                 (own_rank > 0).then(|| self.judged(index, residual, sweep.factor.rank() + own_rank, price))
             };
-            // The likelihood has one summit over the ratio: uphill from where the base has its own.
-            let mut best = judge(start);
-            for (step, mut index) in [(1, start), (usize::MAX, start)] {
-                loop {
-                    index = index.wrapping_add(step);
-                    match judge(index) {
-                        Some(fit) if best.is_none_or(|b| fit.score < b.score) => best = Some(fit),
-                        _ => break,
-                    }
-                }
-            }
-            found.extend(best.map(|fit| (part, fit)));
+            found.extend(uphill(start, judge).map(|fit| (part, fit)));
         }
         found
     }
+}
+
+/// The best of all levels: the likelihood has one summit over the ratio, so uphill from where a model alike has its own.
+fn uphill(start: usize, mut judge: impl FnMut(usize) -> Option<Fit>) -> Option<Fit> {
+    let mut best = judge(start);
+    for (step, mut level) in [(1, start), (usize::MAX, start)] {
+        loop {
+            level = level.wrapping_add(step);
+            match judge(level) {
+                Some(fit) if best.is_none_or(|b| fit.score < b.score) => best = Some(fit),
+                _ => break,
+            }
+        }
+    }
+    best
 }
 
 /// Products at a level, each computed when it is asked for the first time.
@@ -344,6 +352,8 @@ impl Products for Whitened<'_> {
         if known.get().is_nan() {
             let (a, b) = (self.space.nuisances + i, self.space.nuisances + j);
             let taken_out = self.level.explained[a].product(&self.level.explained[b]);
+            // No number would pass for a model that leaves nothing.
+            debug_assert!(!self.space.gram.products[(a, b)].is_nan(), "columns that were never completed");
             known.set(self.space.gram.products[(a, b)] - taken_out);
         }
         known.get()

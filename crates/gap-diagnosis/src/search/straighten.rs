@@ -73,12 +73,16 @@ impl State<'_, '_> {
         let mut fit = self.space.fit(&self.library, &with);
         loop {
             let fewer = (first..with.len()).map(|place| without(&with, place));
-            let judged = fewer.map(|fewer| (self.space.fit(&self.library, &fewer), fewer));
-            let best = judged.min_by(|a, b| a.0.score.total_cmp(&b.0.score));
-            match best.filter(|(plainer, _)| plainer.score <= fit.score) {
-                Some((plainer, fewer)) => (fit, with) = (plainer, fewer),
-                None => return (fit, with),
+            let judged =
+                fewer.filter_map(|fewer| Some((self.space.at(&self.library, &fewer, fit.level)?, fewer)));
+            let Some((_, fewer)) = judged.min_by(|a, b| a.0.score.total_cmp(&b.0.score)) else {
+                return (fit, with);
+            };
+            let plainer = self.space.fit_near(&self.library, &fewer, &fit);
+            if plainer.score > fit.score {
+                return (fit, with);
             }
+            (fit, with) = (plainer, fewer);
         }
     }
 

@@ -83,11 +83,17 @@ impl Held {
         Some(SettingsFile { file: file::name(file), options })
     }
 
-    /// That a file was found, and what of it holds: what nobody typed is said.
+    /// That a file was found, and what of it holds, on which line: what nobody typed is said before the work finds fault
+    /// with it.
     pub(crate) fn note(&self) -> Option<Text> {
         let file = self.file.as_deref().filter(|_| !self.kept.is_empty() && self.command != ["config"])?;
-        let options: Vec<&str> = self.kept.iter().map(|kept| kept.option.as_str()).collect();
-        Some(both!("settings from {}: {}", "настройки из {}: {}", file::name(file), options.join(", ")))
+        let options = |line: &str| {
+            let options = self.kept.iter().map(|kept| format!("{} ({line} {})", kept.option, kept.line));
+            options.collect::<Vec<String>>().join(", ")
+        };
+        let (english, russian) = (options("line"), options("строка"));
+        let file = file::name(file);
+        Some(both!("settings from {file}: {english}", "настройки из {file}: {russian}"))
     }
 
     /// Refuses programs that lie under another settings file than the one that holds.
