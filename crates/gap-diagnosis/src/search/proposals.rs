@@ -62,13 +62,14 @@ impl Pitches {
             .map(|pair| (pair[1].command.linear_mm[axis] - pair[0].command.linear_mm[axis]).abs())
             .filter(|step| *step > 0.0)
             .collect();
+        let counts = counted(&steps);
         for nominal in NOMINAL_PITCHES_MM.into_iter().filter(|p| 3.0 * p <= length) {
             let step = (0.25 / length).max(2.0 * NEIGHBOURHOOD / (60.0 * nominal));
             let count = (NEIGHBOURHOOD / (nominal * step)).floor();
-            let band = Band::new(1.0 / nominal - count * step, step, 2 * count as usize + 1, &steps);
+            let band = Band::new(1.0 / nominal - count * step, step, 2 * count as usize + 1, &counts);
             found.asked += band.is_seen.len();
             found.grid.push(band);
-            if is_strobed(&steps, nominal) {
+            if is_strobed(&counts, nominal) {
                 found.strobed.push(Band::new(1.0 / nominal, step, 1, &[]));
             }
         }
@@ -91,7 +92,7 @@ impl Pitches {
             let least = (0.8 * highest).max(lowest);
             let count = ((highest - least) / step).floor() + 1.0;
             found.asked += count as usize;
-            found.grid.push(Band::new(highest - (count - 1.0) * step, step, count as usize, &steps));
+            found.grid.push(Band::new(highest - (count - 1.0) * step, step, count as usize, &counts));
             highest -= count * step;
         }
         found
@@ -151,7 +152,7 @@ struct Band {
 }
 
 impl Band {
-    fn new(from: f64, step: f64, count: usize, steps_mm: &[f64]) -> Self {
+    fn new(from: f64, step: f64, count: usize, steps_mm: &[(f64, usize)]) -> Self {
         let period_mm = |k: usize| 1.0 / (from + step * k as f64);
         Self { from, step, is_seen: (0..count).map(|k| !is_strobed(steps_mm, period_mm(k))).collect() }
     }
@@ -327,12 +328,25 @@ pub(crate) fn damage(
     best.map(|(centre, width)| (centre, width, asked))
 }
 
+/// Lengths of steps and how many have each, those alike within a nanometre as one.
+fn counted(steps_mm: &[f64]) -> Vec<(f64, usize)> {
+    const ALIKE_MM: f64 = 1e-6;
+    let mut counted: Vec<(f64, usize)> = steps_mm.iter().map(|step| (*step, 1)).collect();
+    counted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    counted.dedup_by(|next, first| {
+        let alike = next.0 - first.0 < ALIKE_MM;
+        first.1 += if alike { next.1 } else { 0 };
+        alike
+    });
+    counted
+}
+
 /// True where steps from row to row are so close to whole periods that the wave is sampled as a slow curve.
-fn is_strobed(steps_mm: &[f64], pitch_mm: f64) -> bool {
-    let long = steps_mm.iter().filter(|step| **step >= 0.5 * pitch_mm);
-    let (all, slow) = long.fold((0, 0), |(all, slow), step| {
+fn is_strobed(steps_mm: &[(f64, usize)], pitch_mm: f64) -> bool {
+    let long = steps_mm.iter().filter(|(step, _)| *step >= 0.5 * pitch_mm);
+    let (all, slow) = long.fold((0, 0), |(all, slow), (step, count)| {
         let phase = step / pitch_mm;
-        (all + 1, slow + i32::from((phase - phase.round()).abs() < 0.12))
+        (all + count, slow + count * usize::from((phase - phase.round()).abs() < 0.12))
     });
     all > 8 && 10 * slow > 8 * all
 }
@@ -383,10 +397,10 @@ mod tests {
 
     #[test]
     fn steps_of_whole_periods_are_strobed() {
-        assert!(is_strobed(&[20.0; 12], 10.0));
-        assert!(!is_strobed(&[23.0; 12], 10.0));
-        assert!(!is_strobed(&[20.0; 8], 10.0), "too few steps to tell");
-        assert!(!is_strobed(&[1.0; 100], 10.0), "steps below half a period see the wave");
+        assert!(is_strobed(&counted(&[20.0; 12]), 10.0));
+        assert!(!is_strobed(&counted(&[23.0; 12]), 10.0));
+        assert!(!is_strobed(&counted(&[20.0; 8]), 10.0), "too few steps to tell");
+        assert!(!is_strobed(&counted(&[1.0; 100]), 10.0), "steps below half a period see the wave");
     }
 
     #[test]
