@@ -215,7 +215,6 @@ fn the_shape_of_a_mesh_is_no_scatter() {
 #[test]
 fn two_effects_may_stand_for_one_cause() {
     for (name, rival) in [
-        ("18_square_on_a_bent_axis_named_as_droop", "squareness.XZ"),
         ("19_drift_counted_as_play", "instrument-drift"),
         ("20_cube_angle_beside_five_straight_causes", "squareness.XZ"),
     ] {

@@ -319,7 +319,7 @@ impl Space {
     }
 }
 
-/// The best of all levels: the likelihood has one summit over the ratio, so uphill from where a model alike has its own.
+/// The best of all levels: the likelihood has one summit over the ratio, so uphill from that of a model alike.
 fn uphill(start: usize, mut judge: impl FnMut(usize) -> Option<Fit>) -> Option<Fit> {
     let mut best = judge(start);
     for (step, mut level) in [(1, start), (usize::MAX, start)] {

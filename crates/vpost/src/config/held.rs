@@ -83,8 +83,8 @@ impl Held {
         Some(SettingsFile { file: file::name(file), options })
     }
 
-    /// That a file was found, and what of it holds, on which line: what nobody typed is said before the work finds fault
-    /// with it.
+    /// That a file was found, and what of it holds, on which line: what nobody typed is said before the work finds
+    /// fault with it.
     pub(crate) fn note(&self) -> Option<Text> {
         let file = self.file.as_deref().filter(|_| !self.kept.is_empty() && self.command != ["config"])?;
         let options = |line: &str| {
