@@ -62,7 +62,7 @@ fn a_file_above_the_program_says_what_would_be_typed() {
     assert!(typed.status.success() && held.status.success(), "{}{}", messages(&typed), messages(&held));
     assert_eq!(typed.stdout, held.stdout);
     let said = messages(&held);
-    assert!(said.contains("settings from vpost.toml: summary (line "), "{said}");
+    assert!(said.contains("settings from vpost.toml: summary (line 9), machine (line 2)"), "{said}");
     assert!(!messages(&typed).contains("settings from"), "{}", messages(&typed));
     let summary: serde_json::Value =
         serde_json::from_slice(&std::fs::read(shop.path("last.json")).expect("beside the file"))

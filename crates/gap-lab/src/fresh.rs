@@ -48,21 +48,6 @@ impl Fresh {
         self.layout.rows.is_empty()
     }
 
-    /// The rows commanded within some travels, mm.
-    #[must_use]
-    pub fn within(&self, travels_mm: [[f64; 2]; 3]) -> Self {
-        let is_within = |row: &usize| {
-            let place = self.layout.rows[*row].command;
-            place.iter().zip(travels_mm).all(|(q, [low, high])| (low..=high).contains(q))
-        };
-        let kept: Vec<usize> = (0..self.len()).filter(is_within).collect();
-        let mut layout = self.layout.clone();
-        layout.rows = kept.iter().map(|row| self.layout.rows[*row].clone()).collect();
-        let of = |all: &[[f64; 3]]| kept.iter().map(|row| all[*row]).collect();
-        let machine = self.machine.clone();
-        Self { machine, layout, field_um: of(&self.field_um), noise_um: of(&self.noise_um) }
-    }
-
     /// The commands as points for `vpost predict`.
     ///
     /// With the angle of the table where the machine has one: what the linear axes do wrong is seen from a workpiece that it

@@ -40,31 +40,19 @@ pub(crate) fn check(vpost: &Path, folder: &Path, case: &Case, answer: &Answer) -
     if case.kind == Kind::Magnitude || !all || !folder.join("found.toml").is_file() {
         return None;
     }
-    // What is not corrected, the answer says: elsewhere, or anywhere.
-    let fresh = case.fresh.within(travels_mm(&folder.join("found.toml"))?);
-    std::fs::write(folder.join("points.csv"), fresh.points_csv()).ok()?;
+    std::fs::write(folder.join("points.csv"), case.fresh.points_csv()).ok()?;
     let before = predict(vpost, folder, "profile.toml")?;
     let after = predict(vpost, folder, "found.toml")?;
     let explained: Vec<[f64; 3]> =
         before.iter().zip(&after).map(|(b, a)| [0, 1, 2].map(|i| a[i] - b[i])).collect();
-    if explained.len() != fresh.len() || explained.iter().flatten().all(|um| *um == 0.0) {
+    if explained.len() != case.fresh.len() {
         return None;
     }
-    let known = fresh.known_um();
+    let known = case.fresh.known_um();
     let kinematics_um = known.iter().zip(&before).flat_map(|(k, b)| [0, 1, 2].map(|i| (k[i] - b[i]).abs()));
     let kinematics_um = kinematics_um.fold(0.0, f64::max);
-    Some(Transport { share: fresh.shrink(&explained).share(), kinematics_um })
-}
-
-/// Travels of a profile's linear axes, mm: of one that was found, the volume that its corrections are for.
-fn travels_mm(profile: &Path) -> Option<[[f64; 2]; 3]> {
-    let profile: toml::Table = std::fs::read_to_string(profile).ok()?.parse().ok()?;
-    let end = |value: &toml::Value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
-    let travel = |axis: &str| {
-        let both = profile.get("axis")?.get(axis)?.get("travel_mm")?.as_array()?;
-        Some([end(both.first()?)?, end(both.get(1)?)?])
-    };
-    Some([travel("X")?, travel("Y")?, travel("Z")?])
+    let shrink = case.fresh.shrink(&explained);
+    Some(Transport { share: shrink.share(), kinematics_um })
 }
 
 /// Displacements `dx_um dy_um dz_um` that a profile predicts at the points.

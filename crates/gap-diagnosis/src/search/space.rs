@@ -217,8 +217,12 @@ impl Space {
 
     /// Square of the gap that a model leaves after the set-up, at a level, and the model's rank.
     pub(crate) fn left(&self, library: &Library, parts: &[Part], level: usize) -> (f64, usize) {
-        let columns = self.columns(library, parts);
-        let (explained, rank) = explained(&self.products(level), &columns, &self.reference);
+        self.left_by(&self.columns(library, parts), level)
+    }
+
+    /// The same of a model's columns.
+    fn left_by(&self, columns: &[usize], level: usize) -> (f64, usize) {
+        let (explained, rank) = explained(&self.products(level), columns, &self.reference);
         ((self.total(level) - explained).max(0.0), rank)
     }
 
@@ -245,22 +249,25 @@ impl Space {
 
     /// Judges a model.
     pub(crate) fn fit(&self, library: &Library, parts: &[Part]) -> Fit {
-        let all = (0..self.levels.len()).filter_map(|level| self.at(library, parts, level));
+        let all = (0..self.levels.len()).filter_map(self.judge(library, parts));
         let best = all.reduce(|best, next| if next.score < best.score { next } else { best });
         best.unwrap_or(Fit { score: 0.0, residual: 0.0, level: 0, rank: 0 })
     }
 
     /// The same for a model that differs little from one that is judged.
     pub(crate) fn fit_near(&self, library: &Library, parts: &[Part], near: &Fit) -> Fit {
-        uphill(near.level, |level| self.at(library, parts, level)).unwrap_or(*near)
+        uphill(near.level, self.judge(library, parts)).unwrap_or(*near)
     }
 
-    /// Judges a model at a level; `None` where there is no such.
-    pub(super) fn at(&self, library: &Library, parts: &[Part], level: usize) -> Option<Fit> {
-        self.levels.get(level)?;
-        let (residual, rank) = self.left(library, parts, level);
+    /// Judges a model level by level; `None` where there is no such.
+    pub(super) fn judge(&self, library: &Library, parts: &[Part]) -> impl Fn(usize) -> Option<Fit> {
+        let columns = self.columns(library, parts);
         let price = parts.iter().map(|part| self.price(library, *part)).sum();
-        Some(self.judged(level, residual, rank, price))
+        move |level| {
+            self.levels.get(level)?;
+            let (residual, rank) = self.left_by(&columns, level);
+            Some(self.judged(level, residual, rank, price))
+        }
     }
 
     /// BIC of a model with its set-up columns counted.
@@ -353,7 +360,7 @@ impl Products for Whitened<'_> {
             let (a, b) = (self.space.nuisances + i, self.space.nuisances + j);
             let taken_out = self.level.explained[a].product(&self.level.explained[b]);
             // No number would pass for a model that leaves nothing.
-            debug_assert!(!self.space.gram.products[(a, b)].is_nan(), "columns that were never completed");
+            assert!(!self.space.gram.products[(a, b)].is_nan(), "columns that were never completed");
             known.set(self.space.gram.products[(a, b)] - taken_out);
         }
         known.get()

@@ -73,8 +73,10 @@ impl State<'_, '_> {
         let mut fit = self.space.fit(&self.library, &with);
         loop {
             let fewer = (first..with.len()).map(|place| without(&with, place));
-            let judged =
-                fewer.filter_map(|fewer| Some((self.space.at(&self.library, &fewer, fit.level)?, fewer)));
+            let judged = fewer.filter_map(|fewer| {
+                let fit = self.space.judge(&self.library, &fewer)(fit.level)?;
+                Some((fit, fewer))
+            });
             let Some((_, fewer)) = judged.min_by(|a, b| a.0.score.total_cmp(&b.0.score)) else {
                 return (fit, with);
             };
